@@ -1,4 +1,4 @@
-"""Starts the window. Heavy imports wait until the first picture is there."""
+"""Start the window. Heavy imports wait until the first picture is shown."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from metagraph.common.programs import leave_working_folder
 if TYPE_CHECKING:
     from app.shell.window import Window
 
-RETRY = 300  # milliseconds between two looks at whether the language can change
-UNSEEN = 500  # milliseconds after which a project is opened though no picture was painted: it may be hidden
+RETRY = 300  # milliseconds between two checks whether the language can change
+UNSEEN = 500  # milliseconds; then a project is opened even if nothing was painted: the window may be hidden
 
 
 def prepare_application() -> QApplication:
-    """Return the application, its OpenGL format set; made once."""
+    """Return the application, with its OpenGL format set; it is made once."""
     found = QApplication.instance()
     return found if isinstance(found, QApplication) else _application()
 
@@ -37,7 +37,7 @@ def _application() -> QApplication:
     leave_working_folder()
     free_memory_early()
     load_soon()
-    # Planning and checking run on threads; the window's own must get its turn well within a frame.
+    # Planning and checking run on threads; the window's own thread must get its turn well within a frame.
     sys.setswitchinterval(0.001)
     surface = QSurfaceFormat()
     surface.setVersion(3, 3)
@@ -56,7 +56,7 @@ def _application() -> QApplication:
 
 
 def follow_language(app: QApplication) -> None:
-    """Let Qt's own texts, and numbers and dates in fields, follow the chosen language."""
+    """Make Qt's own texts, and numbers and dates in fields, follow the chosen language."""
     from app.translation import ENGLISH, current_language
 
     code = current_language()
@@ -80,7 +80,9 @@ def make_window() -> Window:
 
 
 def open_window(path: Path | None, sample: bool = False, clip: str | None = None) -> Window:
-    """Show a window on a project, the sample project, or nothing. clip: name or id of one to select then."""
+    """Show a window with a project, the sample project, or nothing. `clip` is the name or id of a clip to
+    select then.
+    """
     from app.project.files import SAMPLE
 
     window = make_window()
@@ -102,7 +104,7 @@ def open_window(path: Path | None, sample: bool = False, clip: str | None = None
 
 
 def _once_painted(window: Window, begin: Callable[[], None]) -> None:
-    """Call once, when the first picture is there: what else would run beside it takes turns with it."""
+    """Call `begin` once, when the first picture is shown; anything that ran beside it would slow it down."""
     painted = window.shell.stage.painted
     waiting = [begin]
 
@@ -133,7 +135,7 @@ def run_window(path: Path | None, sample: bool = False, clip: str | None = None)
     from app import faults
     from app.shell.fault_dialog import fault_folder
 
-    gc.disable()  # what is made until the window is there lives as long as it; else 0.08 s later
+    gc.disable()  # objects made until the window shows live on; collecting costs 0.08 s
     app = prepare_application()
     faults.install(fault_folder())
     keeper = WindowKeeper(open_window(path, sample, clip))
@@ -144,8 +146,8 @@ def run_window(path: Path | None, sample: bool = False, clip: str | None = None)
 
 
 class WindowKeeper:
-    """Keeps the window as long as the program runs, and replaces it when the user chooses a language: the new
-    one goes on with the same project, undo steps and place.
+    """Keeps the window as long as the program runs, and replaces it when the user chooses a language. The new
+    one continues with the same project, undo steps and place.
     """
 
     def __init__(self, window: Window) -> None:
@@ -153,7 +155,7 @@ class WindowKeeper:
         self._follow()
 
     def _follow(self) -> None:
-        # Later: the menu that was clicked goes with its window.
+        # Queued, because the clicked menu goes with its window.
         self.window.language_chosen.connect(self.change_language, Qt.ConnectionType.QueuedConnection)
 
     def change_language(self, code: str) -> None:

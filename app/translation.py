@@ -1,6 +1,6 @@
-"""The texts of the window in the language that the user chose.
+"""Show the texts of the window in the language that the user chose.
 
-English stands in the code, inside `tr` and its kin; other languages are gettext catalogues
+The code has English, inside `tr` and similar functions; other languages are gettext catalogues
 (`app/languages/de/LC_MESSAGES/metagraph.po`). `python -m app.languages` collects the texts and compiles the
 catalogues. A text without a translation is shown in English. The domain's phrases
 (`metagraph.common.wording`) are translated where they are shown.
@@ -19,12 +19,12 @@ from metagraph.errors import describe_error
 
 T = TypeVar("T")
 ENGLISH = "en"
-NAMES = {"en": "English", "de": "Deutsch", "pl": "Polski"}  # each language as it calls itself
-# The Polish catalogue covers the first screens only, so it is chosen by hand, never because of the system.
+NAMES = {"en": "English", "de": "Deutsch", "pl": "Polski"}  # each language by its own name
+# The Polish catalogue only covers the first screens, so it is chosen by hand, never because of the system.
 COMPLETE = ("en", "de")
 FOLDER = Path(__file__).parent / "languages"
 
-# Between thousands and before decimals, by language. A narrow space between thousands is ISO 80000-1's.
+# Separators of thousands and of decimals, by language. A narrow space between thousands follows ISO 80000-1.
 SEPARATORS = {"en": (",", "."), "de": ("\u202f", ","), "pl": ("\u202f", ",")}
 
 
@@ -41,7 +41,7 @@ _chosen: _Language | None = None  # None: English
 
 
 class Shown(str):
-    """Text in another language that knows what it is in English."""
+    """Text in another language that also has its English text."""
 
     __slots__ = ("english",)
     english: str
@@ -54,8 +54,8 @@ class Shown(str):
 
 
 def tr(text: str, /, **values: object) -> str:
-    """Return a text in the chosen language. values: for the braces in the text, as in `str.format`; without
-    any, braces are braces.
+    """Return a text in the chosen language. `values` replace the braces in the text, as in `str.format`;
+    without any, braces are braces.
     """
     if _chosen is None:
         return fill_template(text, values)
@@ -74,19 +74,21 @@ def tr_plural(one: str, many: str, count: int, /, **values: object) -> str:
 
 
 def tr_context(context: str, text: str, /, **values: object) -> str:
-    """Return a text that means different things in different places. context: tells translators which."""
+    """Return a text that means different things in different places. `context` tells translators
+    which one.
+    """
     if _chosen is None:
         return fill_template(text, values)
     return _filled(_chosen.catalogue.pgettext(context, text), text, values)
 
 
 def tr_noop(text: str) -> str:
-    """Return a text as it is, marked for translators: whoever shows it calls `tr` with it."""
+    """Return a text unchanged, marked for translators. The code that shows it calls `tr` with it."""
     return text
 
 
 def tr_phrase(words: str) -> str:
-    """Return a phrase of the domain in the chosen language; other text as it is."""
+    """Return a phrase of the domain in the chosen language; other text unchanged."""
     if _chosen is None or not isinstance(words, Phrase):
         return words
     return Shown.of(translate_phrase(words, _template, _show), str(words))
@@ -98,14 +100,14 @@ def tr_error(error: object) -> str:
 
 
 def in_english(text: str) -> str:
-    """Return a text that `tr` and its kin returned in English, for logs that others read; other text as it
-    is.
+    """Return in English a text that `tr` or a similar function returned, for logs that others read; other
+    text unchanged.
     """
     return text.english if isinstance(text, Shown) else str(text)
 
 
 def group_thousands(count: int) -> str:
-    """Return a whole number as the chosen language writes it: "2,328"."""
+    """Return an integer as the chosen language writes it: "2,328"."""
     return f"{_show(count):,}"
 
 
@@ -115,7 +117,7 @@ def format_number(value: float, form: str) -> str:
 
 
 class _Int(int):
-    """A whole number that is formatted as the chosen language writes it."""
+    """An integer that is formatted as the chosen language writes it."""
 
     def __format__(self, form: str) -> str:
         return _localize(format(int(self), form))
@@ -167,7 +169,7 @@ def _template(words: Phrase) -> str:
 
 
 class _Translated:
-    """Behaves like the dict or tuple that `make` returns, made again in each language."""
+    """Behaves like the dict or tuple that `make` returns, which is made again in each language."""
 
     __slots__ = ("_code", "_made", "_make")
 
@@ -196,8 +198,8 @@ class _Translated:
 
 
 def lazy_texts(make: Callable[[], T]) -> T:
-    """Return a dict or tuple of texts for a module to hold: what `make` returns, in the language chosen when
-    it is used. A single text is held by `tr_noop`, and shown by `tr`.
+    """Return a dict or tuple of texts that a module can hold: what `make` returns, in the language chosen
+    when it is used. A single text is held by `tr_noop`, and shown by `tr`.
     """
     return cast(T, _Translated(make))
 
@@ -208,13 +210,13 @@ def current_language() -> str:
 
 
 def choose(code: str) -> None:
-    """Show all texts in a language from now on; in English where there is none of that code."""
+    """Show all texts in a language from now on; in English if there is no language with this code."""
     global _chosen
     _chosen = _Language(code) if code in NAMES and code != ENGLISH else None
 
 
 def load_catalogue(code: str) -> gettext.NullTranslations:
-    """Return the catalogue of a language; an empty one for English. Raises OSError where it is missing."""
+    """Return the catalogue of a language; an empty one for English. Raises OSError if it is missing."""
     if code == ENGLISH:
         return gettext.NullTranslations()
     return gettext.translation("metagraph", FOLDER, [code])
@@ -222,7 +224,7 @@ def load_catalogue(code: str) -> gettext.NullTranslations:
 
 def choose_language(settings: Any, system: Iterable[str] = ()) -> None:
     """Choose the language that METAGRAPH_LANGUAGE names, else the one in the settings, else the first of the
-    system's that we have. system: language tags, such as "de-AT".
+    system's that we have. `system` has language tags, such as "de-AT".
     """
     kept = os.environ.get("METAGRAPH_LANGUAGE") or str(settings.value("language", ""))
     wanted = [tag.replace("_", "-").split("-")[0].lower() for tag in system]

@@ -1,4 +1,4 @@
-"""OpenGL preview: numbers in, pixels out; no Qt.
+"""Draw characters with OpenGL: numbers in, pixels out; no Qt.
 
     figure = SkinnedFigure(character, skeleton)          # or StickFigure(skeleton)
     rotations, positions = skeleton.globals(clip.pose_at(seconds))

@@ -1,4 +1,4 @@
-"""What is behind the figures: ground and sky, one flat colour, or a picture."""
+"""Draw what is behind the figures: ground and sky, one flat colour, or a picture."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ Array = NDArray[Any]
 
 
 class ViewBackdrop:
-    """Belongs to one view: while its camera stands, ground and sky are kept."""
+    """The backdrop of one view. While its camera stands still, ground and sky are kept as a picture."""
 
     def __init__(self, drawing: SceneDrawing) -> None:
         self._drawing = drawing
         self._held: list[Any] = []
         self._seen: tuple[Camera, tuple[int, int], SceneTheme, bool] | None = None  # how they were drawn last
-        self._kept, self._sky_from = False, 0  # whether they are kept, and the row the sky begins at
+        self._kept, self._sky_from = False, 0  # whether kept; the row where the sky begins
 
     def release(self) -> None:
-        """Give everything back."""
+        """Release everything on the graphics card."""
         while self._held:
             self._held.pop().release()
 
     def resize(self, size: tuple[int, int]) -> None:
-        """Make room for another size, pixels."""
+        """Make room for another size in pixels."""
         self.release()
         texture = self._drawing.ctx.texture(size, 4)
         self._stage = self._drawing.ctx.framebuffer([texture])
@@ -41,7 +41,9 @@ class ViewBackdrop:
         self._seen = None
 
     def draw(self, frame: Frame, target: Any) -> int:
-        """Draw it; return the row, from below, at which the ground ends: 0 where there is none."""
+        """Draw the backdrop. Return the row, counted from below, at which the ground ends: 0 if there is
+        none.
+        """
         scene, (width, height) = frame.scene, frame.size
         self._drawing.state(target, (0, 0, width, height), moderngl.NOTHING)
         if scene.picture is not None:
@@ -54,7 +56,9 @@ class ViewBackdrop:
         return self._ground_and_sky(frame, target)
 
     def _ground_and_sky(self, frame: Frame, target: Any) -> int:
-        """Ground up to its far edge, sky above; from the second picture on that is copied."""
+        """Draw ground up to its far edge and sky above. From the second picture on, a kept picture
+        is copied.
+        """
         key = frame.camera, frame.size, frame.theme, frame.scene.ground
         if key != self._seen:
             self._seen, self._kept = key, False
@@ -79,7 +83,7 @@ class ViewBackdrop:
         self._drawing.bare("behind", program).render(moderngl.TRIANGLES, 3)
 
     def _empty_stage(self, frame: Frame, target: Any) -> int:
-        """Draw ground and sky: no point is painted twice. Return the row at which the sky begins."""
+        """Draw ground and sky so that no pixel is painted twice. Return the row at which the sky begins."""
         camera, (width, height) = frame.camera, frame.size
         sky_from = 0
         if frame.scene.ground and camera.eye[1] > 0:
@@ -115,7 +119,7 @@ class ViewBackdrop:
         self._sky("ground", program, frame, moderngl.TRIANGLE_STRIP, 4)
 
     def _sky(self, key: str, program: moderngl.Program, frame: Frame, mode: int, count: int) -> None:
-        """Draw with a program that ends in the sky's colours."""
+        """Draw with a program that ends in the colours of the sky."""
         set_uniforms(
             program,
             u_pixel=(1 / frame.size[0], 1 / frame.size[1]),

@@ -1,8 +1,8 @@
-"""The camera: a frozen value turned, moved and zoomed by pure functions, with its matrices.
+"""Define the camera: a frozen value that pure functions turn, move and zoom, with its matrices.
 
 Angles are radians, lengths metres. `yaw` 0 looks at the character's face (the eye is on +Z), positive yaw
-shows its left side; `pitch` is the eye's height above the target. Matrices are row-major (`M @ column`),
-float64.
+shows its left side; `pitch` is the height of the eye above the target, as an angle. Matrices are row-major
+(`M @ column`), float64.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ Array = NDArray[Any]
 
 PITCH_LIMIT = math.radians(89.0)
 NEAREST, FARTHEST = 0.05, 500.0  # of `distance`
-FLAT = math.radians(1.0)  # a field of view so narrow that near and far are of one size, to half a percent
+FLAT = math.radians(1.0)  # field of view; near and far have the same size to half a percent
 
 
 @dataclass(frozen=True)
 class Camera:
     """An eye that orbits a target. The default shows a person of 1.7 m from three quarters in front.
 
-    fov: the vertical field of view. A long lens (28 degrees) keeps faces and hands from looking swollen.
+    `fov` is the vertical field of view. A long lens (28 degrees) keeps faces and hands from looking swollen.
     """
 
     target: tuple[float, float, float] = (0.0, 0.9, 0.0)
@@ -37,7 +37,7 @@ class Camera:
 
     @cached_property
     def axes(self) -> Array:
-        """The camera's right, up and backward directions as rows `[3, 3]`, not to be written to."""
+        """The camera's right, up and backward directions as rows `[3, 3]`. Read-only."""
         sy, cy, sp, cp = math.sin(self.yaw), math.cos(self.yaw), math.sin(self.pitch), math.cos(self.pitch)
         out = np.array([[cy, 0, -sy], [-sy * sp, cp, -cy * sp], [sy * cp, sp, cy * cp]])
         out.flags.writeable = False
@@ -45,7 +45,7 @@ class Camera:
 
     @cached_property
     def eye(self) -> Array:
-        """Where the camera is, `[3]`, not to be written to."""
+        """The position of the camera, `[3]`. Read-only."""
         out = np.asarray(self.target + self.axes[2] * self.distance)
         out.flags.writeable = False
         return out
@@ -59,14 +59,14 @@ class Camera:
         return max(60.0, self.distance * 12.0)
 
     def view(self) -> Array:
-        """World to camera, `[4, 4]`."""
+        """Return the matrix from world to camera, `[4, 4]`."""
         out = np.eye(4)
         out[:3, :3] = self.axes
         out[:3, 3] = -self.axes @ self.eye
         return out
 
     def projection(self, aspect: float) -> Array:
-        """Camera to clip space, `[4, 4]`; `aspect` is width by height."""
+        """Return the matrix from camera to clip space, `[4, 4]`. `aspect` is width divided by height."""
         f = 1 / math.tan(self.fov / 2)
         near, far = self.near, self.far
         out = np.zeros((4, 4))
@@ -75,12 +75,14 @@ class Camera:
         return out
 
     def matrix(self, aspect: float) -> Array:
-        """World to clip space, `[4, 4]`, not to be written to; `aspect` is width by height."""
+        """Return the matrix from world to clip space, `[4, 4]`, read-only. `aspect` is width divided by
+        height.
+        """
         return _matrix(self, aspect)
 
     def ray(self, x: float, y: float, aspect: float) -> tuple[Array, Array]:
-        """Return origin `[3]` and unit direction `[3]` through the point `x, y`: 0..1 from the picture's
-        upper left.
+        """Return the origin `[3]` and the unit direction `[3]` of the ray through the point `x, y` of the
+        picture: 0..1 from its upper left.
         """
         half = math.tan(self.fov / 2)
         right, up, back = self.axes
@@ -88,8 +90,8 @@ class Camera:
         return self.eye, direction / np.linalg.norm(direction)
 
     def project(self, points: ArrayLike, aspect: float) -> Array:
-        """Return where `points [..., 3]` are seen `[..., 2]`: 0..1 from the picture's upper left; NaN behind
-        the eye.
+        """Return where `points [..., 3]` are in the picture, `[..., 2]`: 0..1 from its upper left, NaN for
+        points behind the eye.
         """
         points = np.asarray(points, float)
         p = np.einsum("ij,nj->ni", self.axes, points.reshape(-1, 3) - self.eye)
@@ -99,25 +101,25 @@ class Camera:
         return np.asarray(out.reshape(*points.shape[:-1], 2))
 
     def orbit(self, dx: float, dy: float) -> Camera:
-        """Turn round the target by a drag of `dx, dy` picture heights to the right and down; one height is
+        """Turn round the target by a drag of `dx, dy` picture heights to the right and down. One height is
         half a turn.
         """
         yaw = math.remainder(self.yaw - dx * math.pi, 2 * math.pi)
         return replace(self, yaw=yaw, pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, self.pitch + dy * math.pi)))
 
     def pan(self, dx: float, dy: float) -> Camera:
-        """Move sideways so that what is at the target's depth follows a drag of `dx, dy` picture heights."""
+        """Move sideways so that things at the target's depth follow a drag of `dx, dy` picture heights."""
         right, up, _ = self.axes
         size = 2 * math.tan(self.fov / 2) * self.distance
         x, y, z = np.asarray(self.target) + (up * dy - right * dx) * size
         return replace(self, target=(float(x), float(y), float(z)))
 
     def zoom(self, steps: float) -> Camera:
-        """Go nearer by `steps` notches of a wheel (negative: farther), 12 % each."""
+        """Go nearer by `steps` notches of a mouse wheel, 12 % each. Negative steps go farther away."""
         return replace(self, distance=min(FARTHEST, max(NEAREST, self.distance * 1.12**-steps)))
 
     def frame(self, bounds: tuple[ArrayLike, ArrayLike], aspect: float, margin: float = 1.08) -> Camera:
-        """Keep the direction; aim at the box `bounds` (lowest and highest corner) and step back until it just
+        """Keep the direction, aim at the box `bounds` (lowest and highest corner) and step back until it just
         fits.
         """
         low, high = np.asarray(bounds[0], float), np.asarray(bounds[1], float)
@@ -139,15 +141,15 @@ class Camera:
 
     @property
     def flat(self) -> bool:
-        """Whether it is as good as orthographic."""
+        """Whether the camera is almost orthographic."""
         return self.fov <= FLAT
 
     def flattened(self) -> Camera:
-        """Return a camera as good as orthographic, for which what is at the target is as large as before."""
+        """Return an almost orthographic camera that shows things at the target in the same size."""
         return self._through(FLAT)
 
     def deepened(self) -> Camera:
-        """Return one with the usual lens, likewise."""
+        """Return a camera with the usual lens that shows things at the target in the same size."""
         return self._through(Camera().fov) if self.flat else self
 
     def _through(self, fov: float) -> Camera:
@@ -155,7 +157,7 @@ class Camera:
         return replace(self, fov=fov, distance=min(FARTHEST, max(NEAREST, distance)))
 
     def facing(self, yaw: float, pitch: float) -> Camera:
-        """Look from another side."""
+        """Look from another side: `yaw` and `pitch` in radians."""
         return replace(
             self, yaw=math.remainder(yaw, 2 * math.pi), pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, pitch))
         )
@@ -169,15 +171,17 @@ def _matrix(camera: Camera, aspect: float) -> Array:
 
 
 def frame_whole_figure(bounds: tuple[ArrayLike, ArrayLike], aspect: float, heading: float = 0.0) -> Camera:
-    """Three quarters in front, all of the box in the picture. `heading`: where the character faces, radians
-    about +Y.
+    """Return a camera three quarters in front with the whole box in the picture. `heading` is where the
+    character faces, radians about +Y.
     """
     camera = Camera()
     return camera.facing(camera.yaw + heading, camera.pitch).frame(bounds, aspect)
 
 
 def close_up(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> Camera:
-    """Head and shoulders: `head` is the middle of the head `[3]`, `height` the figure's height in metres."""
+    """Return a camera for head and shoulders. `head` is the middle of the head `[3]`, `height` the height of
+    the figure in metres.
+    """
     x, y, z = np.asarray(head, float)
     h = 0.115 * height
     camera = Camera(fov=math.radians(22.0)).facing(math.radians(18.0) + heading, math.radians(3.0))
@@ -185,8 +189,8 @@ def close_up(head: ArrayLike, height: float, aspect: float, heading: float = 0.0
 
 
 def frame_upper_body(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> Camera:
-    """From the hips up, room for gesturing arms: `head` is the middle of the head `[3]`, `height` the
-    figure's in metres.
+    """Return a camera for the figure from the hips up, with room for gesturing arms. `head` is the middle of
+    the head `[3]`, `height` the height of the figure in metres.
     """
     x, y, z = np.asarray(head, float)
     camera = Camera().facing(math.radians(20.0) + heading, math.radians(5.0))

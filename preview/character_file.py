@@ -1,4 +1,4 @@
-"""The figure of a character's file: its mesh, or what is drawn where that is none."""
+"""Make the figure for a character's file: its mesh, or a stick figure if the mesh cannot be used."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 
 def figure_from_file(path: Path | None, skeleton: Skeleton, hidden: Collection[str] = ()) -> MeshFigure:
-    """Return the figure that is drawn for a skeleton; its `instead` says why where it is not the file's mesh.
+    """Return the figure that is drawn for a skeleton. If it is not the file's mesh, its `instead` says why.
 
-    path: the character's file, None for a project without one. hidden: names of meshes that are not drawn.
-    Raises FileError.
+    `path` is the character's file, None for a project without one. `hidden` holds names of meshes that are
+    not drawn. Raises FileError.
     """
     if path is None:
         return StickFigure(skeleton)

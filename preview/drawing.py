@@ -1,4 +1,6 @@
-"""What lies on the graphics card for all renderers of one context, and the calls that every pass draws by."""
+"""Hold what all renderers of one context share on the graphics card, and the calls that every pass draws
+with.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,8 @@ Array = NDArray[Any]
 
 
 class SceneDrawing:
-    """Programs, vertex arrays without vertices, meshes and palettes of one context, each made when first
-    asked for.
+    """Programs, vertex arrays without vertices, meshes and palettes of one context. Each is made on first
+    use.
     """
 
     def __init__(self, ctx: moderngl.Context, software: bool = False) -> None:
@@ -27,10 +29,10 @@ class SceneDrawing:
         self._plain: dict[str, moderngl.VertexArray] = {}
         self._buffers: dict[str, moderngl.Buffer] = {}
         self._picture: moderngl.Texture | None = None
-        self._pictured: Array | None = None  # what that shows
+        self._pictured: Array | None = None  # the array that it shows
 
     def release(self) -> None:
-        """Give everything back."""
+        """Release everything on the graphics card."""
         self.store.release()
         held: Any
         for held in (*self._plain.values(), *self._programs.values(), *self._buffers.values()):
@@ -42,7 +44,7 @@ class SceneDrawing:
             gone.clear()
 
     def begin(self) -> None:
-        """Set everything somebody else may have changed since the last frame, but for what `state` sets."""
+        """Set all state that other code may have changed since the last frame, except what `state` sets."""
         ctx: Any = self.ctx
         ctx.depth_func = "<="
         ctx.blend_equation = moderngl.FUNC_ADD
@@ -53,7 +55,7 @@ class SceneDrawing:
     def state(
         self, target: Any, viewport: tuple[int, int, int, int], flags: int, colors: bool = True
     ) -> None:
-        """Draw into `target` from now on. colors: whether it has any."""
+        """Draw into `target` from now on. `colors` says whether the target has colours."""
         target.viewport = viewport
         target.scissor = None
         target.depth_mask = True
@@ -63,8 +65,8 @@ class SceneDrawing:
         self.ctx.enable_only(flags)
 
     def triangles(self, mesh: SkinnedMesh, actor: Actor, program: moderngl.Program, kind: str) -> None:
-        """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured
-        ones.
+        """Draw the batches of the actor that `program` is for: all of them (kind "depth"), the plain ones or
+        the textured ones.
         """
         loaded = self.store[mesh]
         self.store.shape(mesh, actor.morphs)
@@ -95,7 +97,7 @@ class SceneDrawing:
         self._plain[key].render(moderngl.TRIANGLE_STRIP, 4, instances=len(data))
 
     def bare(self, key: str, program: moderngl.Program) -> moderngl.VertexArray:
-        """A vertex array without vertices, for shaders that make their own."""
+        """Return a vertex array without vertices, for shaders that make their own."""
         if key not in self._plain:
             self._plain[key] = self.ctx.vertex_array(program, [])
         return self._plain[key]
@@ -106,7 +108,7 @@ class SceneDrawing:
         return self._programs[key]
 
     def picture(self, picture: Array) -> moderngl.Texture:
-        """Return a texture that shows `picture [H, W, 3]` uint8; the last one is kept."""
+        """Return a texture that shows `picture [H, W, 3]` uint8. The last one is kept."""
         size = (picture.shape[1], picture.shape[0])
         if self._picture is None or self._picture.size != size:
             if self._picture is not None:
@@ -120,10 +122,10 @@ class SceneDrawing:
 
 
 def set_uniforms(program: moderngl.Program, **values: Any) -> None:
-    """Set uniforms by name; those a compiler left out are skipped. Matrices are given row-major.
+    """Set uniforms by name. Those that a compiler has removed are skipped. Matrices are given row-major.
 
-    What a uniform holds already is not set again: arrays are known by who they are, and must not be written
-    to.
+    A value that a uniform already has is not set again. Arrays are compared by identity, so they must not be
+    written to.
     """
     if program.extra is None:
         program.extra = {}

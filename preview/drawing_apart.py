@@ -1,5 +1,5 @@
-"""Pictures of a video drawn in other processes, where the processor draws: one process draws on one core,
-whatever the machine has, since most of the work is placing triangles.
+"""Draw the pictures of a video in several processes if the processor draws. One process uses one core,
+however many the machine has, because most of the work is placing triangles.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from preview.scene import Scene, SceneTheme
 Array = NDArray[Any]
 Seen = tuple[Scene, Camera]
 
-MOST = 4  # processes; more would wait for whoever encodes
-# Pictures from which on starting processes costs less than it saves: each takes a second of a core, so that
-# two cores gain a seventh over a minute, and nothing over ten seconds.
+MOST = 4  # processes; more of them would wait for the encoder
+# The number of pictures from which starting processes saves time. Each start takes a second of one core, so
+# two cores gain a seventh in a video of a minute and nothing in one of ten seconds.
 WORTH, LEAST = 900, 300
-WORTH_LEVELS = 90  # pictures that making meshes with fewer triangles pays for
+WORTH_LEVELS = 90  # pictures; from this number on, making meshes with fewer triangles saves time
 PATIENCE = 2.0  # seconds for a process to end by itself
-WAITING = 4  # pictures under way for each process
+WAITING = 4  # pictures in progress for each process
 
 
 def draw_scenes(
@@ -47,10 +47,11 @@ def draw_scenes(
 ) -> Iterator[Array]:
     """Yield a picture `[H, W, 4]` uint8 for each scene, in order; see `Offscreen.render`.
 
-    count: how many there will be, about. into: an array that pictures may come in, for who is done with one
-    before asking for the next; without it each is a new one. processes: how many draw beside this one; by
-    default as many as there are cores, 4 at most, and none where a graphics card draws or there are few
-    pictures. Pictures are the same wherever they are drawn.
+    `count` is about how many pictures there will be. `into` is an array that pictures may be written to, for
+    callers that are done with one picture before they take the next; without it each picture is a new array.
+    `processes` is how many processes draw beside this one: by default as many as there are cores, at most 4,
+    and none if a graphics card draws or if there are few pictures. Pictures are the same wherever they are
+    drawn.
     """
     scenes = iter(scenes)
     with Offscreen(*size) as here:
@@ -82,19 +83,19 @@ def _drawn_apart(
     processes: int,
     path: Path,
 ) -> Iterator[Array]:
-    """Draw here until the others have come up, then gather what they draw. Whatever goes wrong there is drawn
-    here.
+    """Draw here until the other processes have started, then collect what they draw. If one fails, its
+    pictures are drawn here.
     """
     figures = list({id(a.figure): a.figure for a in first.actors}.values())
     for figure in figures:
-        _ = figure.boxes  # once, for all
+        _ = figure.boxes  # computed once here, not in each process
     width, height = here.size
-    slots = processes * WAITING + 1  # one more, that is looked at
+    slots = processes * WAITING + 1  # one more for the picture that the caller looks at
     pool = np.memmap(path, np.uint8, "w+", shape=(slots, height, width, 4))
     begin = pickle.dumps((figures, here.size, theme, str(path), slots))
     drawers = [Child("preview.drawing_child") for _ in range(processes)]
     free: queue.SimpleQueue[Child] = queue.SimpleQueue()
-    executor = ThreadPoolExecutor(processes)  # a thread waits for each of them
+    executor = ThreadPoolExecutor(processes)  # one thread waits for each process
     come = [executor.submit(_begin, drawer, begin, free) for drawer in drawers]
     waiting: deque[tuple[Future[int] | None, Seen]] = deque()
     broken = False
@@ -111,7 +112,7 @@ def _drawn_apart(
                 waiting.append((task, seen))
                 number += 1
                 if not ready:
-                    break  # so that they find some to draw when they have come
+                    break  # so that the processes find some left to draw when they have started
             if not waiting:
                 return
             task, (scene, camera) = waiting.popleft()
@@ -139,12 +140,12 @@ def _drawn_apart(
 
 
 def _begin(drawer: Child, begin: bytes, free: queue.SimpleQueue[Child]) -> None:
-    """Tell one what it will draw, and wait until it has come up."""
+    """Send a process what it will draw, and wait until it has started."""
     try:
         drawer.send(begin)
         drawer.receive()
     finally:
-        free.put(drawer)  # one that has ended says so to whoever asks it
+        free.put(drawer)  # one that has ended raises at its next use
 
 
 def _submitted(
@@ -154,12 +155,12 @@ def _submitted(
     seen: Seen,
     slot: int,
 ) -> Future[int] | None:
-    """Hand a scene out; None where somebody is in it the others do not know."""
+    """Give a scene to a process. Return None if it has a figure that the processes do not know."""
     scene, camera = seen
     numbers = [n for a in scene.actors for n, f in enumerate(figures) if f is a.figure]
     if len(numbers) < len(scene.actors):
         return None
-    # Figures are known there by their number: a mesh is kept by who it is.
+    # The processes know figures by their number, because a mesh is kept by its identity.
     actors = [replace(a, figure=None) for a in scene.actors]  # type: ignore[arg-type]
     order = pickle.dumps((slot, replace(scene, actors=()), actors, numbers, camera))
 

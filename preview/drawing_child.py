@@ -1,8 +1,9 @@
-"""Run as a process of its own by `preview.drawing_apart`: it draws scenes into memory that both share.
+"""Draw scenes into memory shared with `preview.drawing_apart`, which runs this module as a process of its
+own.
 
-Comes in: what all scenes have (figures, size, theme, the shared file, how many pictures it holds), then a
-scene after the other, pickled by the parent. Goes out: an empty message when it has begun, and when a
-picture is drawn.
+It receives what all scenes have in common (figures, size, theme, the shared file, how many pictures it
+holds), then one scene after the other, pickled by the parent. It sends an empty message when it has started,
+and one for each picture drawn.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from preview.offscreen import Offscreen
 
 
 def main() -> None:
-    os.environ["LP_NUM_THREADS"] = "1"  # each process has a core
+    os.environ["LP_NUM_THREADS"] = "1"  # each process uses one core
     channel = connect_to_parent()
     try:
         figures, size, theme, path, slots = pickle.loads(channel.receive())
@@ -31,7 +32,7 @@ def main() -> None:
                 offscreen.render(replace(scene, actors=tuple(there)), camera, theme, into=pool[slot])
                 channel.send(b"")
     except (EOFError, OSError):
-        return  # the parent has all it wanted, or is gone
+        return  # the parent has all it wanted, or has ended
 
 
 if __name__ == "__main__":

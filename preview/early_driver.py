@@ -1,4 +1,4 @@
-"""The driver of the graphics card, or the renderer that stands in for it, loaded before it is needed."""
+"""Load the driver of the graphics card, or the software renderer, before it is needed."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ _DEVICE = 0x313F  # EGL_PLATFORM_DEVICE_EXT: where `preview.offscreen` draws, wi
 
 
 def load_soon() -> None:
-    """Load on a thread what the first context of this process will need: a quarter of its time is that, and
-    nobody has to hold Python meanwhile. Where there is no EGL nothing happens: the context says why.
+    """Load on a thread what the first context of this process will need. This is a quarter of the time to
+    make it, and does not hold Python's lock.
+
+    Nothing happens if there is no EGL: the error comes from the context.
     """
     if sys.platform.startswith("linux"):
         Thread(target=_load, name="driver", daemon=True).start()
@@ -38,6 +40,6 @@ def _load() -> None:
         return
     display = ctypes.CFUNCTYPE(c_void_p, c_uint, c_void_p, c_void_p)(display_of)(_DEVICE, device, None)
     if display:
-        # Stays initialized: the context that comes takes the same display, and initializes it in no time.
+        # EGL stays initialized: the context uses the same display, and initializing it again takes no time.
         initialize.argtypes = [c_void_p, c_void_p, c_void_p]
         initialize(display, None, None)

@@ -1,5 +1,5 @@
-"""Figures: what is drawn for a skeleton. They turn global joint transforms into a mesh's palette, any number
-at once.
+"""Define figures, which are drawn for a skeleton. They turn global joint transforms into the palette of a
+mesh, for any number of instances at once.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (
 class MeshFigure:
     """A mesh that follows a skeleton.
 
-    skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each
-    matrix of the palette the joint of `skeleton` it follows (-1: none). shadow: joints `[S]` and radii `[S]`
-    that darken the ground. meshes: the names of the character's meshes, hidden ones too. instead: why this
-    figure stands in for the character's mesh, in words; "" where it does not. levels: meshes with fewer
+    `skeleton` is the one whose global transforms the figure takes. `mesh` is in its rest pose. `sources`
+    `[M]` holds for each matrix of the palette the joint of `skeleton` that it follows (-1: none). `shadow`
+    holds the joints `[S]` of the bones that darken the ground, and the joints `[S]` those bones start at.
+    `meshes` are the names of the character's meshes, including hidden ones. `instead` says in words why this
+    figure is drawn in place of the character's mesh, "" if it is not. `levels` are meshes with fewer
     triangles, finer ones first; none before `simplify`.
     """
 
@@ -56,35 +57,37 @@ class MeshFigure:
         self._head = rules.find_head(skeleton)
 
     def simplify(self, cancelled: Callable[[], bool] = lambda: False) -> None:
-        """Make the `levels`, or read those that were made before; a second or two where there were none, for
-        ten thousand triangles. From any thread. Pictures are as they were but for what is seen at their size.
+        """Make the `levels`, or read those that were made earlier. Making them takes a second or two for ten
+        thousand triangles.
+
+        May be called from any thread. Only figures that are small in the picture change.
         """
         if not self.levels:
             self.levels = levels_of(self.mesh, self.height, cancelled)
 
     def finest(self, error: float) -> SkinnedMesh:
-        """Return the mesh with the fewest triangles that is nowhere further off than `error`, metres."""
+        """Return the mesh with the fewest triangles whose surface is off by at most `error` metres."""
         return next((a.mesh for a in reversed(self.levels) if a.error <= error), self.mesh)
 
     @cached_property
     def rods(self) -> Rods | None:
-        """What keeps light from what; None for who is no person."""
+        """The rods by which limbs keep light from each other, None for a figure that is no person."""
         return rods(self.skeleton, self.sources, self.mesh.vertices)
 
     def palette(self, rotations: Array, positions: Array) -> Array:
-        """Return `[..., M, 3, 4]` float32: rest pose to posed, from global `rotations [..., J, 4]`,
-        `positions [..., J, 3]`.
+        """Return the matrices from rest pose to posed, `[..., M, 3, 4]` float32, for global `rotations [...,
+        J, 4]` and `positions [..., J, 3]`.
         """
         raise NotImplementedError
 
     def morph_weights(self, values: Mapping[str, float]) -> Array | None:
-        """Return weights `[K]` in the order of `morphs`, 0 for those not named; None for a figure without
-        any.
+        """Return weights `[K]` in the order of `morphs`, 0 for names without a value. None for a figure
+        without morphs.
         """
         return np.array([values.get(name, 0.0) for name in self.morphs], np.float32) if self.morphs else None
 
     def bounds(self, positions: Array) -> tuple[Array, Array]:
-        """Return the lowest and highest corner of a box round the figure in all poses `positions [..., J,
+        """Return the lowest and the highest corner of a box round the figure in all poses `positions [..., J,
         3]`.
         """
         box = self._balls(positions)
@@ -96,9 +99,10 @@ class MeshFigure:
     def posed_bounds(
         self, rotations: Array, positions: Array, joint: int | None = None
     ) -> tuple[Array, Array]:
-        """Return the same where rotations `[..., J, 4]` are known, too, as they turn the mesh: what a
-        hand holds reaches where no ball about the hand's joint tells. joint: whose part of the mesh alone is
-        meant.
+        """Return the same box if rotations `[..., J, 4]` are known, too.
+
+        They turn the mesh: a thing held in a hand reaches farther than a ball round the hand's joint. With
+        `joint`, the box is only round the part of the mesh that follows this joint.
         """
         matrix, corners = self.boxes
         if joint is not None:
@@ -110,7 +114,7 @@ class MeshFigure:
         return (points.min(0), points.max(0)) if len(points) else self.bounds(positions)
 
     def _balls(self, positions: Array) -> tuple[Array, Array] | None:
-        """Return the box round balls about the joints, None when no position is a number."""
+        """Return the box round balls about the joints, None if no position is a number."""
         joints, radii = self._reach
         points = np.asarray(positions, float)[..., joints, :]
         low, high = (points - radii[:, None]).reshape(-1, 3), (points + radii[:, None]).reshape(-1, 3)
@@ -119,15 +123,15 @@ class MeshFigure:
 
     @cached_property
     def boxes(self) -> tuple[Array, Array]:
-        """Return the mesh in pieces: the matrix each moves with `[B]`, and the corners of a box round it in
-        rest pose `[B, 8, 3]`, as wide again as skinning and faces may move it.
+        """The mesh in pieces: the matrix each moves with `[B]`, and the corners of a box round it in rest
+        pose `[B, 8, 3]`, enlarged by what skinning and faces may move it.
         """
         return cut_at_bones(self.mesh, 0.06 * self.height, 0.012 * self.height)
 
     @cached_property
     def _slack(self) -> tuple[Array, Array]:
-        """How much the box of balls is too large at rest, below and above: large ears make a large ball round
-        the head.
+        """How much the box of balls is too large at rest, below and above. Large ears, for example, make a
+        large ball round the head.
         """
         _, rest = self.skeleton.globals(self.skeleton.rest)
         box, mesh = self._balls(rest), self.mesh.vertices["position"]
@@ -137,14 +141,14 @@ class MeshFigure:
 
     @cached_property
     def _reach(self) -> tuple[Array, Array]:
-        """Joints `[N]` and how far the mesh stands off them `[N]`, metres: off the bones below them where
-        there are any.
+        """Joints `[N]` and how far the mesh is from them `[N]`, in metres; from the bones below them if there
+        are any.
         """
         _, rest = self.skeleton.globals(self.skeleton.rest)
         vertices = self.mesh.vertices
         main = main_matrices(vertices) if len(vertices) else np.zeros(0, int)
         owner = self.sources[main]
-        for joint in reversed(range(len(self.skeleton))):  # what is not drawn counts for the joint above
+        for joint in reversed(range(len(self.skeleton))):  # hidden joints count for the joint above
             if not self.drawn[joint]:
                 owner[owner == joint] = self._above[joint]
         radii = np.zeros(len(self.skeleton))
@@ -164,7 +168,9 @@ class MeshFigure:
         return joints, radii[joints]
 
     def head(self, rotations: Array, positions: Array) -> Array:
-        """Return the middle of the head `[..., 3]`: a little above its joint, else the top of the figure."""
+        """Return the middle of the head `[..., 3]`: a little above its joint, or the top of the figure if it
+        has none.
+        """
         if self._head is None:
             top = np.argmax(np.asarray(positions)[..., 1], -1)
             return np.take_along_axis(np.asarray(positions), top[..., None, None], -2)[..., 0, :]
@@ -180,10 +186,10 @@ class MeshFigure:
 
 
 class SkinnedFigure(MeshFigure):
-    """A character's mesh on a project's skeleton, which may be another than its own.
+    """A character's mesh on a project's skeleton, which may differ from the mesh's own.
 
-    Joints are matched by name; one that is missing follows its nearest matched ancestor, and one without any
-    such ancestor follows the first that matched. `matched` counts the joints found.
+    Joints are matched by name. A joint without a match follows its nearest matched ancestor, or the first
+    matched joint if there is no such ancestor. `matched` counts the joints found.
     """
 
     def __init__(self, character: CharacterMesh, skeleton: Skeleton | None = None) -> None:
@@ -210,8 +216,8 @@ class SkinnedFigure(MeshFigure):
 
 
 class StickFigure(MeshFigure):
-    """Tapered bones, joint balls and a head for any skeleton, sized by it. The left is a little lighter than
-    the right.
+    """Tapered bones, joint balls and a head for any skeleton, scaled to it. The left side is a little lighter
+    than the right.
     """
 
     def __init__(self, skeleton: Skeleton) -> None:
@@ -227,7 +233,7 @@ class StickFigure(MeshFigure):
         self._rest_rotations, self._rest_positions = rest_r.astype(np.float32), rest_p.astype(np.float32)
         self._above_of = np.arange(count)
         self._above_of[self.lines] = self.line_starts
-        self.sources[count:] = self._above_of  # a bone is moved by the joint it starts at
+        self.sources[count:] = self._above_of  # a bone is moved by the joint where it starts
         self._build(rest_p)
         self.mesh = join_parts(self._parts, 2 * count)
 
@@ -238,7 +244,7 @@ class StickFigure(MeshFigure):
         out = np.empty((*turn.shape[:-2], 2 * count, 3, 4), np.float32)
         out[..., :count, :, :3] = rotation.to_matrix(turn)
         out[..., :count, :, 3] = positions - rotation.rotate_vectors(turn, self._rest_positions)
-        # Bones lead from joint to joint wherever a file has moved those, and stretch with them.
+        # Bones lead from joint to joint, also if a file moves the joints, and stretch with them.
         above = self._above_of
         before = (self._rest_positions - self._rest_positions[above]).astype(np.float32)
         now = positions - positions[..., above, :]
@@ -302,7 +308,7 @@ class StickFigure(MeshFigure):
             )
 
     def _add_head(self, rest: Array, joint: int, color: tuple[int, int, int]) -> None:
-        """An egg above the head's joint, in line with the rest pose's upright."""
+        """Add an egg above the head's joint, upright in the rest pose."""
         tall = 0.135 * self.height
         self._add(egg(tall, tall * 0.42), joint, rest[joint] + [0, -0.1 * tall, 0.06 * tall], color)
 
@@ -330,7 +336,7 @@ class StickFigure(MeshFigure):
 
 
 def join_parts(parts: list[Any], matrices: int) -> SkinnedMesh:
-    """Put rigid parts into one mesh."""
+    """Return one mesh of rigid parts."""
     vertices, triangles, count = [], [], 0
     for (positions, normals, corners), matrix, _, color in parts:
         v = np.zeros(len(positions), VERTEX)
@@ -347,8 +353,8 @@ def join_parts(parts: list[Any], matrices: int) -> SkinnedMesh:
 
 
 def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
-    """Bring a character's surfaces together by texture, so that a model of many plain materials is one
-    draw.
+    """Collect a character's surfaces by texture, so that a model with many plain materials is drawn with one
+    call.
     """
     groups: dict[tuple[bytes | None, bool], list[tuple[Array, MeshMaterial]]] = {}
     for surface in character.surfaces:
@@ -400,7 +406,7 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
 
 
 def _srgb8(linear: tuple[float, ...]) -> list[int]:
-    """Linear 0..1 to sRGB 0..255."""
+    """Convert linear colours 0..1 to sRGB 0..255."""
     c = np.clip(np.asarray(linear, float), 0, 1)
     return [
         int(x) for x in np.round(255 * np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055))

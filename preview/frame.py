@@ -1,4 +1,4 @@
-"""What all passes of one picture share, and which part of the picture its figures can cover."""
+"""Hold what all passes of one picture share, and find which parts of the picture its figures can cover."""
 
 from __future__ import annotations
 
@@ -17,19 +17,20 @@ from preview.scene import Actor, Scene, SceneTheme
 
 Array = NDArray[Any]
 
-TILE = 16  # pixels, of the squares that figures are laid over a picture by
-MOST = 64  # rectangles; of a crowd all round it is smoothed, which costs less than so many
-MARGIN = 2  # pixels that smoothing looks and writes beyond an edge, and a bit
+TILE = 16  # pixels; the side of the squares that covered parts are made of
+MOST = 64  # rectangles; if there are more, one round all of them is smoothed, which is cheaper
+MARGIN = 2  # pixels that smoothing reads and writes beyond an edge, and a little more
 
 
 @dataclass(eq=False)
 class Frame:
     """What the passes of one picture share.
 
-    rows: each actor's first row in the palette. matrix: world to clip space `[4, 4]`. bounds: a box round
-    those who are no ghosts. meshes: which is drawn of each actor. boxes: the corners of those round all
-    actors' pieces `[N, 8, 3]`. casters: what throws each actor's shadow. light: world to shadow map,
-    0..1, or None; set once shadows are cast.
+    `rows` holds each actor's first row in the palette. `matrix` leads from world to clip space `[4, 4]`.
+    `bounds` is a box round the actors that are not ghosts. `meshes` holds the mesh that is drawn for each
+    actor. `boxes` are the corners of the boxes round all actors' pieces `[N, 8, 3]`. `casters` are the meshes
+    that throw each actor's shadow. `light` is the matrix from world to shadow map, 0..1, or None until
+    shadows are drawn.
     """
 
     scene: Scene
@@ -47,30 +48,30 @@ class Frame:
 
     @property
     def floor(self) -> bool:
-        """Whether the ground is seen, from above."""
+        """Whether the ground is seen from above."""
         scene = self.scene
         plain = scene.background is None and scene.picture is None
         return scene.ground and plain and float(self.camera.eye[1]) > 0
 
     @cached_property
     def ends(self) -> Array:
-        """The least x and y and the most that are seen of each box `[4, N]`, see `Camera.project`; NaN where
-        some of it is behind the eye.
+        """The least x and y and the greatest x and y at which each box is seen `[4, N]`, see
+        `Camera.project`. NaN if part of the box is behind the eye.
         """
         camera = self.camera
-        # Not `@`: of a crowd that starts threads, which spin.
+        # Not `@`: for a crowd it starts threads, which wait busily.
         x, y, z = np.einsum("ij,nj->in", camera.axes, self.boxes.reshape(-1, 3) - camera.eye)
         depth = np.where(z < -1e-9, z, np.nan) * (-2 * math.tan(camera.fov / 2))
         x, y = (x / (depth * (self.size[0] / self.size[1]))).reshape(-1, 8), (y / depth).reshape(-1, 8)
         return np.stack([0.5 + x.min(1), 0.5 - y.max(1), 0.5 + x.max(1), 0.5 - y.min(1)])
 
     def which(self, solid: bool) -> list[int]:
-        """Return the places of those who are no ghosts, or of the ghosts."""
+        """Return the indices of the actors that are not ghosts (`solid`), or of the ghosts."""
         return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
 
 
 def is_drawable(actor: Actor) -> bool:
-    """Whether there is something to draw, and all its numbers are some."""
+    """Return whether the actor has something to draw and all its numbers are finite."""
     return bool(
         actor.count
         and len(actor.figure.mesh.vertices)
@@ -80,21 +81,22 @@ def is_drawable(actor: Actor) -> bool:
 
 
 def tall(actor: Actor, camera: Camera, height: int) -> float:
-    """How many pixels tall the nearest instance is, about."""
+    """Return about how many pixels tall the nearest instance is."""
     away = np.linalg.norm(np.asarray(actor.positions)[..., 0, :].reshape(-1, 3) - camera.eye, axis=1).min()
     return float(actor.figure.height / (2 * np.tan(camera.fov / 2) * max(float(away), 1e-3)) * height)
 
 
 def find_covered(frame: Frame) -> Array:
-    """Return the parts of the picture with figures in them `[N, 4]`: left, low, right, high, pixels from
-    below; rectangles that do not overlap.
+    """Return the parts of the picture that have figures in them `[N, 4]`: left, low, right, high, in pixels
+    from below. The rectangles do not overlap.
 
-    Smoothing costs by the point, and the box round a figure with an arm out is mostly empty.
+    The time of smoothing grows with the number of pixels, and the box round a figure with an arm stretched
+    out is mostly empty.
     """
     if not frame.actors:
         return np.zeros((0, 4), int)
     width, height = frame.size
-    if not np.isfinite(frame.ends).all():  # somebody is behind the eye, or round it
+    if not np.isfinite(frame.ends).all():  # an actor is behind the eye or round it
         return np.array([[0, 0, width, height]])
     wide, high = (width + TILE - 1) // TILE, (height + TILE - 1) // TILE
     left, top, right, bottom = frame.ends.clip(-1, 2)  # in shares of the picture, from above
@@ -106,7 +108,7 @@ def find_covered(frame: Frame) -> Array:
     inside = (right > left) & (past > low)
     if not inside.all():
         left, low, right, past = (x[inside] for x in (left, low, right, past))
-    # Corners of rectangles, summed up along both axes, count those that lie over each tile.
+    # Corners of rectangles, summed up along both axes, count the rectangles over each tile.
     line = wide + 1
     corners = np.concatenate([low * line + left, past * line + right, low * line + right, past * line + left])
     signs = np.repeat([1, -1], 2 * len(left))
@@ -122,8 +124,8 @@ def find_covered(frame: Frame) -> Array:
 
 
 def piece_boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:
-    """Return the corners of the boxes round all actors' pieces `[N, 8, 3]`. palettes: each actor's
-    `[instances, M, 3, 4]`.
+    """Return the corners of the boxes round all actors' pieces `[N, 8, 3]`. `palettes` holds each actor's
+    palette `[instances, M, 3, 4]`.
     """
     return np.concatenate(
         [np.zeros((0, 8, 3)), *(_corners(*at) for at in zip(actors, palettes, strict=True))]

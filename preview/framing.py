@@ -1,5 +1,5 @@
-"""How near a clip is looked at: the whole body where it walks or stands, down to the hips where the arms
-gesture, down to the chest where the head alone moves.
+"""Choose how near a clip is shown: the whole body if it walks or stands, down to the hips if the arms
+gesture, down to the chest if only the head moves.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ Array = NDArray[Any]
 Near = Literal["whole", "upper", "head"]
 Box = tuple[Array, Array]  # its lowest and its highest corner, metres
 
-# Parts of the character's height: how far beside its middle a picture reaches at least, and how far below the
-# joint at its lower edge. Ours, by eye.
+# Shares of the character's height: how far beside its middle a picture reaches at least, and how far below
+# the joint at its lower edge. The numbers are our own, by eye.
 ASIDE: dict[Near, float] = {"upper": 0.3, "head": 0.15}
 BELOW: dict[Near, float] = {"upper": 0.03, "head": 0.02}
 HAND = 0.07  # beyond a wrist
 
 
 def nearness(clip: Clip) -> Near:
-    """Return how near a clip is to be looked at, by what it moves; from afar what is no humanoid."""
+    """Return how near to show a clip, by what it moves. Skeletons that are no humanoids are shown whole."""
     parts = set(find_moved_parts(clip))
     if not parts or parts & {"place", "legs"} or not is_humanoid(find_roles(clip.skeleton)):
         return "whole"
@@ -33,8 +33,8 @@ def nearness(clip: Clip) -> Near:
 
 
 def near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, height: float) -> Box:
-    """Return the box that is looked at of a character in poses `positions [F, J, 3]`, which faces +Z above
-    the origin. whole: the box round all of it. height: of the character at rest, metres.
+    """Return the box to show of a character in poses `positions [F, J, 3]`, which faces +Z above the origin.
+    `whole` is the box round all of it, `height` the height of the character at rest, in metres.
     """
     roles = find_roles(skeleton)
     edge = "hips" if near == "upper" else next(r for r in ("upper_chest", "chest", "spine") if r in roles)

@@ -1,4 +1,4 @@
-"""What lies on the graphics card: meshes, their textures, and each frame's palettes."""
+"""Keep on the graphics card: meshes, their textures, and each frame's palettes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TEXTURE_LIMIT = 2048
 PALETTE, NARROW = 128, 64  # pixels; textures up to this size, or so narrow, are palettes and need no mipmaps
 MARK_STRENGTH = 200  # of 255: how much a mark covers the figure's own colour
 
-# How the vertex (see mesh.VERTEX) is read by shaders of each kind; positions come from a buffer of their own.
+# How shaders of each kind read the vertex (see mesh.VERTEX). Positions come from a buffer of their own.
 _LAYOUTS = {
     "depth": ("12x 12x 8x 4u2 4f 4x", ("in_bones", "in_weights")),
     "plain": ("12x 3f 8x 4u2 4f 4f1", ("in_normal", "in_bones", "in_weights", "in_color")),
@@ -37,8 +37,8 @@ _LAYOUTS = {
 
 @dataclass
 class LoadedMesh:
-    """One mesh's buffers, and a vertex array for each program that draws it. order: the vertices' `[U]`.
-    batches: as they are drawn where colours count.
+    """One mesh's buffers, and a vertex array for each program that draws it. `order` is the order of the
+    vertices `[U]`. `batches` are those drawn in passes with colours.
     """
 
     order: Array
@@ -55,8 +55,8 @@ class LoadedMesh:
     def array(
         self, ctx: moderngl.Context, program: moderngl.Program, kind: str, rods: Rods | None = None
     ) -> moderngl.VertexArray:
-        """Return the vertex array for `program`; `kind` is depth, plain or textured. rods: for a program that
-        asks for each vertex's limb.
+        """Return the vertex array for `program`. `kind` is depth, plain or textured. `rods` is for a program
+        that uses each vertex's limb.
         """
         if program.glo not in self.arrays:
             layout, names = _LAYOUTS[kind]
@@ -78,17 +78,17 @@ class LoadedMesh:
 
 
 class Store:
-    """Loads what a frame needs and lets go of what has not been drawn for long. software: whether the
-    processor draws, to which textures are dear.
+    """Load what a frame needs and release what has not been drawn for some time. `software` says whether the
+    processor draws, for which textures are expensive.
     """
 
     def __init__(self, ctx: moderngl.Context, software: bool = False) -> None:
         self._ctx, self._software = ctx, software
         self._meshes: dict[SkinnedMesh, LoadedMesh] = {}
-        self._images: dict[bytes, moderngl.Texture] = {}  # which a mesh and its levels of detail share
+        self._images: dict[bytes, moderngl.Texture] = {}  # shared by a mesh and its levels of detail
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
         self.marks = ctx.texture((1, 1), 4)
-        self._written: list[Actor] = []  # whose palettes and marks these are
+        self._written: list[Actor] = []  # the actors whose palettes and marks these are
         self.palettes: list[Array] = []  # of each of them `[instances, M, 3, 4]`
 
     def __getitem__(self, mesh: SkinnedMesh) -> LoadedMesh:
@@ -106,10 +106,10 @@ class Store:
         self.marks.release()
 
     def prepare(self, actors: Sequence[Actor], meshes: Sequence[SkinnedMesh]) -> list[int]:
-        """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette
+        """Load meshes, palettes (all in one texture) and marks. Return each actor's first row in the palette
         texture.
 
-        meshes: one for each actor, in order, then any others the frame draws.
+        `meshes` holds one for each actor, in order, then any others the frame draws.
         """
         for loaded in self._meshes.values():
             loaded.idle += 1
@@ -187,8 +187,8 @@ class Store:
         loaded.idle = 0
 
     def shape(self, mesh: SkinnedMesh, weights: Array | None) -> None:
-        """Give a loaded mesh the face of who is drawn next, at rest where it has none; two may share a mesh.
-        weights: `[K]` of its morph targets.
+        """Give a loaded mesh the face of the actor that is drawn next, at rest if it has none; two actors may
+        share a mesh. `weights` `[K]` are those of its morph targets.
         """
         if mesh.morphs is None:
             return
@@ -201,7 +201,7 @@ class Store:
             loaded.morphs = wanted.tobytes()
 
     def _let_images_go(self) -> None:
-        """Release the textures that no mesh has any more."""
+        """Release the textures that no mesh uses any more."""
         used = {image for loaded in self._meshes.values() for image in loaded.images}
         for image in [image for image in self._images if image not in used]:
             self._images.pop(image).release()
@@ -211,7 +211,7 @@ class Store:
             return self._images[encoded]
         size, pixels = decode_texture(encoded)
         texture = self._ctx.texture(size, 4, pixels)
-        # What is smaller holds flat colours; and mipmaps cost a stall in software.
+        # Smaller pictures hold flat colours, and making mipmaps stalls drawing in software.
         if max(size) > PALETTE and min(size) > NARROW:
             texture.build_mipmaps()
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
@@ -221,10 +221,10 @@ class Store:
 
 @lru_cache(maxsize=32)
 def decode_texture(encoded: bytes) -> tuple[tuple[int, int], bytes]:
-    """Return a texture's size and RGBA pixels; one that cannot be read becomes white, as the figure is worth
-    more than its paint.
+    """Return a texture's size and RGBA pixels. One that cannot be read becomes white, so that the figure is
+    still drawn.
 
-    Kept, so that whoever loads a figure on a thread can decode there and drawing need not wait.
+    The result is kept: code that loads a figure on a thread can decode there, so that drawing need not wait.
     """
     from PIL import Image
 

@@ -1,4 +1,4 @@
-"""Which joints deserve to be drawn, and on which side they are, judged by their names and places."""
+"""Decide from names and places of joints which of them are drawn and on which side they are."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ _LEFT = re.compile(r"left|(^|[^a-z])l([^a-z]|$)")
 _RIGHT = re.compile(r"right|(^|[^a-z])r([^a-z]|$)")
 
 
-@lru_cache(maxsize=4096)  # the same joints are asked about for each picture
+@lru_cache(maxsize=4096)  # called for the same joints for each picture
 def split_humps(name: str) -> str:
-    """Return the name in lower case with its humps split: `mixamorig:LeftUpLeg2` gives
+    """Return the name in lower case, split at its capitals: `mixamorig:LeftUpLeg2` gives
     `mixamorig:left_up_leg2`.
     """
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
 
 
 def is_control(name: str) -> bool:
-    """Whether the joint is a rig's helper (IK goal, twist, end marker), not part of the body."""
+    """Return whether the joint is a helper of a rig (IK goal, twist, end marker), not part of the body."""
     return bool(_CONTROL.search(re.sub(r"\d+", "", split_humps(name))))
 
 
@@ -41,7 +41,7 @@ def is_finger(name: str) -> bool:
 
 
 def is_face(name: str) -> bool:
-    """Whether the joint is in the face, or hair and cloth: things too small or too loose to stand for a
+    """Return whether the joint is in the face, in hair or in cloth: too small or too loose to stand for a
     bone.
     """
     return bool(
@@ -56,8 +56,8 @@ def is_face(name: str) -> bool:
 
 
 def sides_of_joints(skeleton: Skeleton) -> NDArray[Any]:
-    """Return `[J]`: 1 left, -1 right, 0 middle; by name, else as the parent, as left and right are rarely
-    said twice.
+    """Return `[J]`: 1 for left, -1 for right, 0 for the middle; by the joint's name, or the side of its
+    parent if the name has none.
     """
     out = np.zeros(len(skeleton), np.int8)
     for i, name in enumerate(skeleton.names):
@@ -70,7 +70,7 @@ def sides_of_joints(skeleton: Skeleton) -> NDArray[Any]:
 
 @lru_cache(maxsize=64)
 def find_head(skeleton: Skeleton) -> int | None:
-    """Return the head's joint by name, else by its role ("JtSkullA"); None where there is none."""
+    """Return the head's joint by name, or by its role ("JtSkullA"). None if there is none."""
     found = [
         i
         for i, n in enumerate(skeleton.names)
@@ -80,7 +80,7 @@ def find_head(skeleton: Skeleton) -> int | None:
 
 
 def find_drawn_joints(skeleton: Skeleton) -> NDArray[Any]:
-    """Return `[J]` bool: the joints a stick figure shows. Always at least one."""
+    """Return `[J]` bool: the joints that a stick figure shows. There is always at least one."""
     count, top = len(skeleton), find_head(skeleton)
     keep = np.array([not is_control(n) and not is_face(n) for n in skeleton.names])
     offsets = np.linalg.norm(skeleton.rest_translations, axis=1)
@@ -91,12 +91,12 @@ def find_drawn_joints(skeleton: Skeleton) -> NDArray[Any]:
     for i in range(count):
         parent = int(skeleton.parents[i])
         if parent >= 0 and not keep[parent] and not is_control(skeleton.names[parent]):
-            keep[i] = False  # what hangs on hair or a jaw goes with it
+            keep[i] = False  # joints that hang on hair or a jaw are hidden with it
         if parent >= 0 and below[i] == 1 and offsets[i] < 1e-6:
             keep[i] = False
         if parent >= 0 and below[i] == 1 and below[parent] > 12:
             keep[i] = i == top or (keep[i] and is_finger(skeleton.names[i]))
-    # A root on the ground below the hips is no bone: begin where the body first branches.
+    # A root on the ground below the hips is no bone: begin where the body branches first.
     branching = [i for i in range(count) if keep[i] and sum(bool(keep[c]) for c in skeleton.children[i]) > 1]
     if branching:
         for i in skeleton.chain(branching[0])[:-1]:
@@ -107,7 +107,7 @@ def find_drawn_joints(skeleton: Skeleton) -> NDArray[Any]:
 
 
 def nearest_above(skeleton: Skeleton, shown: NDArray[Any]) -> NDArray[Any]:
-    """Return `[J]`: for each joint the nearest one above it of those shown `[J]`, or -1."""
+    """Return `[J]`: for each joint the nearest joint above it that is shown (`shown` `[J]`), or -1."""
     out = np.full(len(skeleton), -1)
     for i, parent in enumerate(skeleton.parents):  # parents stand before their children
         if parent >= 0:

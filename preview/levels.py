@@ -1,7 +1,8 @@
-"""Levels of detail: meshes with fewer triangles for figures that are small in the picture, and for shadows.
+"""Make levels of detail: meshes with fewer triangles for figures that are small in the picture, and for
+shadows.
 
-They are kept in the user's folder for caches, by what the mesh is; losing them costs a second or two.
-METAGRAPH_MESH_CACHE names another folder; empty, nothing is kept.
+They are kept in the user's cache folder, by the content of the mesh. Losing them costs a second or two.
+METAGRAPH_MESH_CACHE names another folder; if it is empty, nothing is kept.
 """
 
 from __future__ import annotations
@@ -24,22 +25,22 @@ from preview.simplify import Fewer, simplify
 Array = NDArray[Any]
 
 ERRORS = (0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008)  # of the figure's height
-MADE = 1  # to be raised when they are made otherwise
-LEAST, LARGEST = 600, 400_000  # triangles; what has fewer is drawn as it is, with more it would take minutes
-WORTH = 0.85  # of the triangles of the level before, with more than which there is none
+MADE = 1  # increase it when levels are made in another way
+LEAST, LARGEST = 600, 400_000  # triangles; fewer are drawn unchanged, more would take minutes
+WORTH = 0.85  # of the triangles of the previous level; a level with more is not kept
 MOST = 64 * 1024 * 1024  # bytes on disk
 
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """error: how far the surface is off, metres, about."""
+    """A mesh with fewer triangles. `error` is about how far its surface is off, in metres."""
 
     error: float
     mesh: SkinnedMesh
 
 
 def levels_folder() -> Path | None:
-    """Return the folder levels are kept in, None where nothing is."""
+    """Return the folder that levels are kept in, None if nothing is kept."""
     told = os.environ.get("METAGRAPH_MESH_CACHE")
     return cache_folder("meshes") if told is None else Path(told) if told else None
 
@@ -47,8 +48,8 @@ def levels_folder() -> Path | None:
 def levels_of(
     mesh: SkinnedMesh, height: float, cancelled: Callable[[], bool] = lambda: False
 ) -> tuple[Level, ...]:
-    """Return the levels of a mesh whose figure is `height` metres tall, finer ones first; none where there
-    is little to take away, or once it is `cancelled`.
+    """Return the levels of a mesh whose figure is `height` metres tall, finer ones first. None are returned
+    if few triangles can be removed, or once it is `cancelled`.
     """
     if not LEAST <= len(mesh.triangles) <= LARGEST or not np.isfinite(mesh.vertices["position"]).all():
         return ()
@@ -91,14 +92,14 @@ def _written(levels: list[Fewer]) -> bytes:
 
 
 def _read(content: bytes, mesh: SkinnedMesh) -> list[Fewer] | None:
-    """Return what was kept; None where it cannot be what was."""
+    """Return the levels that were kept, None if the content is not valid for the mesh."""
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as held:
             found = [
                 Fewer(held[f"used{n}"], held[f"triangles{n}"], held[f"counts{n}"].astype(np.int64))
                 for n in range(len(ERRORS))
             ]
-    except Exception:  # whatever is wrong with it, it is made again
+    except Exception:  # if anything is wrong with it, it is made again
         return None
     whole = all(
         f.used.ndim == 1

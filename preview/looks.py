@@ -1,5 +1,6 @@
-"""Lights and backgrounds to look at a character in: presets that change a theme. The light called "studio"
-and the background called "stage" leave it as it is.
+"""Define lights and backgrounds to look at a character in: presets that change a theme.
+
+The light "studio" and the background "stage" leave the theme unchanged.
 """
 
 from __future__ import annotations
@@ -12,9 +13,9 @@ from preview.scene import THEMES, Color, SceneTheme
 
 @dataclass(frozen=True)
 class Light:
-    """words: its name. toward: where the lamp is, of any length; above the ground. key, above, below, rim:
-    its colours and those of what comes from above, from below and round the edges, linear. dark: how much of
-    the theme's shadow on the ground there is, 0..1.
+    """A preset of the lamp. `words` is its name. `toward` is the direction to the lamp, of any length, above
+    the ground. `key`, `above`, `below` and `rim` are the linear colours of the lamp and of the light from
+    above, from below and round the edges. `dark` is the share of the theme's shadow on the ground, 0..1.
     """
 
     words: str
@@ -28,9 +29,9 @@ class Light:
 
 @dataclass(frozen=True)
 class BackdropLook:
-    """words: its name. top, bottom: of the gradient, outside and behind the figure, sRGB. floor: the ground
-    near by. line: of its grid, None for no grid. shadow:
-    whether the ground has any.
+    """A preset of the background. `words` is its name. `top` and `bottom` are the colours of the gradient
+    behind the figure, outside and in its middle, sRGB. `floor` is the colour of the ground near the figure,
+    `line` that of its grid, None for no grid. `shadow` says whether the ground shows shadows.
     """
 
     words: str
@@ -105,13 +106,13 @@ NAMES_OF_KEPT = {STUDIO: "Studio", STAGE: "Stage, as in the window"}
 
 
 def look_name(name: str) -> str:
-    """Return what a light or a background is called."""
+    """Return the name of a light or a background to show."""
     found = LIGHTS.get(name) or BACKDROPS.get(name)
     return found.words if found is not None else NAMES_OF_KEPT[name]
 
 
 def look_of(theme: str, light: str = STUDIO, backdrop: str = STAGE) -> SceneTheme:
-    """Return a theme in a light before a background; those that are not known are left out."""
+    """Return a theme in a light before a background. Unknown names change nothing."""
     out, lamp, back = THEMES[theme], LIGHTS.get(light), BACKDROPS.get(backdrop)
     if lamp is not None:
         shadow = tuple(1.0 - lamp.dark * (1.0 - x) for x in out.shadow)

@@ -1,5 +1,5 @@
-"""What the graphics card is given: vertices skinned to the matrices of a palette, and boxes and capsules to
-build them from.
+"""Define what the graphics card gets: vertices skinned to the matrices of a palette, and boxes and capsules
+to build them from.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ VERTEX = np.dtype(
 
 @dataclass(frozen=True, eq=False)
 class TriangleBatch:
-    """Triangles `first .. first + count` that share a texture and a side rule."""
+    """Triangles `first .. first + count` that share a texture and are single-sided or double-sided."""
 
     first: int
     count: int
@@ -38,8 +38,8 @@ class TriangleBatch:
 
 @dataclass(frozen=True, eq=False)
 class Morphs:
-    """What a face moves: a fifth of a character's vertices. moved: which `[W]`, rising. offsets: of their
-    positions, by each target `[K, W, 3]`.
+    """What a face moves, a fifth of a character's vertices. `moved` `[W]` holds their numbers, ascending;
+    `offsets` what each target adds to their positions, `[K, W, 3]`.
     """
 
     moved: Array
@@ -49,12 +49,14 @@ class Morphs:
         return len(self.offsets)
 
     def of(self, used: Array) -> Morphs:
-        """Return those of a mesh that has some of the vertices: `used [U]`, rising."""
+        """Return the morphs of a mesh that has only some of the vertices: `used [U]`, ascending."""
         _, here, there = np.intersect1d(used, self.moved, assume_unique=True, return_indices=True)
         return Morphs(here, np.take(self.offsets, there, 1))
 
     def positions(self, rest: Array, weights: Array) -> Array:
-        """Return the vertices' positions `[V, 3]` with a face of `weights [K]` on, from those at `rest`."""
+        """Return the vertices' positions `[V, 3]` for a face of `weights [K]`. `rest` holds the positions
+        without it.
+        """
         out = rest.copy()
         active = np.flatnonzero(np.abs(weights) > 1e-5)
         out[self.moved] += np.tensordot(weights[active], self.offsets[active], 1)
@@ -63,9 +65,10 @@ class Morphs:
 
 @dataclass(frozen=True, eq=False)
 class SkinnedMesh:
-    """vertices: `[V]` of VERTEX in rest pose. triangles: `[N, 3]`. matrices: how many the palette holds.
+    """Vertices in rest pose `[V]` of VERTEX, `triangles` `[N, 3]`, and the number of `matrices` in the
+    palette.
 
-    morphs: what a face moves, or None. Compared by identity: the renderer keeps one copy per value.
+    `morphs` is what a face moves, or None. Compared by identity: the renderer keeps one copy for each value.
     """
 
     vertices: Array
@@ -76,10 +79,10 @@ class SkinnedMesh:
 
 
 def arrange_vertices(mesh: SkinnedMesh) -> tuple[Array, Array]:
-    """Return the order vertices are best given to a graphics card in `[U]`, and the triangles `[N, 3]` that
-    count by it, each batch where it was.
+    """Return the best order of the vertices for a graphics card `[U]`, and the triangles `[N, 3]` with
+    indices into it. Each batch keeps its place.
 
-    Triangles that lie together come one after the other, so that each vertex is skinned about once instead of
+    Triangles that are near each other follow one another, so each vertex is skinned about once instead of
     twice.
     """
     place = mesh.vertices["position"]
@@ -87,7 +90,7 @@ def arrange_vertices(mesh: SkinnedMesh) -> tuple[Array, Array]:
         return np.arange(len(place)), mesh.triangles
     low, size = place.min(0), max(float(np.ptp(place, axis=0).max()), 1e-9)
     cell = ((place - low) / size * 1023).astype(np.int64)[mesh.triangles].sum(1) // 3
-    # A curve through all cells that stays close by (Morton's): the bits of x, y and z take turns.
+    # A curve through all cells that stays local (Morton's): the bits of x, y and z alternate.
     for shift, mask in ((16, 0x30000FF), (8, 0x300F00F), (4, 0x30C30C3), (2, 0x9249249)):
         cell = (cell | cell << shift) & mask
     code = cell[:, 0] | cell[:, 1] << 1 | cell[:, 2] << 2
@@ -103,11 +106,11 @@ def arrange_vertices(mesh: SkinnedMesh) -> tuple[Array, Array]:
 
 
 def cut_at_bones(mesh: SkinnedMesh, length: float, margin: float) -> tuple[Array, Array]:
-    """Cut a mesh where its bones are, and each bone's part along its longest side.
+    """Cut a mesh at its bones, and the part of each bone along its longest side.
 
     Returns the matrix of each piece `[B]` and the corners of a box round it in rest pose `[B, 8, 3]`, with
-    `margin` metres on all sides. length: of a piece, metres, about. A triangle belongs to every bone that
-    moves one of its vertices by a quarter or more.
+    `margin` metres on all sides. `length` is about the length of a piece in metres. A triangle belongs to
+    every bone that moves one of its vertices by a quarter or more.
     """
     if not len(mesh.triangles):
         return np.zeros(0, int), np.zeros((0, 8, 3))
@@ -136,10 +139,10 @@ def cut_at_bones(mesh: SkinnedMesh, length: float, margin: float) -> tuple[Array
 
 
 def _bounds(key: Array, low: Array, high: Array) -> tuple[Array, Array, Array, Array]:
-    """Return each key there is `[B]`, which of them each row's is `[N]`, and the least `low` and the largest
-    `high` of its rows `[B, 3]`.
+    """Return the different keys `[B]`, the index into them for each row `[N]`, and the least `low` and the
+    greatest `high` of the rows of each key `[B, 3]`.
     """
-    small = key.astype(np.uint16) if key.max() < 1 << 16 else key  # sorted five times as fast
+    small = key.astype(np.uint16) if key.max() < 1 << 16 else key  # sorting these is five times as fast
     order = np.argsort(small, kind="stable")
     found = key[order]
     first = np.flatnonzero(np.concatenate([[True], found[1:] != found[:-1]]))
@@ -154,8 +157,8 @@ def _bounds(key: Array, low: Array, high: Array) -> tuple[Array, Array, Array, A
 
 
 def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:
-    """Turn a profile of `(y, radius)` pairs, from low to high, round the Y axis: positions, normals `[V, 3]`,
-    triangles.
+    """Turn a profile of `(y, radius)` pairs, from low to high, round the Y axis. Return positions and normals
+    `[V, 3]` and triangles.
     """
     p = np.asarray(profile, float)
     slope = np.gradient(p, axis=0)
@@ -187,7 +190,7 @@ def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Ar
 def capsule(
     length: float, low: float, high: float, sides: int = 10, rings: int = 3
 ) -> tuple[Array, Array, Array]:
-    """A tapered bone along +Y from 0 to `length` with round ends of the radii `low` and `high`."""
+    """Return a tapered bone along +Y from 0 to `length` with round ends of the radii `low` and `high`."""
     turn = np.linspace(-math.pi / 2, 0, rings + 1)
     first = [(low * math.sin(t), low * math.cos(t) if i else 0.0) for i, t in enumerate(turn)]
     last = [(length - high * math.sin(t), high * math.cos(t) if i else 0.0) for i, t in enumerate(turn)]
@@ -195,7 +198,7 @@ def capsule(
 
 
 def ball(radius: float, sides: int = 12, rings: int = 8) -> tuple[Array, Array, Array]:
-    """A sphere round the origin."""
+    """Return a sphere round the origin."""
     turn = np.linspace(-math.pi / 2, math.pi / 2, rings + 1)
     return lathe(
         [
@@ -207,7 +210,7 @@ def ball(radius: float, sides: int = 12, rings: int = 8) -> tuple[Array, Array, 
 
 
 def egg(profile_height: float, radius: float, sides: int = 18, rings: int = 14) -> tuple[Array, Array, Array]:
-    """A head: from 0 to `profile_height` along +Y, narrower at the chin."""
+    """Return a head: from 0 to `profile_height` along +Y, narrower at the chin."""
     turn = np.linspace(0, math.pi, rings + 1)
     rows = []
     for i, t in enumerate(turn):

@@ -1,9 +1,9 @@
-"""Which parts of a body keep the light round about from which others: an arm from the flank it hangs beside,
+"""Find which parts of a body keep ambient light from which others: an arm from the flank it hangs beside,
 thighs from each other, a chin from the neck.
 
-A body is ten rounded rods. Each vertex looks at the nine that it is not on; a rod takes as much light as a
-ball of its radius at the nearest point of its middle line would: (r / d)^2 of it where the surface faces the
-ball, less towards the horizon.
+A body is ten rounded rods. Each vertex looks at the nine rods that it is not on. A rod takes as much light as
+a ball of its radius at the nearest point of its middle line would: (r / d)^2 of it where the surface faces
+the ball, less towards the horizon.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from metagraph.motion.skeleton import Skeleton
 Array = NDArray[Any]
 
 NONE = 255  # the limb of a vertex that is on no limb
-# Name, roles it begins at (the first that is there), roles it ends at, and on what it hangs.
+# Name, roles where it begins (the first one present), roles where it ends, and the limb it hangs on.
 LIMBS: tuple[tuple[str, tuple[str, ...], tuple[str, ...], str], ...] = (
     ("trunk", ("hips",), ("neck", "upper_chest", "chest"), ""),
     ("head", ("head",), (), "trunk"),
@@ -33,8 +33,8 @@ LIMBS: tuple[tuple[str, tuple[str, ...], tuple[str, ...], str], ...] = (
     ("left shin", ("left_lower_leg",), ("left_foot",), "left thigh"),
     ("right shin", ("right_lower_leg",), ("right_foot",), "right thigh"),
 )
-# How a rod counts for a vertex: not at all (it is its own); whole; less near its beginning, or near its end,
-# where the two are joined and would darken one another in any pose.
+# How a rod counts for a vertex: not at all (it is the vertex's own), fully, or less near its beginning or its
+# end, where the two limbs are joined and would darken one another in any pose.
 OWN, WHOLE, FROM_START, FROM_END = range(4)
 
 
@@ -56,8 +56,9 @@ def occlusion_ways() -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Rods:
-    """matrices `[L, 2]`: of the palette, that each rod's ends move with. ends `[L, 2, 3]`: in rest pose.
-    radii `[L]`: metres, 0 where there is no such limb. limbs `[M]` uint8: which each matrix moves, or NONE.
+    """The rods of a figure. `matrices` `[L, 2]` are those of the palette that each rod's ends move with.
+    `ends` `[L, 2, 3]` are in rest pose. `radii` `[L]` are metres, 0 if there is no such limb. `limbs` `[M]`
+    uint8 holds the limb that each matrix moves, or NONE.
     """
 
     matrices: Array
@@ -66,11 +67,11 @@ class Rods:
     limbs: Array
 
     def of(self, vertices: Array) -> Array:
-        """Return the limb each of `vertices [V]` (see mesh.VERTEX) is on, uint8."""
+        """Return the limb of each of `vertices [V]` (see mesh.VERTEX), uint8."""
         return np.asarray(self.limbs[main_matrices(vertices)])
 
     def placed(self, palette: Array) -> tuple[Array, Array]:
-        """Return the rods of a pose, `palette [M, 3, 4]`: beginnings and radii, ends, both `[L, 4]`."""
+        """Return the rods in a pose, `palette [M, 3, 4]`: beginnings with radii, and ends, both `[L, 4]`."""
         moved = palette[self.matrices]
         points = np.einsum("leij,lej->lei", moved[..., :3], self.ends) + moved[..., 3]
         return (
@@ -86,9 +87,10 @@ def main_matrices(vertices: Array) -> Array:
 
 
 def rods(skeleton: Skeleton, sources: Array, vertices: Array) -> Rods | None:
-    """Return the rods of a mesh, None where the skeleton is no person's.
+    """Return the rods of a mesh, None if the skeleton is not that of a person.
 
-    sources `[M]`: the joint each matrix follows. vertices `[V]`: in rest pose (see mesh.VERTEX).
+    `sources` `[M]` is the joint that each matrix follows. `vertices` `[V]` are in rest pose (see
+    mesh.VERTEX).
     """
     roles = find_roles(skeleton)
     if not is_humanoid(roles) or not len(vertices):
@@ -113,7 +115,7 @@ def rods(skeleton: Skeleton, sources: Array, vertices: Array) -> Rods | None:
         if joint not in matrix_of or not len(points):
             continue
         to = next((roles[r] for r in LIMBS[n][2] if r in roles and roles[r] in matrix_of), joint)
-        # A head's rod ends in its middle.
+        # The rod of a head ends in its middle.
         last = rest[to] if to != joint else points.mean(0)
         matrices[n] = matrix_of[joint], matrix_of[to] if n == 0 else matrix_of[joint]
         ends[n] = rest[joint], last

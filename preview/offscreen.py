@@ -1,4 +1,4 @@
-"""Pictures without a window or a display."""
+"""Draw pictures without a window or a display."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from preview.scene import DARK, Scene, SceneTheme
 
 
 class OpenGLError(RuntimeError):
-    """There is no OpenGL 3.3 here; the message says what to install."""
+    """Raised if there is no OpenGL 3.3. The message says what to install."""
 
 
 def no_opengl_error(reasons: str) -> OpenGLError:
-    """Return what to raise where OpenGL 3.3 cannot be had. reasons: what the system says."""
+    """Return the error to raise if OpenGL 3.3 is missing. `reasons` is what the system says."""
     remedy = {
         "linux": phrase("Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1"),
         "darwin": phrase("Sign in to a graphical session; macOS gives no OpenGL without one"),
@@ -36,7 +36,7 @@ def standalone_context() -> moderngl.Context:
     """Return a context of OpenGL 3.3 that belongs to no window. Raises OpenGLError."""
     tries: list[dict[str, Any]] = [{}]
     if sys.platform.startswith("linux"):
-        # By their names first: to look for them, another program is started, twice.
+        # By their names first: searching for them starts another program twice.
         named = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
         tries = [{"backend": "egl", **named}, {"backend": "egl"}, {}]
     reasons = []
@@ -51,9 +51,9 @@ def standalone_context() -> moderngl.Context:
 class Offscreen:
     """A picture of `width` by `height` pixels to draw into, with its own context and renderer.
 
-    Use it in a `with` block or call `release()`; from one thread. Any size may be asked of `render`; it
-    grows. beside: another picture of the same scenes, whose context and whose meshes are used; it has to be
-    released last.
+    Use it in a `with` block or call `release()`, and use it from one thread only. `render` accepts any size
+    and resizes the picture. `beside` is another picture of the same scenes whose context and meshes are used;
+    it has to be released last.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Offscreen:
 
     @property
     def description(self) -> str:
-        """What draws: a graphics card's name or a software renderer's."""
+        """The name of the graphics card or of the software renderer that draws."""
         with self._ctx:
             return str(self._ctx.info["GL_RENDERER"])
 
@@ -83,8 +83,8 @@ class Offscreen:
         size: tuple[int, int] | None = None,
         into: NDArray[np.uint8] | None = None,
     ) -> NDArray[np.uint8]:
-        """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied. into: an
-        array of that size to be filled and returned; fresh memory costs more than the copy.
+        """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied. `into` is an
+        array of that shape to fill and return; new memory takes longer than the copy.
         """
         if size is not None and (max(1, size[0]), max(1, size[1])) != self.size:
             self.resize(*size)
@@ -99,7 +99,7 @@ class Offscreen:
         return into
 
     def draw(self, scene: Scene, camera: Camera, theme: SceneTheme = DARK) -> None:
-        """Draw to the end without reading the picture: what a window's frame costs."""
+        """Draw to the end without reading the picture: this measures the time of a window's frame."""
         with self._ctx:
             self.renderer.draw(scene, camera, self.size, self._fbo, theme)
             self._ctx.finish()
@@ -108,24 +108,24 @@ class Offscreen:
         self.size = (max(1, width), max(1, height))
         with self._ctx:
             self._give_back()
-            # Made one by one: what a simple framebuffer holds is not given back with it.
+            # Made one by one: a simple framebuffer does not release what it holds.
             color, depth = self._ctx.renderbuffer(self.size, 4), self._ctx.depth_renderbuffer(self.size)
             self._fbo = self._ctx.framebuffer([color], depth)
             self._held = [color, depth, self._fbo]
-        self._read = np.empty(4 * self.size[0] * self.size[1], np.uint8)  # what is read back comes here first
+        self._read = np.empty(4 * self.size[0] * self.size[1], np.uint8)  # pixels are read into this first
 
     def _give_back(self) -> None:
         while self._held:
             self._held.pop().release()
 
     def release(self) -> None:
-        """Give the context back. Safe to call twice."""
+        """Release the context. Safe to call twice."""
         if self._released:
             return
         self._released = True
         if self._beside is not None and self._beside._released:
-            return  # it took all with it
-        with contextlib.suppress(Exception), self._ctx:  # a lost context has nothing left to give back
+            return  # the other has released everything
+        with contextlib.suppress(Exception), self._ctx:  # a lost context has nothing left to release
             self.renderer.release()
             self._give_back()
         if self._beside is None:

@@ -1,7 +1,7 @@
-"""Colours of a texture put on a mesh's vertices, where a triangle looks the same without the texture.
+"""Put the colours of a texture on a mesh's vertices if a triangle looks the same without the texture.
 
 Many figures are painted from a palette: each triangle has one colour, or one colour fading into another.
-Looking points' colours up in a texture takes the processor a twentieth of a picture.
+Looking up colours in a texture takes the processor a twentieth of the time of a picture.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from preview.mesh import SkinnedMesh, TriangleBatch
 
 Array = NDArray[Any]
 
-OFF = 3.0 / 255  # that a colour may be off, of what is written to the screen
-LEAST = 0.5  # of a batch's triangles that must look the same for it to be worth another draw
+OFF = 3.0 / 255  # how far a colour may be off, of the range written to the screen
+LEAST = 0.5  # of a batch's triangles; fewer that look the same are not worth another draw call
 _GAMMA = 2.2
 _LINEAR = ((np.arange(256) / 255) ** _GAMMA).astype(np.float32)  # what the shader makes of a vertex's colours
 
@@ -26,9 +26,11 @@ _LINEAR = ((np.arange(256) / 255) ** _GAMMA).astype(np.float32)  # what the shad
 def without_invisible_texture(
     mesh: SkinnedMesh, decoded: Callable[[bytes], tuple[tuple[int, int], bytes]]
 ) -> tuple[SkinnedMesh, Array]:
-    """Return a mesh that looks the same with fewer triangles that have a texture, and which vertex of `mesh`
-    each of its vertices is. Triangles stay in their batch, or in what that becomes: where batches are one
-    after the other, so are these. decoded: size and RGBA of an image.
+    """Return a mesh that looks the same with fewer textured triangles, and for each of its vertices the
+    vertex of `mesh` it comes from.
+
+    Triangles stay in their batch or in the batches it is split into. If batches follow one another, so do
+    these. `decoded` returns the size and the RGBA pixels of an image.
     """
     vertices, triangles = [mesh.vertices], mesh.triangles.copy()
     origins, batches = [np.arange(len(mesh.vertices))], []
@@ -61,7 +63,7 @@ def without_invisible_texture(
         count += len(kept)
     if len(vertices) == 1:
         return mesh, origins[0]
-    # The morphs stay behind: whoever wants them finds the vertices they are of by the origins.
+    # Morphs are not copied: the origins say to which vertices they belong.
     return (
         SkinnedMesh(np.concatenate(vertices), triangles, tuple(batches), mesh.matrices),
         np.concatenate(origins),
@@ -69,20 +71,20 @@ def without_invisible_texture(
 
 
 def _own(vertices: Array) -> Array:
-    """Return the linear colours of vertices, 0..1, that a texture's are multiplied with."""
+    """Return the linear colours of vertices, 0..1, that those of a texture are multiplied with."""
     return np.asarray(_LINEAR[vertices["color"][:, :3]])
 
 
 def _same(vertices: Array, colors: Array, corners: Array, image: Array) -> Array:
-    """Return whether each of the triangles `corners [N, 3]` looks the same `[N]` with `colors [V, 3]` uint8
+    """Return `[N]`: whether each of the triangles `corners [N, 3]` looks the same with `colors [V, 3]` uint8
     at its vertices as with the image.
     """
     out = np.ones(len(corners), bool)
-    # Of each triangle's corners: where in the image, and the roots of its own colour and of that instead.
-    # Roots are what the shader lets fade from corner to corner.
+    # For each corner of a triangle: its place in the image, and the roots of its own colour and of the new
+    # one. The shader fades roots of colours from corner to corner.
     told = np.concatenate([vertices["uv"], np.sqrt(_own(vertices)), np.sqrt(_LINEAR[colors])], 1)
     a, b, c = (told.take(corner, 0) for corner in corners.T)
-    for inside in ((a + b + c) / 3, (a + b) / 2, (b + c) / 2, (c + a) / 2):  # its middle, those of its sides
+    for inside in ((a + b + c) / 3, (a + b) / 2, (b + c) / 2, (c + a) / 2):  # middles of triangle and sides
         at, own, instead = inside[:, :2], inside[:, 2:5], inside[:, 5:]
         off = np.abs(np.sqrt(_linear(_sampled(image, at))) * own - instead)
         out &= off.max(1, initial=0.0) <= OFF
@@ -90,12 +92,12 @@ def _same(vertices: Array, colors: Array, corners: Array, image: Array) -> Array
 
 
 def _linear(texel: Array) -> Array:
-    """What the shader makes of a texture's colours, 0..1."""
+    """Return what the shader makes of a texture's colours, 0..1."""
     return np.asarray(texel * texel * (0.7 * texel + 0.3))
 
 
 def _sampled(image: Array, uv: Array) -> Array:
-    """Return colours `[N, 3]`, 0..1, of `image [H, W, 4]` uint8 between its pixels, which repeat."""
+    """Return colours `[N, 3]`, 0..1, of `image [H, W, 4]` uint8 between its pixels. The image repeats."""
     high, wide = image.shape[:2]
     at = uv * np.array([wide, high], np.float32) - np.float32(0.5)
     low = np.floor(at)

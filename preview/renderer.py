@@ -1,4 +1,4 @@
-"""Draws scenes with OpenGL 3.3: the same pictures in a window and without one, on a graphics card and in
+"""Draw scenes with OpenGL 3.3: the same pictures in a window and without one, on a graphics card and in
 software.
 """
 
@@ -19,29 +19,31 @@ from preview.mesh import SkinnedMesh
 from preview.scene import DARK, Actor, Scene, SceneTheme
 from preview.shadows import SHADOW_LIMIT, Shadows, draw_depths, shadow_casters
 
-GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
-CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is, and of the height, up to where
+GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre at a figure
+CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is; up to which share of the height
 SHADE = 0.8  # how dark the figure's shadow on itself is
-# Pixels that a figure's surface may be off for its having fewer triangles: on a graphics card and in
-# software; in a crowd, which has no shadows on itself either; in software of a ghost or in a view beside
-# another, looked at less closely.
+# Pixels by which a figure's surface may be off because it has fewer triangles: on a graphics card and in
+# software; in a crowd, which also has no shadows on itself; in software for a ghost or for a view beside
+# another, which are looked at less closely.
 OFF, OFF_CROWD, OFF_BESIDE = (0.5, 1.0), 1.4, 1.6
-WHOLE = 0.5  # of a picture, from which on clearing all of it costs less: clearing a part is drawing it
+WHOLE = 0.5  # of a picture; larger parts are cleared with all of it, as clearing a part means drawing it
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
 def is_software(ctx: moderngl.Context) -> bool:
-    """Whether the context draws with the processor: multisampling is then too slow and edges are smoothed
-    afterwards.
+    """Return whether the context draws with the processor. Multisampling is then too slow, and edges are
+    smoothed afterwards.
     """
     return any(word in str(ctx.info.get("GL_RENDERER", "")).lower() for word in _SOFTWARE)
 
 
 class Renderer:
-    """Belongs to one context. occlusion: whether limbs keep light from each other; by default where a
-    graphics card draws. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed
-    instead). beside: another of the same context, which draws the same scenes from elsewhere: what both need
-    is made once. It has to live longer.
+    """Draws the scenes of one context.
+
+    `occlusion` says whether limbs keep light from each other; by default only if a graphics card draws.
+    `samples` is the number of samples of a pixel; None chooses 4 on a graphics card and 0 in software, where
+    edges are smoothed instead. `beside` is another renderer of the same context that draws the same scenes
+    from elsewhere: what both need is made once. It has to be released last.
     """
 
     def __init__(
@@ -54,14 +56,14 @@ class Renderer:
         self._drawing: SceneDrawing = SceneDrawing(ctx, self.software) if beside is None else beside._drawing
         self._shadows: Shadows = Shadows(self._drawing, self.software) if beside is None else beside._shadows
         self.store = self._drawing.store
-        self.occlusion = not self.software  # a tenth of a picture's time where the processor draws
+        self.occlusion = not self.software  # takes a tenth of a picture's time if the processor draws
         self._backdrop = ViewBackdrop(self._drawing)
         self._size = (0, 0)
         self._targets: list[Any] = []
         self._resize(1, 1)
 
     def release(self) -> None:
-        """Give everything on the graphics card back; the context must be current."""
+        """Release everything on the graphics card. The context must be current."""
         for held in reversed(self._targets):
             held.release()
         self._targets.clear()
@@ -78,10 +80,10 @@ class Renderer:
         target: moderngl.Framebuffer,
         theme: SceneTheme = DARK,
     ) -> None:
-        """Draw into `target`'s lower left `size` (width, height, pixels). Sets all state it needs; keeps none
-        of the caller's.
+        """Draw into the lower left `size` (width, height in pixels) of `target`. Sets all state it needs and
+        restores none of the caller's.
 
-        Actors whose transforms hold something that is not a number are left out.
+        Actors with transforms that are not finite are skipped.
         """
         width, height = max(1, int(size[0])), max(1, int(size[1]))
         actors = [a for a in scene.actors if is_drawable(a)]
@@ -108,8 +110,8 @@ class Renderer:
         if cast:
             frame.light = self._shadows.cast(frame)
 
-        # The ground and the sky need no smoothing and go to the target; figures are drawn apart and laid over
-        # them.
+        # The ground and the sky need no smoothing and are drawn into the target. Figures are drawn into
+        # another picture and laid over them.
         ground_to = self._backdrop.draw(frame, target)
         if ground_to > 0 and solid and scene.shadow:
             self._shadows.on_ground(frame, target, ground_to, solid)
@@ -165,14 +167,15 @@ class Renderer:
                 self._drawing.triangles(frame.meshes[i], actor, program, kind)
 
     def _ghosts(self, frame: Frame) -> None:
-        """Depth first, so that a ghost shows its nearest surface only, then colour."""
+        """Draw depth first, so that a ghost shows only its nearest surface, then colour."""
         which = frame.which(solid=False)
         if not which:
             return
-        # What lies in one place with the figure is the figure's: a ghost is reckoned a little farther away.
+        # Where a ghost and a figure are at the same place, the figure is shown: a ghost counts as a little
+        # farther away.
         self.ctx.polygon_offset = GHOST_BACK
         self._main.color_mask = (False, False, False, False)
-        self._main.use()  # a mask counts from the next use
+        self._main.use()  # a mask takes effect at the next use
         draw_depths(self._drawing, frame, which, frame.matrix, frame.meshes)
         self._main.color_mask = (True, True, True, True)
         self._main.use()
@@ -181,8 +184,8 @@ class Renderer:
         self.ctx.polygon_offset = 0.0, 0.0
 
     def _clear(self, parts: Array) -> None:
-        """Make place for figures, in all of the picture or round their parts, whichever costs less."""
-        low, past = parts[:, :2].min(0) - MARGIN, parts[:, 2:].max(0) + MARGIN  # smoothing looks beyond
+        """Clear the picture for figures: all of it or only round their parts, whichever is faster."""
+        low, past = parts[:, :2].min(0) - MARGIN, parts[:, 2:].max(0) + MARGIN  # smoothing reads beyond
         low, past = np.maximum(low, 0), np.minimum(past, self._size)
         part = (*low.tolist(), *(past - low).tolist())
         if part[2] * part[3] > WHOLE * self._size[0] * self._size[1]:
@@ -191,7 +194,7 @@ class Renderer:
             self._main.clear(depth=1.0, viewport=part)
 
     def _overlay(self, frame: Frame) -> None:
-        """The skeletons of actors that want it, over everything."""
+        """Draw the skeletons of actors with `bones` over everything."""
         segments = []
         for actor in frame.actors:
             if actor.bones and len(actor.figure.lines):
@@ -216,8 +219,8 @@ class Renderer:
             self._drawing.squares("lines", program, data, "3f 3f/i", "in_start", "in_end")
 
     def _compose(self, frame: Frame, target: Any, parts: Array) -> None:
-        """Lay the figures over the target; without multisampling, smooth their edges on the way. parts: the
-        rectangles that may have something in them.
+        """Lay the figures over the target. Without multisampling, smooth their edges at the same time.
+        `parts` are the rectangles that may have figures in them.
         """
         if self._resolved is not None:
             self.ctx.copy_framebuffer(self._resolved, self._main)

@@ -1,4 +1,4 @@
-"""What the renderer is given each frame: who is where, and in which light."""
+"""Define what the renderer gets for each frame: who is where, and in which light."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Actor:
-    """A figure in one pose, or in many at once (a crowd is one draw).
+    """A figure in one pose, or in many at once (a crowd is one draw call).
 
-    rotations `[..., J, 4]` xyzw and positions `[..., J, 3]`: global, on the figure's skeleton. morphs:
-    weights `[K]`. marks: sRGB colours 0..1 for joints to point out, such as those of a mask. bones: draw the
-    skeleton over the mesh. opacity below 1 makes a ghost, without shadow.
+    `rotations` `[..., J, 4]` (xyzw) and `positions` `[..., J, 3]` are global, on the figure's skeleton.
+    `morphs` are weights `[K]`. `marks` are sRGB colours 0..1 for joints to point out, for example those of a
+    mask. `bones` draws the skeleton over the mesh. `opacity` below 1 makes a ghost, which has no shadow.
     """
 
     figure: MeshFigure
@@ -36,15 +36,17 @@ class Actor:
 
     @property
     def count(self) -> int:
-        """How many instances."""
+        """The number of instances."""
         return math.prod(self.rotations.shape[:-2])
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """background: one flat sRGB colour with alpha, premultiplied, instead of the theme's; there is no ground
-    then. picture: uint8 `[H, W, 3]`, sRGB, first row at the top, that is seen behind, whole;
-    no ground, either.
+    """All actors of a picture and what is behind them.
+
+    `background` is one flat sRGB colour with alpha, premultiplied, instead of the theme's background; there
+    is no ground then. `picture` is uint8 `[H, W, 3]`, sRGB, first row at the top, which is shown whole behind
+    the actors, also without ground.
     """
 
     actors: tuple[Actor, ...] = ()
@@ -54,7 +56,7 @@ class Scene:
     picture: Array | None = None
 
     def same(self, other: Scene) -> bool:
-        """Return whether both give the same picture, to the last bit of what they are made of."""
+        """Return whether both scenes give exactly the same picture."""
         return (
             (self.ground, self.shadow, self.background) == (other.ground, other.shadow, other.background)
             and self.picture is other.picture
@@ -63,8 +65,8 @@ class Scene:
         )
 
     def bounds(self) -> tuple[Array, Array]:
-        """Return the lowest and highest corner of a box round all actors; a person's size when there are
-        none.
+        """Return the lowest and the highest corner of a box round all actors; the size of a person if there
+        are none.
         """
         boxes = [a.figure.bounds(a.positions) for a in self.actors if a.count]
         if not boxes:
@@ -84,8 +86,8 @@ def _same(a: Actor, b: Actor) -> bool:
 
 @dataclass(frozen=True)
 class SceneTheme:
-    """Colours: sky, floor and ink in sRGB 0..1; lights linear. All neutral: in the window colour means
-    kind.
+    """The colours of a theme: sky, floor and ink in sRGB 0..1, lights linear. All are neutral, because in the
+    window colours stand for kinds.
     """
 
     name: str
@@ -94,24 +96,24 @@ class SceneTheme:
     floor: Color
     line: Color
     line_strength: float
-    shadow: Color  # what the ground is multiplied by in full shadow
+    shadow: Color  # the ground is multiplied by this in full shadow
     key: Color
     above: Color
     below: Color
     rim: Color
     ink: Color  # the skeleton drawn over a mesh
-    toward: Color = (-0.42, 0.80, 0.62)  # where the lamp is, of any length; above the ground
+    toward: Color = (-0.42, 0.80, 0.62)  # direction to the lamp, of any length, above the ground
 
     @cached_property
     def to_light(self) -> Array:
-        """The direction of the lamp, a unit vector `[3]`, not to be written to."""
+        """The direction to the lamp, a unit vector `[3]`. Read-only."""
         out = np.asarray(np.array(self.toward) / np.linalg.norm(self.toward))
         out.flags.writeable = False
         return out
 
     @cached_property
     def lamp(self) -> Array:
-        """The lamp's right, up and forward as rows `[3, 3]`, not to be written to."""
+        """The lamp's right, up and forward directions as rows `[3, 3]`. Read-only."""
         side = np.cross([0.0, 1, 0], self.to_light)
         side /= np.linalg.norm(side)
         out = np.stack([side, np.cross(self.to_light, side), -self.to_light])

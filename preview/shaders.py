@@ -1,4 +1,4 @@
-"""The shaders, GLSL 3.30. Colours are lit in linear light and written as sRGB."""
+"""Hold the shaders, GLSL 3.30. Colours are lit in linear light and written as sRGB."""
 
 from __future__ import annotations
 
@@ -92,8 +92,8 @@ float lit(vec3 world, float bias) {
 }
 """
 
-# The shadow on the ground, seen from above: one small picture that is drawn large. The farther what throws it
-# is from the ground, the softer it is: the lamp is no point.
+# The shadow on the ground, seen from above: a small picture that is drawn enlarged. The farther a caster is
+# from the ground, the softer is its shadow, because the lamp is not a point.
 SOFT = """#version 330 core
 uniform sampler2D u_depth;  // as the lamp sees it
 uniform mat4 u_light;
@@ -137,7 +137,7 @@ void main() {
 }
 """
 
-# A square under the figure that multiplies what is there.
+# A square under the figure that multiplies what has been drawn.
 CAST = """#version 330 core
 uniform sampler2D u_soft;
 uniform vec3 u_dark;
@@ -152,7 +152,7 @@ void main() {
 }
 """
 
-# Soft spots where the body comes near the ground: one square each.
+# Soft spots where the body is near the ground: one square each.
 SPOT_VERTEX = """#version 330 core
 uniform mat4 u_matrix;
 uniform float u_most;  // that a spot of strength 1 takes
@@ -387,7 +387,7 @@ out vec4 o_color;
 void main() { o_color = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0); }
 """
 
-# A picture in the middle; part: of the width and the height that it covers.
+# A picture in the middle. `u_part` is the share of the width and of the height that it covers.
 BEHIND = """#version 330 core
 uniform sampler2D u_picture;
 uniform vec2 u_part;
@@ -400,8 +400,8 @@ void main() {
 }
 """
 
-# Smooths edges found by contrast: mixes a point with those beside it along the edge. Looking farther shows no
-# more, and what lies between points costs four times a point where the processor draws.
+# Smooths edges found by contrast: mixes a pixel with its neighbours along the edge. Reading farther pixels
+# shows no improvement, and in software reading between pixels takes four times as long as reading one.
 SMOOTH = """#version 330 core
 uniform sampler2D u_picture;
 out vec4 o_color;

@@ -1,4 +1,6 @@
-"""Shadows: of figures on themselves and on each other, by what the lamp sees; and on the ground."""
+"""Draw shadows: of figures on themselves and on each other, by the depth that the lamp sees; and on the
+ground.
+"""
 
 from __future__ import annotations
 
@@ -18,22 +20,22 @@ from preview.scene import Actor
 
 Array = NDArray[Any]
 
-# Texels, on a graphics card and in software: of all, and near by; of all in small pictures, and for the
-# ground.
+# Texels of the maps on a graphics card and in software: first the size of the map of everything and of the
+# map of the near part; then of the map of everything for small pictures and for the ground.
 SHADOW_SIZE = (1024, 1024), (416, 208)
-# Pixels of the picture that a texel of all may be wide: of the small map; before what is in the picture has a
-# map of its own.
+# How many pixels of the picture a texel of a map of everything may cover: of the small map; before the part
+# in the picture gets a map of its own.
 SMALL, NEAR = 2.0, 3.0
-# Texels from the middle of the two places of the map that are looked at, likewise.
+# Texels from the middle to the two places that are read from the map, on a graphics card and in software.
 TAPS = (1.6, 0.9), (0.8, 0.45)
-# Metres, on a graphics card and in software; texels: how far before a surface its shadow is looked up. In
-# software both that and what throws it may be off more.
+# How far before a surface its shadow is looked up: metres on a graphics card and in software, and texels. In
+# software both the surface and its caster may be off more.
 OFF_LEAST, OFF_TEXELS = (0.010, 0.013), 1.6
-CAST_OFF = 0.004  # of the height, that what throws a shadow may be off
-STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
+CAST_OFF = 0.004  # of the height; how far the surface that throws a shadow may be off
+STEPS = 8  # sizes of the near map for each doubling; without steps its texels would creep over a moving body
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
-FAINT = 0.02  # the strength under which a spot on the ground is not worth its points
+FAINT = 0.02  # strength; weaker spots on the ground are not drawn
 _HALF = np.array([[0.5, 0, 0, 0.5], [0, 0.5, 0, 0.5], [0, 0, 0.5, 0.5], [0, 0, 0, 1]])  # -1..1 to 0..1
 Strip = tuple[
     tuple[float, ...], tuple[float, float], tuple[float, ...]
@@ -57,7 +59,7 @@ class _Map:
 
 
 class Shadows:
-    """Belongs to a drawing; views of one scene share what the lamp saw of the whole of it."""
+    """The shadows of a drawing. Views of one scene share the depth that the lamp sees of all of it."""
 
     def __init__(self, drawing: SceneDrawing, software: bool) -> None:
         self._drawing, self._taps, ctx = drawing, TAPS[software], drawing.ctx
@@ -68,33 +70,35 @@ class Shadows:
         self._soft = ctx.texture(SOFT_SIZE, 1)
         self._soft_fbo = ctx.framebuffer([self._soft])
         self._soft.repeat_x = self._soft.repeat_y = False
-        self._softened: tuple[list[Actor], tuple[float, ...]] | None = None  # whose shadow lies on the ground
+        self._softened: tuple[list[Actor], tuple[float, ...]] | None = None  # whose shadow is on the ground
 
     def release(self) -> None:
-        """Give everything back."""
+        """Release everything on the graphics card."""
         for held in (self._whole, self._near, self._low, self._soft_fbo, self._soft):
             held.release()
 
     @property
     def map(self) -> moderngl.Texture:
-        """What figures are shaded by: depth as the lamp sees it."""
+        """The texture that figures are shaded by: depth as the lamp sees it."""
         return self._used.depth
 
     @property
     def spread(self) -> tuple[float, float]:
-        """How far apart its texels are looked at, of its size."""
+        """How far apart its texels are read, as a share of its size."""
         return self._taps[0] / self._used.size, self._taps[1] / self._used.size
 
     def off(self, light: Array) -> float:
-        """Return how far before a surface its shadow is looked up, metres: what a texel of the map covers of
-        a slope must not shade it. light: as `cast` returned it.
+        """Return how far before a surface its shadow is looked up, in metres, so that a texel of the map does
+        not shade the slope it covers. `light` is the result of `cast`.
         """
         texel = 1 / (float(np.linalg.norm(light[:2, :3], axis=1).min()) * self._used.size)
         return max(self._off_least, OFF_TEXELS * texel)
 
     def cast(self, frame: Frame) -> Array:
-        """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
-        map, 0..1. Near by, what is in the picture has a map of its own.
+        """Draw depth as the lamp sees it, if that has changed. Return the matrix from the world to the shadow
+        map, 0..1.
+
+        If the camera is near, the part in the picture has a map of its own.
         """
         axes, (centre, radius) = frame.theme.lamp, _lit(frame)
         pixels, low, high = find_seen_window(frame, axes)
@@ -127,7 +131,9 @@ class Shadows:
         return np.asarray(_HALF @ matrix)
 
     def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[Actor]) -> None:
-        """What darkens the ground multiplies what is there. ground_to: the row, from below, it ends at."""
+        """Multiply the ground by its shadows and spots. `ground_to` is the row, counted from below, at which
+        the ground ends.
+        """
         strip = _strip(frame) if frame.light is not None else None
         if strip is not None:
             self._soften(frame, strip)
@@ -168,7 +174,7 @@ class Shadows:
 
 
 def _strip(frame: Frame) -> Strip | None:
-    """Return where on the ground the shadow can be; None where that is out of the picture. Only a strip along
+    """Return where on the ground the shadow can be, None if that is outside the picture. Only a strip along
     the light can be dark.
     """
     (low_x, low_y, low_z), (high_x, high_y, high_z) = (x.tolist() for x in frame.bounds)
@@ -198,14 +204,14 @@ def _strip(frame: Frame) -> Strip | None:
 
 
 def shadow_casters(actors: Sequence[Actor]) -> list[SkinnedMesh]:
-    """Return what throws each actor's shadow."""
+    """Return the mesh that throws each actor's shadow."""
     return [a.figure.finest(CAST_OFF * a.figure.height) for a in actors]
 
 
 def draw_depths(
     drawing: SceneDrawing, frame: Frame, which: Sequence[int], matrix: Array, meshes: Sequence[SkinnedMesh]
 ) -> None:
-    """Draw nothing but depth, as seen through `matrix`. meshes: one for each actor of the frame."""
+    """Draw only depth, as seen through `matrix`. `meshes` holds one for each actor of the frame."""
     program = drawing.program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
     set_uniforms(program, u_matrix=matrix, u_palette=0)
     drawing.store.palette.use(0)
@@ -215,14 +221,15 @@ def draw_depths(
 
 
 def _lit(frame: Frame) -> tuple[Array, float]:
-    """Return the middle `[3]` and radius of what the lamp lights."""
+    """Return the middle `[3]` and the radius of what the lamp lights."""
     low, high = frame.bounds
     return (low + high) / 2, max(0.05, math.dist(low, high) / 2)
 
 
 def find_seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
-    """Return how many pixels a metre has where what is seen is nearest, and the part of the lamp's picture
-    `[2], [2]`, metres, that shades what is seen. No pixels where nothing is.
+    """Return how many pixels a metre has at the nearest point in the picture, and the part of the lamp's
+    picture, `[2]` and `[2]` in metres, that shades what is seen. The number of pixels is 0 if nothing is
+    seen.
     """
     camera, (width, height) = frame.camera, frame.size
     ends = frame.ends
@@ -243,7 +250,7 @@ def find_seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     least, most = placed.min(1), placed.max(1)
     near, far = (max(float(camera.eye @ back + x), camera.near) for x in (least[2], most[2]))
     tall = height / (2 * math.tan(camera.fov / 2))  # pixels of a metre, a metre away
-    # No more of the boxes than is in the picture, from the nearest to the farthest of them.
+    # Not more of the boxes than is in the picture, from the nearest to the farthest of them.
     sides = np.array([[x * width, y * height] for x in (-1, 1) for y in (-1, 1)]) / (2 * tall)
     rays = (sides @ camera.axes[:2] - back) @ axes[:2].T
     view = camera.eye @ axes[:2].T + np.concatenate([near * rays, far * rays])
@@ -257,12 +264,14 @@ def find_seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
 
 
 def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:
-    """Whether they are the very same actors."""
+    """Return whether both hold the same actor objects."""
     return len(before) == len(now) and all(a is b for a, b in zip(before, now, strict=True))
 
 
 def _spots(actor: Actor) -> Array:
-    """Where a body darkens the ground `[S, 4]`: x, z, radius, strength; wider and weaker with height."""
+    """Return where a body darkens the ground `[S, 4]`: x, z, radius, strength. Spots are wider and weaker the
+    higher the body part is.
+    """
     ends, starts = actor.figure.shadow
     p = np.asarray(actor.positions, float).reshape(-1, len(actor.figure.skeleton), 3)
     h = actor.figure.height

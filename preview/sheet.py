@@ -1,4 +1,4 @@
-"""Contact sheets: many pictures in rows with words under them, and PNG files."""
+"""Make contact sheets (many pictures in rows with text under them) and write PNG files."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def contact_sheet(
 ) -> Array:
     """Return one picture `[H, W, 3]` uint8 of `images` (uint8 `[h, w, 3 or 4]`, any sizes) in `columns`.
 
-    labels: a line under each image; notes: a fainter second line. Words too long for their image end in an
-    ellipsis.
+    `labels` holds a line under each image, `notes` a second, fainter line. Text that is too long for its
+    image ends in an ellipsis.
     """
     from PIL import Image, ImageDraw
 
@@ -66,7 +66,9 @@ def contact_sheet(
 
 
 def write_png(path: str | Path, picture: Array) -> None:
-    """Write uint8 `[H, W, 3 or 4]`. The file appears only when it is complete. Raises FileError."""
+    """Write a picture, uint8 `[H, W, 3 or 4]`. The file appears only when it is complete. Raises
+    FileError.
+    """
     from PIL import Image
 
     path = Path(path)
@@ -84,7 +86,7 @@ def write_png(path: str | Path, picture: Array) -> None:
 
 
 def _font(size: int) -> Any:
-    """Pillow's own scalable face: the same words on every system."""
+    """Return the scalable font of Pillow, so that text looks the same on every system."""
     from PIL import ImageFont
 
     return ImageFont.load_default(size)

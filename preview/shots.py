@@ -1,9 +1,9 @@
-"""Where cameras stand in a conversation: over a shoulder, close, or all who talk from three quarters.
+"""Place cameras in a conversation: over a shoulder, close, or all speakers from three quarters.
 
-All stand on one side of the line between two who talk, so that who looks to the right does so in every
-picture (the rule of 180 degrees). Sizes and angles are the usual ones of filmed talk (over the shoulder from
-the chest up, close from the shoulders up, all from the knees up), in shares of a figure's height; the numbers
-are ours.
+All cameras are on one side of the line between two speakers, so that the one who looks to the right does so
+in every picture (the rule of 180 degrees). Sizes and angles are the usual ones of filmed conversations (over
+the shoulder from the chest up, close from the shoulders up, all from the knees up), as shares of a figure's
+height. The numbers are our own.
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ from preview.camera import Camera
 Array = NDArray[Any]
 Shot = Literal["over", "two", "close"]
 
-# Metres from the head of whose shoulder it is, for one of 1.75 m; how far beside it one looks past.
+# Metres behind and above the head over whose shoulder the camera looks, and from this head to the line of
+# sight that passes it; for a figure of 1.75 m.
 BEHIND, BESIDE, ABOVE = 0.78, 0.21, 0.07
-USUAL = 1.75  # metres of the figure those are for
+USUAL = 1.75  # metres; the height of the figure for which those hold
 OVER_FOV, CLOSE_FOV, TWO_FOV = math.radians(30.0), math.radians(22.0), math.radians(28.0)
-CLOSE_TURN = math.radians(24.0)  # by which a close camera stands beside the line of sight
-LOOKING = 0.03  # of the height, by which there is more room before a face than behind it
-TWO_TURN = math.radians(22.0)  # by which that of all stands beside the middle
+CLOSE_TURN = math.radians(24.0)  # between the line of sight and a close camera beside it
+LOOKING = 0.03  # of the height; how much more room there is before a face than behind it
+TWO_TURN = math.radians(22.0)  # between the middle and the camera that shows all
 
 
 def camera_from(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
@@ -44,11 +45,11 @@ def camera_from(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
 
 
 def camera_side(heads: Array) -> Array:
-    """Return the direction `[3]` from the line between those who talk to where the cameras are: level,
-    towards the viewer.
+    """Return the direction `[3]` from the line between the speakers to the cameras: level, towards the
+    viewer.
     """
     along = heads[-1] - heads[0]
-    if len(heads) > 2:  # in a circle: the two who stand farthest apart, to the viewer's left and right
+    if len(heads) > 2:  # in a circle: the two farthest to the viewer's left and right
         along = heads[int(np.argmax(heads[:, 0]))] - heads[int(np.argmin(heads[:, 0]))]
     beside = np.array([-along[2], 0.0, along[0]])
     length = float(np.linalg.norm(beside))
@@ -59,7 +60,7 @@ def camera_side(heads: Array) -> Array:
 
 
 def partner(heads: Array, side: int) -> int:
-    """Return over whose shoulder a side is seen: of several, who stands most opposite."""
+    """Return over whose shoulder a speaker is seen: of several, the one farthest away on the ground."""
     others = [n for n in range(len(heads)) if n != side]
     return max(others, key=lambda n: float(np.linalg.norm((heads[n] - heads[side])[[0, 2]])), default=side)
 
@@ -67,8 +68,11 @@ def partner(heads: Array, side: int) -> int:
 def shot_camera(
     shot: Shot, side: int, heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float
 ) -> Camera:
-    """Return the camera of a shot. side: who is seen. heads: middles of the heads `[N, 3]`, metres. heights:
-    of the figures. bounds: lowest and highest corner of all of them. aspect: width by height.
+    """Return the camera of a shot.
+
+    `side` is who is seen. `heads` are the middles of the heads `[N, 3]` in metres, `heights` the heights of
+    the figures. `bounds` are the lowest and the highest corner of all of them. `aspect` is width divided by
+    height.
     """
     side = min(side, len(heads) - 1)
     if shot == "two" or len(heads) < 2:
@@ -103,7 +107,7 @@ def shot_camera(
 
 
 def _all(heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float) -> Camera:
-    """Return the camera that sees all who talk from the knees up, from three quarters."""
+    """Return the camera that shows all speakers from the knees up, from three quarters."""
     beside = camera_side(heads)
     camera = Camera(fov=TWO_FOV).facing(math.atan2(beside[0], beside[2]) - TWO_TURN, math.radians(4.0))
     low, high = np.array(bounds[0], float), np.array(bounds[1], float)

@@ -1,11 +1,11 @@
-"""Fewer triangles for figures that are small in the picture: edges are collapsed where that moves the surface
-least.
+"""Remove triangles for figures that are small in the picture: edges are collapsed where that moves the
+surface least.
 
 The error is Garland and Heckbert's ("Surface simplification using quadric error metrics", 1997, and with
-attributes 1998): the squared distance from the planes of all triangles that a point stands for, here in the
-space of places, of what moves them and of where they are in a texture, so that rings round joints and painted
-edges stay. Of each edge's ends one stays as it is: nothing is made up. All edges of a round that are no
-neighbours are collapsed at once, since Python would take seconds one by one.
+attributes 1998): the squared distance from the planes of all triangles that a point stands for. Here it is
+measured in the space of positions, of the bones that move them and of texture coordinates, so that rings
+round joints and painted edges stay. One end of each collapsed edge stays where it is: no point is new. All
+edges of a round that are not neighbours are collapsed at once, as Python would take seconds one by one.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from preview.mesh import SkinnedMesh, TriangleBatch
 
 Array = NDArray[Any]
 
-MOVED = 0.03  # of the height: how far what another bone moves counts as being away
-PAINTED = 0.06  # likewise, for the width of a texture
-BORDER = 3.0  # how much more a border's shape counts than the surface's
-TURN = 0.3  # the least cosine between a triangle's direction before and after
+MOVED = 0.03  # of the height; distance that being moved by another bone counts as
+PAINTED = 0.06  # of the height; distance that the width of a texture counts as
+BORDER = 3.0  # how much more the shape of a border counts than that of the surface
+TURN = 0.3  # the least cosine between a triangle's directions before and after
 SLIVER = 0.02  # the least share of an even triangle's area for the square of its longest side
-STEPS = (0.15, 0.4, 1.0)  # of the error allowed: what costs little goes first
-FEW = 0.01  # of the points left: where a round takes no more of them away, the next step begins
+STEPS = (0.15, 0.4, 1.0)  # of the error allowed: cheap collapses are made first
+FEW = 0.01  # of the points left; a round that removes fewer ends its step
 
 
 @dataclass(frozen=True, eq=False)
 class Fewer:
-    """What is left of a mesh. used: its vertices `[U]`. triangles: of those `[N, 3]` uint32, batch by batch.
-    counts: of triangles in each batch `[B]`.
+    """What is left of a mesh. `used` holds its vertices `[U]`, `triangles` indices into those `[N, 3]`
+    uint32, batch by batch, and `counts` the number of triangles in each batch `[B]`.
     """
 
     used: Array
@@ -41,7 +41,7 @@ class Fewer:
     counts: Array
 
     def of(self, mesh: SkinnedMesh) -> SkinnedMesh:
-        """Return it as a mesh; morph targets come along."""
+        """Return it as a mesh, with its morph targets."""
         ends = np.cumsum(self.counts)
         batches = [
             TriangleBatch(int(end - count), int(count), b.image, b.double_sided)
@@ -54,10 +54,10 @@ class Fewer:
 def simplify(
     mesh: SkinnedMesh, errors: Sequence[float], cancelled: Callable[[], bool] = lambda: False
 ) -> Iterator[Fewer]:
-    """Yield what is left of a mesh for each error, less and less. errors: metres, rising, that the surface
-    moves by, on the average of where it is simplified.
+    """Yield for each error what is left of a mesh, fewer triangles each time. `errors` are ascending, in
+    metres: how far the surface moves on average where it is simplified.
 
-    Borders, seams of the texture and hard edges keep their course. Ends early once it is `cancelled`.
+    Borders, seams of the texture and hard edges keep their shape. Ends early once it is `cancelled`.
     """
     faces = _Faces(mesh)
     for error in errors:
@@ -70,7 +70,7 @@ def simplify(
 
 
 class _Faces:
-    """What is left of a mesh. A point is all vertices at one place."""
+    """What is left of a mesh while it is simplified. A point is all vertices at one place."""
 
     def __init__(self, mesh: SkinnedMesh) -> None:
         self._mesh = mesh
@@ -92,14 +92,14 @@ class _Faces:
         self.look_everywhere()
 
     def left(self) -> Fewer:
-        """What is left of it."""
+        """Return what is left."""
         order = np.argsort(self._batch, kind="stable")
         counts = np.bincount(self._batch, minlength=len(self._mesh.batches))
         used, corners = np.unique(self._corners[order], return_inverse=True)
         return Fewer(used, corners.reshape(-1, 3).astype(np.uint32), counts)
 
     def look_everywhere(self) -> None:
-        """Look at all points in the next round; later at those only round which something has changed."""
+        """Consider all points in the next round; after that only those near a change."""
         self._looked_at = np.ones(len(self._at), bool)
 
     def _begin(self) -> tuple[Array, Array]:
@@ -116,7 +116,7 @@ class _Faces:
         for k in range(3):
             np.add.at(total, p[:, k], quadric)
             np.add.at(weight, p[:, k], area)
-        # A plane through each border, upright on its triangle.
+        # A plane through each border, perpendicular to its triangle.
         _, _, count, of = _edges(p)
         corner = self._place[p]
         normal, _ = _unit(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]))
@@ -134,8 +134,8 @@ class _Faces:
         return _packed(total * twice), np.maximum(weight, 1e-12)
 
     def collapse(self, most: float) -> float:
-        """Collapse what can be at once within an error, metres squared; return the share of the points left
-        that went.
+        """Collapse what can be collapsed at once within an error, metres squared. Return the removed share of
+        the points.
         """
         if not len(self._corners):
             return 0.0
@@ -144,7 +144,7 @@ class _Faces:
         start, end = np.concatenate([low, high]), np.concatenate([high, low])
         on = np.concatenate([count, count])
         size = len(self._at)
-        # Of points on a border only its own edges go; where more than two triangles meet, nothing does.
+        # Points on a border move only along it. Where more than two triangles meet, nothing moves.
         border, knot = np.zeros(size, bool), np.zeros(size, bool)
         for points in (low, high):
             border[points[count == 1]] = True
@@ -162,7 +162,7 @@ class _Faces:
         edge, cost = edge[kept], cost[kept]
         if not len(edge):
             return 0.0
-        # The cheapest way for each point to go.
+        # The cheapest move for each point.
         order = np.lexsort((cost, start[edge]))
         edge, cost = edge[order], cost[order]
         first = np.flatnonzero(np.diff(start[edge], prepend=-1))
@@ -171,7 +171,7 @@ class _Faces:
         edge, cost = edge[sound], cost[sound]
         if not len(edge):
             return 0.0
-        # Those that are the cheapest among all their neighbours are none of each other's.
+        # Moves that are the cheapest among all their neighbours do not touch each other.
         rank = np.empty(len(edge), np.int64)
         rank[np.argsort(cost, kind="stable")] = np.arange(len(edge))
         claim = np.full(size, len(edge))
@@ -188,22 +188,22 @@ class _Faces:
         return len(edge) / len(np.unique(low))
 
     def _costs(self, start: Array, end: Array) -> tuple[Array, Array]:
-        """Return what it costs that points go to others: the mean squared error, and that by its area."""
+        """Return the cost of moving points to others: the mean squared error, and the same times its area."""
         gone = np.einsum("nq,nq->n", self._squares[end], self._quadrics[start])
         stays = np.einsum("nq,nq->n", self._squares, self._quadrics)[end]
         area, other = self._areas[start], self._areas[end]
         both = np.maximum(gone + stays, 0)
         error = np.maximum(both / (area + other), np.maximum(gone, 0) / area)
         length = ((self._place[start] - self._place[end]) ** 2).sum(1)
-        return error, both + 1e-4 * length * area  # of two that cost nothing the shorter
+        return error, both + 1e-4 * length * area  # if two cost nothing, the shorter goes first
 
     def _keeps_seams(self, p: Array, start: Array, end: Array) -> Array:
-        """Return along which edges each vertex of the point that goes has one to go to."""
+        """Return which edges offer every vertex of the moved point a vertex to move to."""
         size = np.int64(len(self._at))
         seen = np.zeros(len(self._point), bool)
         seen[self._corners] = True
         vertices = np.bincount(self._point[seen], minlength=len(self._at))
-        # From vertex to vertex, wherever a point has several.
+        # From vertex to vertex, at points that have several.
         a, b = _ways(self._corners)
         order = np.lexsort((b, a, self._point[b], self._point[a]))
         a, b = a[order], b[order]
@@ -255,11 +255,11 @@ class _Faces:
 
 
 def _spread(mesh: SkinnedMesh, which: Array) -> Array:
-    """Return vertices in the space that errors are told in `[N, 8]`: place, what moves them, texture."""
+    """Return vertices in the space that errors are measured in `[N, 8]`: position, bones, texture."""
     vertices = mesh.vertices[which]
     place = vertices["position"].astype(float)
     height = max(float(np.ptp(place, axis=0).max()), 1e-9) if len(place) else 1.0
-    # A direction for each bone, neighbours far apart: a spiral round the sphere.
+    # A direction for each bone, far from those of its neighbours: a spiral round the sphere.
     n = np.arange(mesh.matrices) + 0.5
     up, turn = 1 - 2 * n / max(mesh.matrices, 1), n * 2.39996323
     flat = np.sqrt(1 - up * up)
@@ -298,7 +298,7 @@ def _quadric(flat: Array, at: Array) -> Array:
 
 def _edges(p: Array) -> tuple[Array, Array, Array, Array]:
     """Return the ends of all edges, the lower first and sorted, how many triangles each has, and each
-    triangle's three `[N, 3]`.
+    triangle's three edges `[N, 3]`.
     """
     size = np.int64(p.max() + 1 if len(p) else 1)
     a, b = p, np.roll(p, -1, 1)
@@ -314,7 +314,7 @@ def _edges(p: Array) -> tuple[Array, Array, Array, Array]:
 
 
 def _ways(corners: Array) -> tuple[Array, Array]:
-    """Return every vertex with each that it shares a triangle with, once."""
+    """Return every vertex with each vertex that it shares a triangle with, once."""
     a = np.concatenate([corners, corners], 1).ravel()
     b = np.concatenate([np.roll(corners, -1, 1), np.roll(corners, 1, 1)], 1).ravel()
     size = np.int64(corners.max() + 1)
@@ -324,7 +324,7 @@ def _ways(corners: Array) -> tuple[Array, Array]:
 
 
 def _gathered(keys: Array, values: Array, wanted: Array, size: int) -> tuple[Array, Array]:
-    """Return, for all values whose key is wanted, which of `wanted` that is, and the value."""
+    """Return for all values whose key is in `wanted` the index into `wanted`, and the value."""
     order = np.argsort(keys, kind="stable")
     begins = np.searchsorted(keys[order], np.arange(size + 1))
     first, count = begins[wanted], begins[wanted + 1] - begins[wanted]

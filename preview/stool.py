@@ -1,4 +1,4 @@
-"""A plain stool for who sits: a round seat on four legs that stand a little apart."""
+"""Make a plain stool for a sitting figure: a round seat on four legs that lean outwards a little."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from preview.scene import Actor
 
 Array = NDArray[Any]
 
-SEAT_COLOR, LEG_COLOR = (116, 119, 126), (84, 87, 94)  # neutral: in the window colour means kind
+SEAT_COLOR, LEG_COLOR = (116, 119, 126), (84, 87, 94)  # neutral: in the window colours stand for kinds
 
 
 class Stool(MeshFigure):
-    """A stool of a height and a radius, metres; its one joint is the middle of the top of its seat."""
+    """A stool of a height and a radius in metres. Its only joint is the middle of the top of its seat."""
 
     def __init__(self, height: float, radius: float) -> None:
         one = Skeleton(("Seat",), np.array([-1]), np.array([[0.0, 0, 0, 1]]), np.zeros((1, 3)))
@@ -63,6 +63,6 @@ def _stool(height: float, radius: float) -> Stool:
 
 
 def stool(at: tuple[float, float, float], radius: float) -> Actor:
-    """Return a stool that stands on the ground. at: the middle of the top of its seat, metres."""
+    """Return a stool that stands on the ground. `at` is the middle of the top of its seat, in metres."""
     figure = _stool(round(max(at[1], 0.05), 3), round(radius, 3))
     return Actor(figure, np.array([[0.0, 0, 0, 1]], np.float32), np.array([at], np.float32))

@@ -1,4 +1,4 @@
-"""Thumbnails: poses of a clip, small; one of them tells most."""
+"""Make thumbnails: small pictures of poses of a clip, and find the pose that tells most."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from preview.scene import DARK, Actor, Scene, SceneTheme
 Array = NDArray[Any]
 
 LOOK_AT = 120  # frames of a clip that are compared
-FRAMED = 16  # frames of a clip that are within the frame for certain
+FRAMED = 16  # frames of a clip that certainly fit into the picture
 
 
 def telling_frame(clip: Clip) -> int:
-    """Return the frame whose pose is farthest from the first: root aside, fingers and face counting
+    """Return the frame whose pose differs most from the first. The root is left out; fingers and face count
     little.
     """
     frames = np.unique(np.linspace(0, clip.frames - 1, min(clip.frames, LOOK_AT)).round().astype(int))
@@ -43,8 +43,8 @@ def telling_frame(clip: Clip) -> int:
 
 @dataclass(frozen=True)
 class ThumbnailStyle:
-    """How a thumbnail is drawn: `size * scale` pixels on a side. paper: sRGB background, None for a
-    transparent one. tint: an sRGB colour (that of the clip's kind) the paper takes a little of.
+    """How a thumbnail is drawn: `size * scale` pixels on a side. `paper` is the sRGB background, None for a
+    transparent one. `tint` is an sRGB colour (that of the clip's kind) mixed into the paper a little.
     """
 
     size: int = 160
@@ -76,11 +76,12 @@ def thumbnail(
 ) -> Array:
     """Return a square picture `[size * scale, size * scale, 4]` uint8 of one pose on the figure's skeleton.
 
-    rotations `[J, 4]`, positions `[J, 3]`: global. All clips of a skeleton are framed alike, so that they can
-    be compared; one that leaves the frame is shown whole.
+    `rotations` `[J, 4]` and `positions` `[J, 3]` are global. All clips of a skeleton are framed in the same
+    way, so that they can be compared; a figure that leaves the frame is shown whole.
     """
     pixels = style.size * style.scale
-    # The figure is turned to the lamp, not the camera round it: all thumbnails are in the same light.
+    # The figure is turned towards the lamp, not the camera round it, so that all thumbnails have the same
+    # light.
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
     centred = rotation.rotate_vectors(turn, positions - positions[0] * [1, 0, 1])
     actor = Actor(figure, rotation.multiply(turn, rotations), centred)
@@ -98,8 +99,10 @@ def thumbnails(
     theme: SceneTheme = DARK,
     paper: tuple[float, float, float] | None = None,
 ) -> list[Array]:
-    """Return square pictures `[pixels, pixels, 4]` uint8 of a clip's frames `[N]`, as near as what the clip
-    moves asks for, all framed alike and turned as its first frame faces; the character stays in the middle.
+    """Return square pictures `[pixels, pixels, 4]` uint8 of a clip's frames `[N]`.
+
+    They are as near as the moved parts allow, all framed in the same way, and turned by the direction of the
+    first frame. The character stays in the middle.
     """
     background = (*paper, 1.0) if paper is not None else (0.0, 0.0, 0.0, 0.0)
     looked = np.unique(np.linspace(0, clip.frames - 1, min(clip.frames, FRAMED)).round().astype(int))
@@ -113,7 +116,7 @@ def thumbnails(
         box = _person(figure, figure.posed_bounds(turned, centred))
     else:
         low, high = near_box(clip.skeleton, near, centred, figure.bounds(centred), figure.height)
-        # Some heads are wider than shoulders.
+        # Some heads are wider than the shoulders.
         head = figure.posed_bounds(turned, centred, find_roles(clip.skeleton)["head"])
         box = np.minimum(low, [head[0][0], low[1], head[0][2]]), np.maximum(high, head[1])
     camera = _camera(box)
@@ -128,9 +131,7 @@ def thumbnails(
 
 
 def _person(figure: MeshFigure, whole: Box) -> Box:
-    """Return a box that is no smaller than that of a person with half-raised arms, turned as the character
-    is.
-    """
+    """Return a box at least as large as that of a person with half-raised arms, turned with the character."""
     low, high = whole
     reach, top = 0.42 * figure.height, 1.1 * figure.height
     centre = (low + high) / 2
@@ -147,13 +148,13 @@ def _camera(box: Box) -> Camera:
 def clip_thumbnail(
     offscreen: Offscreen, figure: MeshFigure, clip: Clip, style: ThumbnailStyle = USUAL
 ) -> Array:
-    """Return `thumbnail` of the clip's telling frame; the clip is on the figure's skeleton."""
+    """Return `thumbnail` of the clip's telling frame. The clip is on the figure's skeleton."""
     rotations, positions = clip.skeleton.globals(clip.poses()[telling_frame(clip)])
     return thumbnail(offscreen, figure, rotations, positions, style)
 
 
 def _heading(figure: MeshFigure, positions: Array) -> float:
-    """Where the hips face, radians about +Y: across the line from the right limbs to the left ones."""
+    """Return where the hips face, radians about +Y: across the line from the right limbs to the left ones."""
     side = rules.sides_of_joints(figure.skeleton) * figure.drawn
     if not ((side > 0).any() and (side < 0).any()):
         return 0.0

@@ -1,4 +1,4 @@
-"""Writes pictures to an MP4 (H.264), through PyAV."""
+"""Write pictures to an MP4 (H.264), with PyAV."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ IN_FLIGHT = 3  # pictures that wait for the encoder
 
 
 class Cancelled(Exception):  # noqa: N818 - not an error: the user asked for it
-    """The user stopped a video; nothing was left behind."""
+    """Raised if the user stops a video. No file is left."""
 
 
 def write_video(
@@ -36,12 +36,14 @@ def write_video(
 ) -> int:
     """Write `frames` (uint8 `[H, W, 3 or 4]`, sRGB, all of one size) at `fps` and return how many there were.
 
-    size: width and height of the video; by default that of the first frame, made even as H.264 needs. Frames
-    that differ are scaled. quality: x264's rate factor, 0 (lossless) .. 51. progress is called with the
-    number of frames written. sound: mono samples `[N]`, -1..1, and how many there are a second; cut or filled
-    with silence to the pictures' length. Pictures are encoded while the next are drawn, `IN_FLIGHT` of them
-    at most; `frames` is asked, and progress told, in the caller's thread. The file appears only when it is
-    complete. Raises FileError (no frames, not writable), Cancelled.
+    `size` is the width and height of the video, by default that of the first frame, made even as H.264 needs;
+    frames of another size are scaled. `quality` is x264's rate factor, 0 (lossless) .. 51. `progress` is
+    called with the number of frames written. `sound` is mono samples `[N]`, -1..1, and their rate in Hz; it
+    is cut or filled with silence to the length of the pictures.
+
+    Pictures are encoded while the next ones are drawn, at most `IN_FLIGHT` of them. `frames` is read and
+    `progress` called in the caller's thread. The file appears only when it is complete. Raises FileError (no
+    frames, not writable) and Cancelled.
     """
     import av
 
@@ -81,8 +83,8 @@ def write_video(
 
 
 class _Video:
-    """A video while it is written. stream, voice: of pictures and of sound, None until it begins. count:
-    pictures that are written.
+    """A video while it is written. `stream` and `voice` are the streams of pictures and of sound, None until
+    it begins. `count` is the number of pictures written.
     """
 
     def __init__(
@@ -95,7 +97,7 @@ class _Video:
         self._encoding: deque[Future[None]] = deque()
 
     def begin(self, size: tuple[int, int], fps: float, quality: int, rate: int | None) -> None:
-        """Make the streams. rate: samples of sound a second, None where there is none."""
+        """Make the streams. `rate` is the number of sound samples a second, None without sound."""
         width, height = size
         self.stream = self.container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1001))
         self.stream.width, self.stream.height = max(2, width + width % 2), max(2, height + height % 2)
@@ -105,23 +107,23 @@ class _Video:
             self.voice = self.container.add_stream("aac", rate=rate, layout="mono")
 
     def add(self, picture: Array) -> None:
-        """Hand a picture to the encoder, once there is room for one more."""
-        frame = _frame(picture)  # a copy: who draws may draw into the same memory again
+        """Give a picture to the encoder, once there is room for one more."""
+        frame = _frame(picture)  # a copy: the caller may draw into the same memory again
         self._wait(IN_FLIGHT - 1)
         self._encoding.append(self.encoder.submit(self._encode, frame))
 
     def end(self) -> None:
-        """Write what the encoder still has."""
+        """Write what the encoder still holds."""
         self._wait(0)
         for packet in self.stream.encode():
             self.container.mux(packet)
 
     def _encode(self, frame: Any) -> None:
-        for packet in self.stream.encode(frame):  # scales to the stream's size where it differs
+        for packet in self.stream.encode(frame):  # scales pictures of another size to that of the stream
             self.container.mux(packet)
 
     def _wait(self, waiting: int) -> None:
-        """Come back when no more than so many wait."""
+        """Return when at most `waiting` pictures wait."""
         while len(self._encoding) > waiting:
             self._encoding.popleft().result()
             self.count += 1
@@ -130,7 +132,7 @@ class _Video:
 
 
 def _frame(picture: Array) -> Any:
-    """Copy a picture to where the encoder takes it from; it may lie in memory from below."""
+    """Return a copy of a picture for the encoder. The rows of the picture may lie in memory from below."""
     import av
 
     height, width, channels = picture.shape
@@ -142,7 +144,7 @@ def _frame(picture: Array) -> Any:
 
 
 def _write_sound(container: Any, stream: Any, samples: Array, count: int) -> None:
-    """Encode `count` samples, in the blocks AAC has."""
+    """Encode `count` samples, in blocks of the size that AAC uses."""
     import av
 
     whole = np.zeros(count, np.float32)

@@ -1,4 +1,4 @@
-"""Reads pictures and sound of a video, through PyAV: what others have drawn, shown as ours is."""
+"""Read pictures and sound of a video, with PyAV, to show videos of others like our own."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from metagraph.common.files import check_file
 from metagraph.errors import FileError
 
 Array = NDArray[Any]
-JUMP = 2.0  # seconds ahead that are read rather than jumped over
+JUMP = 2.0  # seconds; farther pictures are reached by seeking
 _REMEDY = "Convert it to MP4 (H.264), and check that it plays."
 
 
 def video_seconds(path: str | Path) -> float:
-    """Return how long a video lasts, seconds. Raises FileError."""
+    """Return how long a video lasts, in seconds. Raises FileError."""
     import av
 
     path = check_file(path, MOTION_FILE)
@@ -39,8 +39,8 @@ def video_seconds(path: str | Path) -> float:
 
 
 def read_pictures(path: str | Path, times: Array, size: tuple[int, int]) -> Iterator[Array]:
-    """Yield the picture, uint8 `[H, W, 3]`, that is shown at each of ascending times, seconds, fitted into
-    width and height with black round it. Raises FileError where the video ends before.
+    """Yield the picture, uint8 `[H, W, 3]`, that is shown at each of the ascending times (seconds), fitted
+    into width and height with black borders. Raises FileError if the video ends before the last time.
     """
     import av
 
@@ -60,7 +60,7 @@ def read_pictures(path: str | Path, times: Array, size: tuple[int, int]) -> Iter
                 shown = _fitted(frame.to_ndarray(format="rgb24"), size)
             last = float(np.asarray(times)[-1]) + 0.05
             while at is not None and shown is not None and at <= last and moment + 0.2 >= at:
-                yield shown  # the last picture stands a while
+                yield shown  # the last picture is shown for a while
                 at = next(wanted, None)
     except (OSError, ValueError, IndexError) as error:
         raise FileError(path, f"is no video that can be read ({error})", "", _REMEDY) from None
@@ -69,10 +69,11 @@ def read_pictures(path: str | Path, times: Array, size: tuple[int, int]) -> Iter
 
 
 class VideoPictures:
-    """The pictures of a video, asked for at any time: quickly forwards, by a jump backwards. Of one thread.
+    """The pictures of a video at any time: fast forwards, with a seek backwards. Use it from one thread.
     Raises FileError.
 
-    path: the file. most: width and height that pictures are not larger than. seconds: how long it lasts.
+    `path` is the file. `most` is the largest width and height of the pictures. `seconds` is how long it
+    lasts.
     """
 
     def __init__(self, path: str | Path, most: tuple[int, int] = (960, 540)) -> None:
@@ -90,13 +91,13 @@ class VideoPictures:
         scale = min(1.0, most[0] / wide, most[1] / high)
         self.size = max(2, round(wide * scale)), max(2, round(high * scale))
         self._frames: Iterator[Any] | None = None
-        self._now: Any = None  # the frame that is shown, and the one after it
+        self._now: Any = None  # the frame that is shown, and the next
         self._next: Any = None
         self._picture: tuple[Any, Array] | None = None
 
     def at(self, seconds: float) -> Array:
-        """Return the picture, uint8 `[H, W, 3]`, that is shown at a time; before its beginning the first,
-        after its end the last. The very same array while it is the same picture.
+        """Return the picture, uint8 `[H, W, 3]`, that is shown at a time: the first before the beginning, the
+        last after the end. The same array is returned as long as it is the same picture.
         """
         try:
             self._go_to(max(0.0, seconds))
@@ -151,7 +152,7 @@ def _fitted(picture: Array, size: tuple[int, int]) -> Array:
 
 
 def read_video_sound(path: str | Path, rate: int) -> Array | None:
-    """Return a video's sound, mono float32 `[N]` at a rate; None where it has none. Raises FileError."""
+    """Return a video's sound, mono float32 `[N]` at `rate`; None if it has none. Raises FileError."""
     import av
 
     path = check_file(path, MOTION_FILE)

@@ -1,1 +1,3 @@
-"""The document and its files: who has one open, saving and recovering, other programs, watching, and jobs."""
+"""Hold the document and its files: who has one open, saving and recovering, other programs, watching, and
+jobs.
+"""

@@ -1,5 +1,5 @@
-"""An annotation on its way into a project: which tiers and labels are read as what, and what is made of it.
-For window and command line.
+"""Read an annotation into a project: which tiers and labels mean what, and what is made of it. Used by the
+window and the command line.
 """
 
 from __future__ import annotations
@@ -23,8 +23,10 @@ FEW = 30  # acts below which a model is a rough one
 
 @dataclass(frozen=True)
 class AnnotationReading:
-    """How an annotation is read. roles: tier -> role. said: label, or `layer: label` -> meaning, before what
-    is remembered and guessed.
+    """How an annotation is read.
+
+    `roles` has the role of each tier. `said` has meanings by label, or by `layer: label`; they come before
+    remembered and guessed ones.
     """
 
     annotation: Annotation
@@ -38,14 +40,14 @@ class AnnotationReading:
 
     @cached_property
     def observed(self) -> dict[Layer, tuple[Act, ...]]:
-        """Layer -> what it was seen to do; layers that no tier is read as are not in it."""
+        """Return for each layer what it was seen to do. Layers without a tier are left out."""
         found = act_sequences(self.annotation, self.roles, self.labels)
         return {layer: found[layer] for layer in LAYERS if layer in found}
 
     @cached_property
     def spoken(self) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-        """When the one who was watched speaks, and when the partner does, seconds; empty where no tier
-        says.
+        """Return when the observed person speaks, and when the partner does, in seconds; empty if no tier
+        says it.
         """
         own, partner = (
             [
@@ -69,14 +71,14 @@ class AnnotationReading:
 def begin_reading(
     annotation: Annotation, *tiers: Mapping[str, str], labels: tuple[Mapping[str, str], ...] = ()
 ) -> AnnotationReading:
-    """Return a reading as remembered, the earlier memories first, and otherwise as guessed."""
+    """Return a reading as remembered, with the earlier memories first, and otherwise as guessed."""
     return AnnotationReading(annotation, guess_roles(annotation, *tiers), {}, labels)
 
 
 @dataclass(frozen=True)
 class ReadingResult:
-    """What became of a reading. learned: the layers that have a model of their own now. performance: id of
-    what was kept.
+    """The result of a reading. `learned` has the layers that have a model of their own now, `performance` is
+    the id of the kept performance.
     """
 
     project: Project
@@ -92,10 +94,10 @@ def work_into_project(
     name: str | None,
     smoothing: float = 0.0,
 ) -> ReadingResult:
-    """Work a reading into a project: remember how it was read, learn models, keep it as a performance.
+    """Apply a reading to a project: remember how it was read, learn models, keep it as a performance.
 
-    learned: layers to learn, as far as they were seen to do something. tagged: positive and negative become
-    states of their own, otherwise shares of gestures. name: of the performance, None to keep none.
+    `learned` has the layers to learn, if they were seen to do something. With `tagged`, positive and negative
+    become states of their own, otherwise shares of gestures. `name` is the performance's, None to keep none.
     """
     project = remember_reading(project, reading)
     done = []
@@ -117,8 +119,8 @@ def work_into_project(
 
 
 def count_replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
-    """Return layer -> how many acts a kept performance asks for, how many of them play, and how many of those
-    with another limb than was seen.
+    """Return for each layer how many acts a kept performance asks for, how many of them play, and how many of
+    those with another limb than was seen.
     """
     kept = project.performances[ident]
     plan = plan_performance(
@@ -139,7 +141,7 @@ def count_replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
 
 
 def remember_reading(project: Project, reading: AnnotationReading) -> Project:
-    """Note in a project what tiers are read as, and labels where that is not what would be guessed."""
+    """Note in a project what tiers are read as, and labels whose meaning is not what would be guessed."""
     guessed = {label.key: label.meaning for label in labels(reading.annotation, reading.roles)}
     noted = {key: meaning for key, meaning in project.labels.items() if key not in guessed}
     noted |= {label.key: label.meaning for label in reading.labels if label.meaning != guessed[label.key]}

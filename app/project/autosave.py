@@ -1,4 +1,4 @@
-"""The journal of a document: beside its file, and in the user's own folder where it cannot be there."""
+"""Write the journal of a document: beside its file, or in the user's own folder if that is impossible."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from metagraph.graph.model import Project
 
 
 class JournalledDocument(Protocol):
-    """What the journal has to know of its document; see `app.project.document.Document`."""
+    """What the journal needs from its document; see `app.project.document.Document`."""
 
     project: Project
     path: Path | None
@@ -34,17 +34,17 @@ class JournalledDocument(Protocol):
 
 
 class Autosave:
-    """Writes what a document's edits are. Whatever the user has to know of it, the document says."""
+    """Writes a document's edits to its journal. The document reports everything that the user must know."""
 
     def __init__(self, document: JournalledDocument) -> None:
         self.document = document
         self.journal: Journal | None = None
-        self._abandoned: list[Journal] = []  # whose place was gone; once all is saved they go, where they can
+        self._abandoned: list[Journal] = []  # their folder is gone; removed once all is saved
 
     @property
     def folder(self) -> Path:
-        """The user's own, where journals of projects that were never saved lie, and those whose own place is
-        gone; it lists all of them, too.
+        """Return the user's own folder, for journals of projects that were never saved, and those whose own
+        place is gone; it also has the list of all journals.
         """
         return state_folder()
 
@@ -54,15 +54,15 @@ class Autosave:
 
     @property
     def place(self) -> Path:
-        """Where this sitting keeps its edits, while nothing stops it."""
+        """Return where this sitting keeps its edits, unless something prevents it."""
         document = self.document
         if document.path is None:
             return journal_path(self.folder / "untitled", document.owner.sitting)
         return journal_path(document.path.resolve(), document.owner.sitting)
 
     def begin(self, base: Project | None, unsaved: int = 0, done: Sequence[Done] = ()) -> None:
-        """Begin anew. base: what the journal has to hold itself, since no file does; unsaved: how many edits
-        that has which no file has; done: edits after it.
+        """Begin again. `base` is what the journal must hold itself because no file does; `unsaved` is the
+        number of its edits that are not saved to a file, and `done` are the edits after it.
         """
         document = self.document
         old, self.journal = self.journal, None
@@ -72,20 +72,20 @@ class Autosave:
         if base is not None:
             try:
                 journal.begin(base, unsaved, done)
-            except FileError as error:  # what was in the old one stays there
-                journal = self._sheltered(base, unsaved, done, error) or journal  # which tries again
+            except FileError as error:  # the edits in the old one stay there
+                journal = self._sheltered(base, unsaved, done, error) or journal  # this tries again
                 if not journal.begun:
                     self.journal = journal
                     document.failed.emit(tr("Autosave is off: {error}", error=error))
                     return
         if base is not None or not document.read_only:
-            self.journal = journal  # else it begins with the first edit, and with the project before that
+            self.journal = journal  # else it begins with the first edit
         if old is not None and (base is None or old.path != journal.path):
             old.remove()
         self._forget_abandoned(journal.path if journal.begun else None)
 
     def take_over(self, other: Autosave) -> None:
-        """Go on with the journal of another window."""
+        """Continue with the journal of another window."""
         self.journal, other.journal = other.journal, None
         self._abandoned, other._abandoned = other._abandoned, []
 
@@ -95,7 +95,9 @@ class Autosave:
         return Journal(place, document.path, document.owner, document.digest, like, self.register)
 
     def write(self, before: Project, after: Project, text: str, how: How) -> None:
-        """Write an edit; where its place is gone, all that is in no file into the user's own folder."""
+        """Write an edit. If the journal's place is gone, write everything unsaved into the user's
+        own folder.
+        """
         if self.journal is None:
             return
         try:
@@ -122,9 +124,7 @@ class Autosave:
     def _sheltered(
         self, base: Project, unsaved: int, done: Sequence[Done], error: FileError
     ) -> Journal | None:
-        """Return a journal in the user's own folder that holds all that is in no file; None where there can
-        be none.
-        """
+        """Return a journal in the user's own folder with everything unsaved; None if that is impossible."""
         document = self.document
         folder = journal_shelter(self.folder)
         if document.path is None or (self.journal is not None and self.journal.path.parent == folder):
@@ -148,7 +148,7 @@ class Autosave:
         return journal
 
     def look_after(self) -> None:
-        """Say what has become of the journal, and go to the user's own folder where its place is gone."""
+        """Report what happened to the journal, and move to the user's own folder if its place is gone."""
         self.tell()
         if self.journal is not None and self.journal.error is not None:
             error, self.journal.error = self.journal.error, None
@@ -164,7 +164,7 @@ class Autosave:
         self.document.warned.emit(words)
 
     def secure(self) -> bool:
-        """Return whether the journal is safely on the disk with every edit that is in no file."""
+        """Return whether the journal is safely on the disk with every unsaved edit."""
         if self.journal is None:
             return False
         safe = self.journal.secure()
@@ -175,7 +175,7 @@ class Autosave:
         return safe
 
     def forget(self) -> None:
-        """Remove the journal: all was saved, or is not wanted."""
+        """Remove the journal, because everything was saved, or is discarded."""
         if self.journal is not None:
             self.journal.remove()
             self.journal = None
@@ -189,13 +189,13 @@ class Autosave:
 
 
 def journal_shelter(folder: Path) -> Path:
-    """Return where journals are listed, and lie that can lie nowhere else."""
+    """Return the folder of the list of journals, and of journals that cannot be elsewhere."""
     return folder / "journals"
 
 
 def state_folder() -> Path:
-    """Return where recent projects and the journal of unsaved work are kept; made if need be."""
+    """Return the folder for the recent projects and the journals of unsaved work; it is made if necessary."""
     folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
-    with suppress(OSError):  # whoever writes there says so
+    with suppress(OSError):  # the code that writes there reports it
         folder.mkdir(parents=True, exist_ok=True)
     return folder

@@ -1,5 +1,5 @@
-"""Sounds outside their project's folder that this user chose by hand: one JSON file beside the recent
-projects. A project that comes from somebody else may name any file, and none of those goes into an export.
+"""Remember sounds outside their project's folder that this user chose by hand, in a JSON file beside the
+recent projects. A project from somebody else may name any file, and none of those goes into an export.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 
-MOST = 20_000  # the oldest go first
+MOST = 20_000  # entries; the oldest are removed first
 
 
 def _place() -> Path:
@@ -31,7 +31,9 @@ def _kept() -> list[str]:
 
 
 def keep_chosen(paths: Iterable[Path]) -> None:
-    """Remember files that the user has chosen in a dialog or dropped. What cannot be kept is chosen again."""
+    """Remember files that the user has chosen in a dialog or dropped. If they cannot be kept, they must be
+    chosen again.
+    """
     names = {str(path.resolve()): None for path in paths}
     if names:
         rows = [*(row for row in _kept() if row not in names), *names][-MOST:]

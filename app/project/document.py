@@ -1,4 +1,4 @@
-"""The document: the project being edited, its undo stack, its file and its journal.
+"""Hold the document: the project being edited, its undo stack, its file and its journal.
 
 Every change - drop, menu, paste, undo, load - ends in `changed(before, after)`; views redraw what is not the
 same object.
@@ -33,17 +33,17 @@ from metagraph.graph.editing.listing import is_listed_differently
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
-UNDO_STEPS = 300  # most that can be undone: where each changes all of 10,000 actions they hold 0.8 GB
+UNDO_STEPS = 300  # the largest number of steps; if each changes all of 10,000 actions, they take 0.8 GB
 
 
 class _Change(QUndoCommand):
-    """The one undo command: the project before and after."""
+    """The only undo command: the project before and after."""
 
     def __init__(
         self, document: Document, text: str, before: Project, after: Project, merge: str | None
     ) -> None:
         super().__init__(text)
-        self.english = in_english(text)  # what logs call it
+        self.english = in_english(text)  # its name in logs
         self.document, self.before, self.after, self.merge = document, before, after, merge
         self.cancelled = False
         self._how: How = "done"
@@ -52,10 +52,10 @@ class _Change(QUndoCommand):
         if self._how == "done" and self._goes_on():
             self._how = "merged"
         self.document._set(self.after, self.text(), self._how)
-        self._how = "redone"  # the next time
+        self._how = "redone"  # for the next time
 
     def _goes_on(self) -> bool:
-        """Whether the stack will merge it with the step before."""
+        """Return whether the stack will merge it with the previous step."""
         stack = self.document.undo_stack
         top = stack.command(stack.index() - 1) if stack.index() else None
         return (
@@ -67,7 +67,7 @@ class _Change(QUndoCommand):
 
     def undo(self) -> None:
         self.document._set(self.before, self.text(), "undone")
-        self.setObsolete(self.cancelled)  # then it leaves no step to redo
+        self.setObsolete(self.cancelled)  # if so, there is no step to redo
 
     def id(self) -> int:
         return 1 if self.merge is not None else -1
@@ -80,15 +80,16 @@ class _Change(QUndoCommand):
 
 
 class Document(QObject):
-    """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited
-    one.
+    """The document of a window.
 
-    state_changed: comes after `changed`, too: path, dirty mark or undo texts may differ. saved: it was
-    written. failed: words for the user. warned: words that the user must have read.
+    `changed` has the projects before and after. `loaded` comes first if `after` is another project, not an
+    edited one. `state_changed` comes after `changed`, too: path, dirty mark or undo texts may differ. `saved`
+    is emitted after writing. `failed` has words for the user, `warned` words that the user must have read.
 
-    common: the project as its file was when it was read or saved last, None where that is not known; digest:
-    of that file, SHA-256. lock: of the file, while this window has it. read_only: another window has it, so
-    saving asks for another place. access: who may read the file, and so all that is written beside it.
+    `common` is the project as its file was when it was last read or saved, None if unknown; `digest` is the
+    SHA-256 of that file. `lock` is the file's, while this window has it. With `read_only`, another window has
+    it, so saving asks for another place. `access` says who may read the file, and everything written beside
+    it.
     """
 
     changed = Signal(object, object)
@@ -112,19 +113,19 @@ class Document(QObject):
         self.common: Project | None = None
         self.digest: str | None = None
         self.access: Access | None = None
-        self._home: Identity | None = None  # of the folder that the file is in, whatever its name
+        self._home: Identity | None = None  # identifies the folder that the file is in, whatever its name
         self.autosave = Autosave(self)
         self._returned = False  # motion came back that earlier steps do not have
-        self._restoring = False  # steps of before a crash
+        self._restoring = False  # steps from before a crash
 
     # --- editing
 
     def edit(self, text: str, function: Edit, merge: str | None = None) -> None:
-        """Change the project by a pure function; one undo step named `text`. Edits with the same `merge` in a
-        row are one step.
+        """Change the project by a pure function, as one undo step named `text`. Consecutive edits with the
+        same `merge` are one step.
 
-        Raises EditError, from the function or where no project file could hold what comes of it; the project
-        is then as it was.
+        Raises EditError, from the function or if no project file could hold the result; the project is then
+        unchanged.
         """
         after = function(self.project)
         if after is not self.project and (
@@ -136,14 +137,14 @@ class Document(QObject):
             self.undo_stack.push(_Change(self, text, self.project, after, merge))
 
     def finish_merging(self) -> None:
-        """End a run of merged edits (the mouse was released), so that the next begins a step of its own."""
+        """End a run of merged edits (the mouse was released), so that the next one begins a new step."""
         count = self.undo_stack.count()
         top = self.undo_stack.command(count - 1) if count else None
         if isinstance(top, _Change):
             top.merge = None
 
     def cancel_merging(self, merge: str) -> None:
-        """Take back a run of merged edits that has not ended: the mouse's drag was cancelled."""
+        """Undo a run of merged edits that has not ended, because the drag was cancelled."""
         count = self.undo_stack.count()
         top = self.undo_stack.command(count - 1) if count else None
         if isinstance(top, _Change) and top.merge == merge and self.undo_stack.index() == count:
@@ -151,8 +152,8 @@ class Document(QObject):
             self.undo_stack.undo()
 
     def take_motion(self, text: str, function: Edit) -> None:
-        """Let clips have their motion again. Where nothing that is saved changes by that it is no step, and
-        no undo takes it away.
+        """Give clips their motion again. If nothing that is saved changes, this is not a step, and undo does
+        not remove it.
         """
         after = function(self.project)
         if after != self.project:
@@ -170,7 +171,7 @@ class Document(QObject):
         if self._returned:
             project = with_motion_of(project, self.project)
         before, self.project = self.project, project
-        if self.autosave.journal is None:  # the first edit of a window that opened nothing
+        if self.autosave.journal is None:  # the first edit in a window that opened nothing
             self.autosave.begin(before if self.path is None or self.read_only else None)
         self.autosave.write(before, project, text, how)
         self.changed.emit(before, project)
@@ -187,8 +188,8 @@ class Document(QObject):
 
     @property
     def folder(self) -> Path | None:
-        """What clip paths are relative to; None while the project was never saved (paths are absolute
-        then).
+        """Return the folder that clip paths are relative to; None while the project was never saved (paths
+        are absolute then).
         """
         return self.path.parent if self.path is not None else None
 
@@ -206,12 +207,12 @@ class Document(QObject):
         lock: Lock | None = None,
         read_only: bool = False,
     ) -> None:
-        """Show another project; without a path its clip paths are absolute. recovered: how many edits it
-        holds that are not in its file. steps: those that can be undone, the last leading to `project`;
-        `recovered` counts the edits before them then.
+        """Show another project; without a path, its clip paths are absolute. `recovered` is the number of its
+        edits that are not in its file. `steps` can be undone, the last one leads to `project`; `recovered`
+        then counts the edits before them.
 
-        common, digest: what its file holds, and that file's (as it is now, when left out). lock: of that
-        file.
+        `common` and `digest` are the content and digest of its file (its present digest if left out). `lock`
+        is that of the file.
         """
         self._leave_file(lock)
         before, self.project = self.project, project
@@ -232,7 +233,7 @@ class Document(QObject):
 
     def _restore(self, steps: Sequence[UndoStep]) -> None:
         """Put steps on the stack that were made before a crash."""
-        self.undo_stack.blockSignals(True)  # the views follow once, in the end
+        self.undo_stack.blockSignals(True)  # the views follow once, at the end
         self._restoring = True
         for step in steps:
             self.undo_stack.push(_Change(self, step.text, step.before, step.after, None))
@@ -240,7 +241,7 @@ class Document(QObject):
         self.undo_stack.blockSignals(False)
 
     def take_over(self, other: Document) -> None:
-        """Go on with the document of another window, which lets go of it: project, steps, file, lock and
+        """Continue with the document of another window, which gives it up: project, steps, file, lock and
         journal.
         """
         before, self.project, self.path = self.project, other.project, other.path
@@ -257,7 +258,7 @@ class Document(QObject):
             assert isinstance(step, _Change)
             step.english = theirs_step.english
         stack.blockSignals(True)
-        self._restoring = True  # only the stack moves, to where the other stands
+        self._restoring = True  # only the stack moves, to the other's position
         if theirs.cleanIndex() < 0:
             stack.resetClean()
         else:
@@ -271,7 +272,7 @@ class Document(QObject):
         self.state_changed.emit()
 
     def reload(self, project: Project, digest: str) -> None:
-        """Take over what another program has made of the file: one step, which can be undone, to the saved
+        """Apply what another program has written to the file: one step, which can be undone, to the saved
         state.
         """
         if project != self.project:
@@ -282,8 +283,8 @@ class Document(QObject):
         self.state_changed.emit()
 
     def merge(self, project: Project, theirs: Project, digest: str) -> None:
-        """Take over what was made of this project and of what another program has made of the file: one step,
-        to be saved. theirs, digest: what the file holds, and that file's.
+        """Apply the merge of this project and what another program has written to the file: one step, to be
+        saved. `theirs` and `digest` are the content and digest of the file.
         """
         self.undo_stack.push(_Change(self, tr("Merge with the file"), self.project, project, None))
         self.common, self.digest = theirs, digest
@@ -292,16 +293,16 @@ class Document(QObject):
         self.state_changed.emit()
 
     def save(self, path: Path | None = None) -> None:
-        """Write the project at once, whatever its file has become; see `begin_saving`. Raises FileError."""
+        """Write the project now, whatever has happened to its file; see `begin_saving`. Raises FileError."""
         writing = self.begin_saving(path)
         writing.write()
         self.end_saving(writing)
 
     def begin_saving(self, path: Path | None = None) -> Writing:
-        """Return how the project as it is now is written, to its own file or another; in a new place it is
-        named after its file.
+        """Return the writing of the current project to its own file or another; in a new place it is named
+        after its file.
 
-        `write` may run on any thread while edits go on; then comes `end_saving`.
+        `write` may run on any thread while editing continues; then call `end_saving`.
         """
         target = path or self.path
         if target is None:
@@ -314,7 +315,7 @@ class Document(QObject):
         return Writing(self.project, self.path, target, journal, mark, version_count(), home, self.access)
 
     def end_saving(self, writing: Writing) -> None:
-        """The file is written: what it holds is the saved state. Edits that were made meanwhile are not."""
+        """Take what was written as the saved state. Edits made in the meantime are unsaved."""
         edited = self.project is not writing.project
         elsewhere = writing.target != self.path
         if elsewhere:
@@ -324,7 +325,7 @@ class Document(QObject):
                 after = replace(
                     move_project(before, self.path, writing.target), name=name_after_file(writing.target)
                 )
-            # Steps back would bring paths relative to the old place; a new place begins a new history.
+            # Undoing would restore paths relative to the old place, so a new place begins a new history.
             self.undo_stack.clear()
             self._move_lock(writing.target)
             self.project, self.path, self.read_only, self._returned = after, writing.target, False, False
@@ -335,27 +336,25 @@ class Document(QObject):
             self.undo_stack.resetClean()
         else:
             self.undo_stack.setClean()
-        if elsewhere or not edited:  # else the journal has a mark behind which it goes on
+        if elsewhere or not edited:  # otherwise the journal continues after a mark
             self.autosave.begin(self.project if edited else None, int(edited))
         self.state_changed.emit()
         self.saved.emit()
 
     def _settle_in(self) -> None:
-        """Remember what the file and its folder are known by."""
+        """Remember what identifies the file and its folder."""
         self.access = access_of(self.path) or (self.access if self.path is not None else None)
         self._home = identity_of(self.path.parent) if self.path is not None else None
 
     def folder_now(self) -> Path | None:
-        """Return where the file's folder is by now, where it was renamed or moved while this window had it
-        open.
-        """
+        """Return where the file's folder is now, if it was renamed or moved while this window had it open."""
         if self.path is None:
             return None
         journal = self.autosave.journal
         return folder_now(self.path.parent, self._home, journal.path if journal is not None else None)
 
     def follow(self, folder: Path) -> None:
-        """The folder of the project has another name, and all that lies in it has moved along."""
+        """Follow the project's folder to another name; everything in it has moved along."""
         assert self.path is not None
         self.path = folder / self.path.name
         if self.lock is not None:
@@ -370,18 +369,18 @@ class Document(QObject):
     def _move_lock(self, target: Path) -> None:
         lock = Lock(target, self.owner, self.access)
         if self.lock is None or self.lock.path != lock.path:
-            lock.acquire()  # where somebody else has it, the window has asked before
+            lock.acquire()  # if somebody else has it, the window has asked before
             if self.lock is not None:
                 self.lock.release()
             self.lock = lock
 
     def regain(self, lock: Lock) -> None:
-        """The lock of the project's file is ours, perhaps after it was not."""
+        """Take the lock of the project's file, perhaps after losing it."""
         self.lock, self.read_only = lock, False
         self.state_changed.emit()
 
     def lose_lock(self) -> None:
-        """Another window has taken the file over: from now on it is read only."""
+        """Become read-only, because another window has taken the file."""
         self.lock, self.read_only = None, True
         self.keep_all()
         self.state_changed.emit()
@@ -390,18 +389,18 @@ class Document(QObject):
 
     @property
     def journal_place(self) -> Path:
-        """Where this sitting keeps its edits."""
+        """Return where this sitting keeps its edits."""
         journal = self.autosave.journal
         return journal.path if journal is not None else self.autosave.place
 
     def keep_all(self) -> None:
-        """Write the whole project into the journal, since the file it builds on is another one now."""
+        """Write the whole project into the journal, because the file it builds on is another one now."""
         if self.dirty:
             self.autosave.begin(*self.unsaved(self.project))
 
     def unsaved(self, now: Project) -> tuple[Project, int, list[Done]]:
-        """Return what leads to the project as it is now: what it builds on, how many edits of that are in no
-        file, and the edits after it.
+        """Return what leads to the current project: what it builds on, how many of the edits in that are
+        unsaved, and the edits after it.
         """
         stack = self.undo_stack
         clean = stack.cleanIndex()
@@ -413,16 +412,16 @@ class Document(QObject):
         return steps[0].before, int(clean < 0), done
 
     def secured(self) -> bool:
-        """Return whether the journal is safely on the disk with every edit that is in no file."""
+        """Return whether the journal is safely on the disk with every unsaved edit."""
         return self.autosave.secure()
 
     def touch_journal(self) -> None:
-        """See `Journal.touch`."""
+        """Touch the journal; see `Journal.touch`."""
         if self.autosave.journal is not None:
             self.autosave.journal.touch()
 
     def close_journal(self) -> None:
-        """Forget the journal, and give the file back; when the user has saved or chosen to discard."""
+        """Remove the journal and release the file, when the user has saved or chosen to discard."""
         self._leave_file(None)
 
     def _leave_file(self, lock: Lock | None) -> None:

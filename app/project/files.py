@@ -1,4 +1,4 @@
-"""Opening, saving, importing and recovering, with the questions they ask. The window's right hand; it draws
+"""Open, save, import and recover, and ask the questions that this needs. It serves the window and draws
 nothing.
 """
 
@@ -52,8 +52,10 @@ def _filter() -> str:
 
 
 class Files(QObject):
-    """told: words for the status bar. report: (title, lines) to read. opened: a project is shown.
-    noticed: (words, tip, what shows more), to be read when there is time."""
+    """The files of a window. `told` has words for the status bar, `report` (title, lines) to read. `opened`
+    is emitted when a project is shown. `noticed` has (words, tip, function that shows more), for later
+    reading.
+    """
 
     told = Signal(str)
     report = Signal(str, object)
@@ -77,11 +79,11 @@ class Files(QObject):
         self.network = NetworkFiles(self)
         self._warnings: list[str] = []
         document.warned.connect(self._warn)
-        self._asked_for: Lock | None = None  # of the place that is being saved to
-        self.closed = ""  # why no other project or clip may be brought in now, in words
+        self._asked_for: Lock | None = None  # the lock of the place that is being saved to
+        self.closed = ""  # why no other project or clip may be opened now, in words
 
     def refuse(self) -> bool:
-        """Return whether nothing may be brought in now, and say why."""
+        """Return whether nothing may be opened now, and report why."""
         if self.closed:
             self.told.emit(self.closed)
         return bool(self.closed)
@@ -105,24 +107,24 @@ class Files(QObject):
             self.open(Path(name))
 
     def open(self, path: Path, template: bool = False, name: str | None = None) -> None:
-        """Open a project; its clips load on a thread. Asks about unsaved changes, about another window that
+        """Open a project; its clips load on a thread. Ask about unsaved changes, about another window that
         has it open, and about journals that were left behind.
 
-        template: a copy without a file is opened; saving asks for a place of one's own. name: what that is
-        called, if not as the project is.
+        With `template`, a copy without a file is opened, so that saving asks for a place. `name` is the name
+        of that copy, if not the project's.
         """
         if self.refuse():
             return
         if not self.may_leave():
             return
         left = self.document.project
-        if template or is_version(path):  # a version is history: what comes of it is saved elsewhere
+        if template or is_version(path):  # a version is history: edits of it are saved elsewhere
             self._open(path, left, template=True, name=name)
             return
         self._look(path, left, None)
 
     def go_on(self, chosen: Left, path: Path) -> None:
-        """Open a project, and go on with what a journal adds to it."""
+        """Open a project, and continue with what a journal adds to it."""
         self._look(path, self.document.project, chosen)
 
     def _look(self, path: Path, before: Project, chosen: Left | None) -> None:
@@ -135,10 +137,11 @@ class Files(QObject):
         )
 
     def _looked(self, path: Path, before: Project, found: FoundJournal, chosen: Left | None = None) -> None:
-        """Ask about what was found beside a project file, and open it. chosen: what to go on with, where that
-        was asked before.
+        """Ask about what was found beside a project file, and open it. `chosen` is the journal to continue
+        with, if that was asked before.
         """
-        # Dialogs are imported when there is something to ask: the first picture does not wait for them.
+        # Dialogs are imported when there is something to ask, so that the first picture does not wait for
+        # them.
         from app.project.questions import ask_held
         from app.project.recovering import ask_recover
 
@@ -175,14 +178,14 @@ class Files(QObject):
         read_only: bool = False,
         name: str | None = None,
     ) -> None:
-        """Load a project and its clips, and show it in place of `before`. choices: what becomes of journals'
-        edits.
+        """Load a project and its clips, and show it in place of `before`. `choices` says what becomes of
+        journals' edits.
         """
         chosen = next((left for left, choice in choices if choice == "recover"), None)
         copies = [left for left, choice in choices if choice == "copy"]
         dropped = [left for left, choice in choices if choice == "discard"]
         lock = found.lock if found is not None and found.lock is not None and found.lock.held else None
-        if not template:  # a copy of one that was asked about names the same
+        if not template:  # a copy of an allowed project names the same files
             allow(False)
 
         def work(job: WindowJob) -> tuple[Opened, Project | None, list[Path], tuple[UndoStep, ...]]:
@@ -213,7 +216,7 @@ class Files(QObject):
                     read_only=read_only,
                 )
                 self._remember(path)
-            over = chosen is not None and self.document.secured()  # else it stays, and is offered again
+            over = chosen is not None and self.document.secured()  # otherwise it stays, and is offered again
             for other in [*copies, *([chosen] if chosen is not None and over else [])]:
                 remove_journal(other.path)
             for other in dropped:
@@ -239,7 +242,7 @@ class Files(QObject):
         self.jobs.start(tr("Opening {name}", name=path.name), work, done, failed)
 
     def tell_lost(self, left: Left) -> None:
-        """Say which edits of a damaged journal are lost."""
+        """Report which edits of a damaged journal are lost."""
         from app.project.recovering import describe_lost
 
         if left.is_damaged:
@@ -247,24 +250,26 @@ class Files(QObject):
             self.report.emit(tr("Some of your unsaved edits were damaged"), [*describe_lost(left), kept])
 
     def recover(self) -> None:
-        """Offer all work that is in no file, wherever it lies."""
+        """Offer all unsaved work, wherever it is."""
         if not self.refuse():
             self.unsaved.offer_all()
 
     def recover_untitled(self, otherwise: Callable[[], object] | None = None) -> None:
-        """Offer what was never saved before a crash; where nothing is, or is wanted, do `otherwise`."""
+        """Offer what was never saved before a crash; if there is nothing, or it is declined, call
+        `otherwise`.
+        """
         self.unsaved.offer(otherwise)
 
     def show_failure(self, error: Exception) -> None:
-        """Say what went wrong with a job."""
+        """Report what went wrong with a job."""
         if not (is_foreseen(error) or isinstance(error, WORDS)):
-            return  # told already, with a report
+            return  # reported already
         QMessageBox.warning(self.window, "Metagraph", tr_error(error))
 
     # --- save
 
     def save(self) -> bool:
-        """Begin to save, on a thread; return whether that was not called off."""
+        """Begin to save, on a thread; return whether it was not cancelled."""
         if self.document.path is None or self.document.read_only:
             return self.save_as()
         self.saver.save()
@@ -298,7 +303,7 @@ class Files(QObject):
             )
             return False
         if self.document.path is not None and Lock(self.document.path, self.document.owner).path == lock.path:
-            path = self.document.path  # by another name, or whoever had it is gone
+            path = self.document.path  # saved under another name, or the other window has released it
             self.document.regain(lock)
         else:
             self._asked_for = lock
@@ -306,7 +311,7 @@ class Files(QObject):
         return True
 
     def _saved(self, path: Path, anew: bool) -> None:
-        self._asked_for = None  # the document's now
+        self._asked_for = None  # it belongs to the document now
         self._remember(path)
         if anew and path == self.document.path:
             self.told.emit(tr("{name} no longer existed, so it was written again.", name=path.name))
@@ -314,7 +319,7 @@ class Files(QObject):
             self.told.emit(tr("Saved {name}", name=path.name))
 
     def _folder_gone(self, error: FolderGoneError) -> None:
-        """The folder of the project is not at its place: ask where to save it."""
+        """Ask where to save, because the project's folder is not in its place."""
         from app.project.questions import ask_folder_gone
 
         answer = ask_folder_gone(self.window, error)
@@ -325,9 +330,9 @@ class Files(QObject):
             self.save_as()
 
     def _warn(self, words: str) -> None:
-        """Say what the user must have read: at once, and until it was looked at."""
+        """Show what the user must have read: now, and until it was read."""
         self._warnings.append(words)
-        QTimer.singleShot(0, self._show_warnings)  # a project that is being shown clears what was said before
+        QTimer.singleShot(0, self._show_warnings)  # a project that is being shown clears earlier messages
 
     def _show_warnings(self) -> None:
         if not self._warnings:
@@ -347,11 +352,11 @@ class Files(QObject):
         QMessageBox.warning(self.window, tr("Not saved"), tr_error(error))
 
     def look_at_file(self) -> None:
-        """Look whether the project file has changed on disk, and say so."""
+        """Check whether the project file has changed on disk, and report it."""
         self.outside.look()
 
     def may_leave(self) -> bool:
-        """Return whether the project may be left: nothing unsaved, or saved or discarded when asked."""
+        """Return whether the project may be closed: nothing is unsaved, or the user saved or discarded it."""
         if self.saver.wait():
             return True
         box = QMessageBox.StandardButton
@@ -383,6 +388,6 @@ class Files(QObject):
 
 
 def _release(lock: Lock | None, document: Document) -> None:
-    """Give a lock back that was taken for a project that is not shown."""
+    """Release a lock that was taken for a project that is not shown."""
     if lock is not None and (document.lock is None or document.lock.path != lock.path):
         lock.release()

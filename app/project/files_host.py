@@ -1,4 +1,4 @@
-"""What the parts of a window's files know of the whole."""
+"""Define what the parts of a window's files know of the whole."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Bringing clips in: files and folders that are imported or dropped, and clip files that were lost and
-found.
-"""
+"""Import clips: files and folders that are chosen or dropped, and clip files that were lost and found."""
 
 from __future__ import annotations
 
@@ -36,8 +34,10 @@ def _filter() -> str:
 
 @dataclass(frozen=True)
 class FileDrop:
-    """Files that are no clips, and who takes them when they are dropped or imported. suffixes: what their
-    names may end in, lower case. claim: those that are really its own. take: what it does with them.
+    """Files that are not clips, and the object that takes them when they are dropped or imported.
+
+    `suffixes` are the ends of their names, in lower case. `claim` returns those that really belong to it, and
+    `take` handles them.
     """
 
     suffixes: tuple[str, ...]
@@ -46,12 +46,13 @@ class FileDrop:
 
 
 class Importing(QObject):
-    """told: words for the status bar. report: (title, lines) to read. begun: files are being
-    read. imported: (Imported, what was given
-    with it to place them). ended: an Imported, once nothing is asked about it any more. noticed: (title, ids
-    of clips, lines), clips that were repaired; the lines say what else there is to read. drops: who takes
-    what is no clip. retarget: asks about clips of other skeletons; without it they are left out. bring:
-    retargets them unasked.
+    """Imports clips.
+
+    `told` has words for the status bar, `report` (title, lines) to read. `begun` is emitted when files are
+    being read. `imported` has an Imported, and the drop that says where to place it. `ended` has an Imported,
+    once no more questions are asked about it. `noticed` has (title, ids of clips, lines) for clips that were
+    repaired; the lines are further notes. `drops` take what is not a clip. `retarget` asks about clips of
+    other skeletons; without it they are left out. `bring` retargets them without asking.
     """
 
     told = Signal(str)
@@ -74,7 +75,7 @@ class Importing(QObject):
         self._era += 1
 
     def takes(self, paths: Sequence[Path]) -> bool:
-        """Return whether there may be anything among files that is of use, by their names."""
+        """Return whether files may be usable, by their names."""
         ends = (*clip_suffixes(), *(suffix for drop in self.drops for suffix in drop.suffixes))
         return any(not path.suffix or path.name.lower().endswith(ends) for path in paths)
 
@@ -97,9 +98,7 @@ class Importing(QObject):
             self.import_paths(names)
 
     def import_paths(self, paths: list[str], drop: object = None) -> None:
-        """Import files and folders on a thread; one undo step when it is done. drop: where to place them
-        then.
-        """
+        """Import files and folders on a thread, as one undo step. `drop` says where to place them."""
         if self.files.refuse():
             return
         for taker in self.drops:
@@ -140,7 +139,7 @@ class Importing(QObject):
     def _collect(
         self, retarget: Retarget, strangers: Sequence[Strangers], result: Imported, drop: object
     ) -> None:
-        """Bring strangers in, and tell of all together with `result` in the end."""
+        """Retarget strangers, and report all of them together with `result` at the end."""
         parts, groups = [result], len(strangers)
 
         def then(brought: Imported) -> None:
@@ -156,7 +155,7 @@ class Importing(QObject):
         retarget(strangers, then)
 
     def remedy(self, result: Imported, remedy: Remedy) -> None:
-        """Do what an import's report offers about clips of other skeletons."""
+        """Do what an import's report offers for clips of other skeletons."""
         retarget = self.bring if remedy.do == "retarget" else self.retarget
         if retarget is None or self.files.refuse():
             return
@@ -169,7 +168,7 @@ class Importing(QObject):
         self._collect(retarget, remedy.strangers, rest, None)
 
     def _tell_imported(self, result: Imported) -> None:
-        """Say what came of an import."""
+        """Report the result of an import."""
         if not result.loaded and not result.apart and not result.failures:
             self.report.emit(
                 tr("Nothing was imported"),
@@ -182,7 +181,7 @@ class Importing(QObject):
         repairs = repairs_of(self.document.project, clips)
         if any(
             found.repair.name != NAME for found in repairs
-        ):  # a name is plain to see, and no reason to interrupt
+        ):  # a changed name is visible, and no reason to interrupt
             told = {found.repair.words for found in repairs}
             notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
             lines = [tr_phrase(line) for line in count_alike([*result.failures, *notes])]
@@ -223,7 +222,7 @@ class Importing(QObject):
         )
 
     def _ask_for_missing(self, count: int) -> None:
-        """count: how many were missing before some were found at their places."""
+        """Ask for missing files. `count` is how many were missing before some were found in their places."""
         project, era = self.document.project, self._era
         missing = [e for e in project.clips.values() if e.motion is None]
         name = QFileDialog.getExistingDirectory(

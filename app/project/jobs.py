@@ -1,4 +1,4 @@
-"""Long jobs off the GUI thread: progress, cancelling, and results delivered back on the GUI thread."""
+"""Run long jobs off the GUI thread, with progress and cancelling, and deliver results on the GUI thread."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ from shiboken6 import isValid
 
 from app import faults
 
-WORDS = (OSError, MemoryError, ValueError, RuntimeError)  # what work says in words, beside errors of ours
+WORDS = (OSError, MemoryError, ValueError, RuntimeError)  # their message is shown, besides our own errors
 
 
 class WindowJob(QObject):
     """A running job. `done` carries its result, `failed` the exception, `progress` (done, total, words).
 
-    Exactly one of done and failed is emitted, then `ended`; after `cancel` neither done nor failed is. Then
-    it is freed, with what is connected to it and all that its work holds; only `title` and `cancelled` may be
-    asked for after that.
+    Exactly one of `done` and `failed` is emitted, then `ended`; after `cancel`, neither `done` nor `failed`
+    is. Then it is freed, with its connections and everything its work holds; only `title` and `cancelled` may
+    be used after that.
     """
 
     progress = Signal(int, int, str)
     done = Signal(object)
     failed = Signal(object)
     ended = Signal()
-    _over = Signal(object, object)  # result, error; from the thread
+    _over = Signal(object, object)  # result and error, from the thread
 
     def __init__(self, title: str, work: Callable[[WindowJob], Any]) -> None:
         super().__init__()
         self.title = title
         self._work = work
         self.cancelled = False
-        self.heard = False  # somebody waits for what it fails with
+        self.heard = False  # somebody handles its failure
         self._over.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
 
     def cancel(self) -> None:
         self.cancelled = True
 
     def _deliver(self, result: Any, error: Exception | None) -> None:
-        """Hand the result over on the window's thread, unless it was cancelled while it was on its way."""
+        """Deliver the result on the window's thread, unless the job was cancelled in the meantime."""
         if not self.cancelled:
             if error is None:
                 self.done.emit(result)
@@ -52,15 +52,15 @@ class WindowJob(QObject):
         self.forget()
 
     def _failed(self, error: Exception) -> None:
-        """Tell whoever waits for it, and whoever takes what nobody foresaw or waits for."""
+        """Emit the failure, and report it if it is unexpected or nobody handles it."""
         if not self.heard or not (faults.is_foreseen(error) or isinstance(error, WORDS)):
             faults.report_error(error, f"job: {self.title.split()[0] if self.title else ''}")
         self.failed.emit(error)
 
     def forget(self) -> None:
-        """Free it, and what its work and what is connected hold."""
+        """Free it, and what its work and its connections hold."""
         self._work = _nothing
-        self.deleteLater()  # what is connected keeps the job alive, and is kept by it: Qt alone can part them
+        self.deleteLater()  # connected functions and the job keep each other alive; only Qt can separate them
 
     def tell(self, done: int, total: int, words: str = "") -> None:
         """Report progress; called by the work, on its own thread."""
@@ -68,7 +68,7 @@ class WindowJob(QObject):
 
 
 def _nothing(job: WindowJob) -> None:
-    """The work of a job that is over."""
+    """Replace the work of a job that is over."""
 
 
 class _Runner(QRunnable):
@@ -84,16 +84,16 @@ class _Runner(QRunnable):
         except Exception as error:
             error.__notes__ = [*getattr(error, "__notes__", []), traceback.format_exc()]
             problem = error
-        with contextlib.suppress(RuntimeError):  # the window is gone; nobody wants the result
+        with contextlib.suppress(RuntimeError):  # the window is gone; nobody needs the result
             self.job._over.emit(result, problem)
-        del self.job  # the pool forgets a runner later than the job is delivered
+        del self.job  # the pool drops a runner later than the job is delivered
 
 
 def is_alive(callback: Callable[..., Any], depth: int = 3) -> bool:
-    """Return whether no object of Qt's that a function is a method of, or was made with, has been deleted."""
+    """Return whether no Qt object that a function is a method of, or was made with, has been deleted."""
     held = [getattr(callback, "__self__", None)]
     for cell in getattr(callback, "__closure__", None) or ():
-        with contextlib.suppress(ValueError):  # a name that has no value yet
+        with contextlib.suppress(ValueError):  # a name without a value yet
             held.append(cell.cell_contents)
     for one in held:
         if isinstance(one, QObject):
@@ -108,10 +108,10 @@ _BUSY: list[QThreadPool] = []  # pools that outlive their window because a job w
 
 
 class Jobs(QObject):
-    """Starts jobs and keeps them alive while they run. `changed` tells when one starts or ends.
+    """Starts jobs and keeps them alive while they run. `changed` is emitted when one starts or ends.
 
-    A job goes on when the dialog that started it is closed, unless that cancels it. `outlived` then tells how
-    it ended, instead of the dialog: (title, the exception or None, whether what it made stands).
+    A job continues when the dialog that started it is closed, unless that cancels it. `outlived` then reports
+    its end instead of the dialog: (title, the exception or None, whether its result still holds).
     """
 
     changed = Signal()
@@ -122,14 +122,14 @@ class Jobs(QObject):
         self.running: list[WindowJob] = []
         self._alive: set[WindowJob] = set()  # quick jobs, kept from being collected while they run
         self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(2)  # long jobs must not starve the short ones the preview needs
+        self._pool.setMaxThreadCount(2)  # long jobs must not starve the short ones that the preview needs
         self._quick = QThreadPool(self)
-        self._quick.setMaxThreadCount(2)  # a large plan must not hold up a figure
+        self._quick.setMaxThreadCount(2)  # a large plan must not delay a figure
         self._stopped = False
 
     @property
     def at_work(self) -> list[WindowJob]:
-        """All jobs that have not ended, quick ones included."""
+        """Return all jobs that have not ended, including quick ones."""
         return [*self.running, *self._alive]
 
     def start(
@@ -141,8 +141,8 @@ class Jobs(QObject):
         quick: bool = False,
         stands: bool = False,
     ) -> WindowJob:
-        """Run `work(job)` on a thread. quick: a short background job, not shown to the user. stands: what it
-        makes is there without whoever it is delivered to, such as a file.
+        """Run `work(job)` on a thread. `quick` is for a short background job, which is not shown to the user.
+        With `stands`, its result exists without anyone to deliver it to, such as a file.
         """
         job = WindowJob(title, work)
         if done is not None:
@@ -166,7 +166,9 @@ class Jobs(QObject):
     def _to_who_is_left(
         self, callback: Callable[[Any], None], title: str, stands: bool
     ) -> Callable[[Any], None]:
-        """Return what calls back if whoever is called is still there, and else says how a job ended."""
+        """Return a function that calls `callback` if its objects still exist, and otherwise reports how the
+        job ended.
+        """
 
         def deliver(value: Any) -> None:
             if is_alive(callback):
@@ -179,14 +181,14 @@ class Jobs(QObject):
     def _ended(self, job: WindowJob) -> None:
         if job in self.running:
             self.running.remove(job)
-            if not self._stopped:  # else nobody is there any more to be told
+            if not self._stopped:  # otherwise nobody is left to notify
                 self.changed.emit()
 
     def stop(self) -> None:
-        """Cancel everything, wait for it, and take nothing more; at closing.
+        """Cancel everything, wait for it, and accept nothing more, on closing.
 
         A pool is destroyed with its owner and then waits for its threads while it holds the interpreter,
-        which they need to end: a deadlock. So none may start after this, and a pool still busy is not
+        which they need to end: a deadlock. So none may start after this, and a pool that is still busy is not
         destroyed.
         """
         self._stopped = True
@@ -198,6 +200,6 @@ class Jobs(QObject):
             if not pool.waitForDone(5000):
                 pool.setParent(None)
                 _BUSY.append(pool)
-                left = []  # one of them still works, and ends by itself
+                left = []  # one of them is still working, and ends on its own
         for job in left:  # those that waited for their turn will never end
             job.forget()

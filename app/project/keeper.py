@@ -1,4 +1,4 @@
-"""Shows other windows, every now and then, that this one still has its file."""
+"""Show other windows, regularly, that this one still has its file."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from metagraph.formats.locking import REFRESH
 
 
 class Keeper(QObject):
-    """Touches the lock and the journal on a thread, since a network drive may take its time. told: words when
-    the lock was taken over.
+    """Touches the lock and the journal on a thread, because a network drive may be slow. `told` has words if
+    another window took the lock.
     """
 
     told = Signal(str)

@@ -1,4 +1,4 @@
-"""The user's joint maps, remembered between projects: one JSON file beside the recent projects."""
+"""Remember the user's joint maps between projects, in a JSON file beside the recent projects."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.project.autosave import state_folder
 from metagraph.formats.atomic import write_atomically
 from metagraph.motion.joint_map import JointMap, RetargetError
 
-MOST = 100  # the oldest go first
+MOST = 100  # maps; the oldest are removed first
 
 
 def _place() -> Path:
@@ -17,9 +17,7 @@ def _place() -> Path:
 
 
 def read_joint_maps() -> dict[tuple[str, str], JointMap]:
-    """Return the maps by the fingerprints of source and target, the latest last; what is damaged is passed
-    over.
-    """
+    """Return the maps by the fingerprints of source and target, the latest last; damaged ones are skipped."""
     try:
         rows = json.loads(_place().read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -29,7 +27,7 @@ def read_joint_maps() -> dict[tuple[str, str], JointMap]:
         try:
             found = JointMap.from_json(row)
         except RetargetError:
-            continue  # one of another version spoils no other
+            continue  # one of another version does not affect the others
         out[found.source, found.target] = found
     return out
 

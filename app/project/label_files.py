@@ -1,5 +1,5 @@
-"""Files of labels from other programs, such as Blender's add-on: actions are placed and changed as they say,
-with the clips that lie beside them.
+"""Read files of labels from other programs, such as Blender's add-on: they place and change actions, with the
+clips beside them.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class ReadLabels:
     clips: Imported
 
     def into(self, project: Project) -> tuple[Project, int, tuple[str, ...]]:
-        """Return a project with both, how many rows were met, and why others were not."""
+        """Return a project with both, how many rows were applied, and why others were not."""
         project = self.clips.into(project)
         at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
         from metagraph.formats.action_labels import apply_labels
@@ -48,7 +48,7 @@ class ReadLabels:
 
 
 def find_clips_beside(path: Path) -> list[Path]:
-    """Return the files of clips that are called as a file of labels is: `talk.glb` for `talk.labels.json`."""
+    """Return the clip files with the name of a file of labels: `talk.glb` for `talk.labels.json`."""
     stem = path.name.removesuffix(ENDING)
     return [
         path.with_name(stem + ending) for ending in clip_suffixes() if path.with_name(stem + ending).is_file()
@@ -56,8 +56,8 @@ def find_clips_beside(path: Path) -> list[Path]:
 
 
 class LabelFiles:
-    """Takes files of labels into the project, each as one step that can be undone. drop: for those that are
-    dropped.
+    """Applies files of labels to the project, each as one step that can be undone. `drop` handles dropped
+    ones.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class LabelFiles:
         self.drop = FileDrop((ENDING,), self._claimed, self.take)
 
     def ask(self) -> None:
-        """Ask for a file of labels and take it."""
+        """Ask for a file of labels and apply it."""
         if self._files.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
@@ -78,7 +78,7 @@ class LabelFiles:
             self.take([Path(name)])
 
     def take(self, paths: Sequence[Path]) -> None:
-        """Read files of labels on a thread and do what they say."""
+        """Read files of labels on a thread and apply them."""
         for path in paths:
             self._take(path)
 

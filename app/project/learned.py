@@ -1,10 +1,10 @@
-"""What was learned from the user, kept between projects in the program's data folder; one for all windows of
-all programs at work.
+"""Keep what was learned from the user between projects, in the program's data folder; one memory for all
+windows of all running programs.
 
-Two files of one format, `metagraph.suggest.memory`: words and corrections, small and written at once;
-labelled clips of projects, large and written by a job. Every change reads the file anew under a lock, applies
-itself, and writes it whole, so that nothing another window learned is lost. A file that cannot be read is set
-aside, never overwritten.
+There are two files of one format, `metagraph.suggest.memory`: words and corrections, small and written at
+once; labelled clips of projects, large and written by a job. Every change reads the file again under a lock,
+is applied, and writes the whole file, so that nothing another window learned is lost. A file that cannot be
+read is renamed, never overwritten.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 
-if TYPE_CHECKING:  # arrays and word lists are read when something is first learned or asked
+if TYPE_CHECKING:  # arrays and word lists are imported when something is first learned or needed
     from app.project.jobs import Jobs
     from metagraph.graph.model import Project
     from metagraph.suggest.alike import LabelledExample
@@ -35,8 +35,8 @@ LOCK_WAIT = 2000  # milliseconds another window may take to write
 
 
 class Learned(QObject):
-    """What the user taught. changed: something was learned, forgotten or edited here. failed: words, when it
-    could not be kept.
+    """What the user taught. `changed` is emitted if something was learned, forgotten or edited here, `failed`
+    with words if it could not be kept.
     """
 
     changed = Signal()
@@ -46,16 +46,16 @@ class Learned(QObject):
         super().__init__(parent)
         self._read: dict[
             str, tuple[tuple[int, int], Memory]
-        ] = {}  # file -> its state when it was read, what it held
+        ] = {}  # file -> its state when it was read, its content
         self.paused = False  # nothing is learned from the participants of a study, nor used for them
-        self._due = 0  # saved projects that a job is not done with
+        self._due = 0  # saved projects whose job is not done yet
 
     # --- whether
 
     @property
     def on(self) -> bool:
-        """Whether corrections and labelled clips are remembered and used. Patterns the user wrote are used
-        either way.
+        """Return whether corrections and labelled clips are remembered and used. Patterns that the user wrote
+        are always used.
         """
         return not self.paused and str(QSettings().value("learn", "true")) == "true"
 
@@ -67,27 +67,31 @@ class Learned(QObject):
 
     @property
     def patterns(self) -> Patterns:
-        """What words in names mean; without what was learned from corrections while learning is off."""
+        """Return what words in names mean, without what was learned from corrections while learning
+        is off.
+        """
         from metagraph.suggest.words.patterns import forget_learned
 
         return self.every_pattern if self.on else forget_learned(self.every_pattern)
 
     @property
     def every_pattern(self) -> Patterns:
-        """All that is known of words, whether it is used or not."""
+        """Return everything known of words, used or not."""
         return self._memory(WORDS).patterns
 
     def examples_for(self, document: Document) -> list[LabelledExample]:
-        """Return labelled clips of the user's other projects; may read a file of some MB, so ask on a job."""
+        """Return labelled clips of the user's other projects. This may read a file of some MB, so call it in
+        a job.
+        """
         return self.examples_beside(document.path)
 
     def examples_beside(self, path: Path | None) -> list[LabelledExample]:
-        """Return labelled clips of all projects but the one that is saved there."""
+        """Return labelled clips of all projects except the one saved at a path."""
         return self._memory(CLIPS).others(_key(path)) if self.on else []
 
     @property
     def clips(self) -> int:
-        """How many labelled clips are remembered."""
+        """Return how many labelled clips are remembered."""
         return sum(map(len, self._memory(CLIPS).examples.values()))
 
     # --- learning
@@ -100,9 +104,9 @@ class Learned(QObject):
             self._change(WORDS, lambda m: m.corrected(name, field, value, names))
 
     def keep(self, document: Document, jobs: Jobs | None = None) -> None:
-        """Remember a saved project's labelled clips, on a job. Without jobs, at closing: what a job was not
-        done with, at once, then only with the motion that was looked at before. One with unsaved changes is
-        not remembered, nor one without a file.
+        """Remember a saved project's labelled clips, in a job. Without `jobs`, on closing, what a job was not
+        done with is remembered at once, but only with motion that was measured before. A project with unsaved
+        changes or without a file is not remembered.
         """
         if not self.on or document.path is None or document.dirty:
             return
@@ -132,14 +136,14 @@ class Learned(QObject):
         self._change(WORDS, lambda m: replace(m, patterns=change(m.patterns)))
 
     def forget(self) -> None:
-        """Forget every correction and every project; the patterns the user wrote stay."""
+        """Forget every correction and every project; patterns that the user wrote stay."""
         self._change(WORDS, lambda m: m.forgotten())
         self._change(CLIPS, lambda m: m.forgotten())
 
     # --- files
 
     def _memory(self, file: str) -> Memory:
-        """Return what a file holds now; nothing where it cannot be read, which is told once."""
+        """Return what a file holds now; nothing if it cannot be read, which is reported once."""
         from metagraph.suggest.memory import Memory, MemoryFormatError
 
         path = state_folder() / file
@@ -175,7 +179,7 @@ class Learned(QObject):
         return self._read[file][1]
 
     def _change(self, file: str, change: Callable[[Memory], Memory]) -> None:
-        """Read a file, change what it holds, and write it, while no other window does."""
+        """Read a file, change its content, and write it, while no other window does."""
         path = state_folder() / file
         lock = QLockFile(str(path.with_suffix(".lock")))
         if not lock.tryLock(LOCK_WAIT):
@@ -205,7 +209,7 @@ class Learned(QObject):
 
 
 def memory_key(document: Document) -> str:
-    """Return what a project is remembered by: its file, "" for one without."""
+    """Return the key under which a project is remembered: its file, "" for none."""
     return _key(document.path)
 
 

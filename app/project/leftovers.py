@@ -1,4 +1,4 @@
-"""What stands beside a project file when it is opened: another window's lock, and journals of sittings that
+"""Find what is beside a project file when it is opened: another window's lock, and journals of sittings that
 ended in a crash.
 """
 
@@ -23,15 +23,18 @@ from metagraph.formats.store import SUFFIX, load_returned, save_project
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
-# The second as they were called at first, `.old` as those were that could not be read.
+# The second name is that of early versions; `.old` were those that could not be read.
 UNTITLED = r"\.untitled\.[0-9a-f]+\.(journal|old)|untitled(-\d+)?\.(journal|old)"
-PICTURES = 8  # journals that are shown with one, the latest first
+PICTURES = 8  # journals that are shown with a picture, the latest first
 
 
 @dataclass(frozen=True)
 class FoundJournal:
-    """lock: ours, unless there is a holder. left: journals with edits, the latest first. notes: what cannot
-    be recovered, in words. poses: for a journal's picture, a clip of its project where one could be read.
+    """What was found beside a project file.
+
+    `lock` is ours, unless there is a `holder`. `left` has journals with edits, the latest first. `notes` say
+    in words what cannot be recovered. `poses` has, for a journal's picture, a clip of its project if one
+    could be read.
     """
 
     lock: Lock | None
@@ -47,8 +50,8 @@ def register() -> JournalRegister:
 
 
 def look_beside(path: Path, owner: Owner) -> FoundJournal:
-    """Take the lock of a project file, and read the journals that belong to it, wherever they are; what was
-    left half-written there goes. A file that is gone has journals, too.
+    """Take the lock of a project file, and read the journals that belong to it, wherever they are.
+    Half-written files are removed. A missing project file can have journals, too.
     """
     journals = journals_for(path, register())
     if not is_file(path) and not (journals and path.parent.is_dir()):
@@ -60,8 +63,8 @@ def look_beside(path: Path, owner: Owner) -> FoundJournal:
 
 
 def list_untitled_journals() -> list[Path]:
-    """Return the journals that opening no project would offer, the latest last: of projects never saved whose
-    windows are gone, and of those whose file is not there any more.
+    """Return the journals that opening a project would not offer, the latest last: of projects never saved
+    whose windows are gone, and of those whose file is missing.
     """
     folder = state_folder()
     homeless = []
@@ -73,8 +76,8 @@ def list_untitled_journals() -> list[Path]:
 
 
 def list_known_journals(recent: Sequence[Path]) -> list[Path]:
-    """Return every journal there is whose window is gone, the latest last. recent: projects in whose folders
-    they are looked for, too.
+    """Return every journal whose window is gone, the latest last. The folders of the `recent` projects are
+    searched, too.
     """
     found = [*find_journals_in(state_folder(), UNTITLED), *list_damaged_untitled()]
     return order_journals(
@@ -105,7 +108,7 @@ def _read(
             notes.append(f"{error} ({journal})")
             continue
         if found is None:
-            remove_journal(journal)  # all of it was saved, or nothing edited
+            remove_journal(journal)  # everything in it was saved, or nothing was edited
             continue
         folders[journal] = saved.parent if saved is not None else None
         left.insert(0, found)
@@ -114,8 +117,8 @@ def _read(
 
 
 def find_telling_pose(project: Project, folder: Path | None) -> Clip | None:
-    """Return a clip that shows what a project is about: of its base pose, else its first stance, else its
-    first.
+    """Return a clip that shows what a project is about: that of its base pose, else of its first stance, else
+    its first clip.
     """
     loops = [a.clip for a in project.actions() if a.kind == "stance"]
     for ident in dict.fromkeys(i for i in (project.base.clip, *loops[:1], *list(project.clips)[:1]) if i):
@@ -129,8 +132,8 @@ def find_telling_pose(project: Project, folder: Path | None) -> Clip | None:
 
 
 def remove_journal(journal: Path, discard: bool = False) -> None:
-    """Remove a journal that was taken over or declined; where that is not allowed it is offered again. A
-    damaged one is kept under another name, until somebody discards it.
+    """Remove a journal that was recovered or declined; if that is impossible, it is offered again. A damaged
+    one is kept under another name until somebody discards it.
     """
     with suppress(OSError):
         if discard:
@@ -141,8 +144,8 @@ def remove_journal(journal: Path, discard: bool = False) -> None:
 
 
 def keep_as_copy(left: Left, saved: Path) -> Path:
-    """Save a journal's project beside the project file it belongs to, under a name that is free; return
-    where. Raises FileError.
+    """Save a journal's project beside the project file it belongs to, under a free name; return the path.
+    Raises FileError.
     """
     stem = saved.name.removesuffix(SUFFIX) if saved.name.endswith(SUFFIX) else saved.stem
     number = 1

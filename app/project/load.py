@@ -1,4 +1,4 @@
-"""What is dragged or dropped: clips and actions of the project, or files to read."""
+"""Define what is dragged or dropped: clips and actions of the project, or files to read."""
 
 from __future__ import annotations
 

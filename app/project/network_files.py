@@ -1,4 +1,4 @@
-"""Files on other computers that a project names: opened only when the user says so, once for each project."""
+"""Open files on other computers that a project names only if the user agrees, once for each project."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHOWN = 5  # names in the question
 
 
 class NetworkFiles(QObject):
-    """Asks about such files of the project that is open, and opens them."""
+    """Asks about such files of the open project, and opens them."""
 
     def __init__(self, files: FilesHost) -> None:
         super().__init__(files.window)
@@ -32,12 +32,12 @@ class NetworkFiles(QObject):
         return f"network/{self.document.path}"
 
     def tells(self, note: str) -> bool:
-        """Return whether a note says what is going to be asked here."""
+        """Return whether a note says what will be asked here."""
         names = list_closed_paths(self.document.project)
         return bool(names) and note == describe_closed_paths(names)
 
     def look(self) -> None:
-        """Ask about the project that was just opened, unless its user has answered before."""
+        """Ask about the newly opened project, unless its user has answered before."""
         if not list_closed_paths(self.document.project):
             return
         answer = QSettings().value(self._key()) if self.document.path is not None else None

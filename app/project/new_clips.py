@@ -1,6 +1,6 @@
-"""Clips that are made here: cut from others, and kept as files in a folder beside the project.
+"""Make new clips: cut from others, and saved as files in a folder beside the project.
 
-Whoever calls these does so on a job's thread.
+Call these functions on a job's thread.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Loaded = tuple[str, int, str, Clip]  # what `add_clips` takes
 
 
 def cut_into_pieces(clip: Clip, spans: Sequence[tuple[float, float]]) -> list[Clip]:
-    """Return a clip cut into stretches from start to end, seconds, numbered."""
+    """Return a clip cut into numbered stretches from start to end, in seconds."""
     out = []
     for n, (start, end) in enumerate(spans, 1):
         first, last = round(start * clip.fps), round(end * clip.fps) + 1
@@ -26,10 +26,8 @@ def cut_into_pieces(clip: Clip, spans: Sequence[tuple[float, float]]) -> list[Cl
 
 
 def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str] = ()) -> list[Loaded]:
-    """Write each clip as a GLB of its own in a folder of the project's; return what `add_clips` takes. taken:
-    names of clips there are.
-
-    Raises FileError.
+    """Write each clip as a GLB of its own in a folder of the project; return what `add_clips` takes. `taken`
+    has the names of existing clips. Raises FileError.
     """
     from metagraph.formats.clips import digest
     from metagraph.formats.gltf.writer import write_glb

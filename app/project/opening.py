@@ -1,4 +1,4 @@
-"""A project with everything it names: its clips, and the sounds of its lines."""
+"""Open a project with everything it names: its clips, and the sounds of its lines."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ Progress = Callable[[int, int], None]
 
 
 def open_whole(path: Path, progress: Progress | None = None) -> Opened:
-    """Read a project file with its clips and voices. Raises FileError; what is missing beside it is in the
+    """Read a project file with its clips and voices. Raises FileError; missing files beside it are in the
     notes.
     """
     return _voiced(open_project(path, progress), path.resolve().parent)
 
 
 def load_whole(project: Project, folder: Path, progress: Progress | None = None) -> Opened:
-    """Read the clips and voices of a project that is there already."""
+    """Read the clips and voices of a project that is in memory."""
     return _voiced(load_motions(project, folder, progress), folder)
 
 
 def load_recovered(
     left: Left, folder: Path, progress: Progress | None = None
 ) -> tuple[Opened, tuple[UndoStep, ...]]:
-    """Read the clips and voices of a journal's project, and the steps that lead to it."""
+    """Read the clips and voices of a journal's project, and return the steps that lead to it."""
     opened = load_whole(left.project, folder, progress)
     steps = history(left)
     if not steps:
@@ -48,7 +48,7 @@ def take_over(project: Project, found: Project) -> Project:
 
 
 def with_motion_of(project: Project, other: Project) -> Project:
-    """Return the project, its clips without motion as `other` has them."""
+    """Return the project, with motion from `other` for equal clips that have none."""
     found = {
         i: other.clips[i] for i, e in project.clips.items() if e.motion is None and other.clips.get(i) == e
     }
@@ -56,8 +56,8 @@ def with_motion_of(project: Project, other: Project) -> Project:
 
 
 def with_face(project: Project, folder: Path) -> Project:
-    """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it
-    says.
+    """Return the project with its character's morph targets; the code that draws it reports errors in the
+    file.
     """
     if project.character is None:
         return project

@@ -1,5 +1,5 @@
-"""The project file written by somebody else while it is open here: noticed, shown, and merged, reloaded or
-replaced.
+"""Handle a project file that another program writes while it is open here: notice it, show it, and merge,
+reload or replace it.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ Merging = tuple[Opened, tuple[str, ...]]
 
 
 class Outside(QObject):
-    """The part of a window's files that others write."""
+    """The part of a window's files that other programs write."""
 
     def __init__(self, files: FilesHost) -> None:
         super().__init__(files.window)
         self.files, self.document = files, files.document
-        self._told_of: str | None = None  # the digest of a changed file that was told of
+        self._told_of: str | None = None  # the digest of a changed file that was reported
         self._era = 0  # counts the projects that were shown
         self.document.loaded.connect(self._next_era)
         files.saver.changed.connect(self.ask)
@@ -40,7 +40,7 @@ class Outside(QObject):
         self._told_of = None
 
     def look(self) -> None:
-        """Look whether the project file has changed on disk, and say so."""
+        """Check whether the project file has changed on disk, and report it."""
         document, files = self.document, self.files
         path, digest = document.path, document.digest
         if path is None or digest is None or files.saver.busy:
@@ -68,7 +68,7 @@ class Outside(QObject):
         files.jobs.start("project file", lambda _: find_file_change(path, digest), done, quick=True)
 
     def ask(self, changed: FileChangedError) -> None:
-        """The project file is another one than was read: ask what to do with both."""
+        """Ask what to do with both, because the project file is not the one that was read."""
         from app.project.questions import ask_changed
 
         document, files = self.document, self.files
@@ -124,7 +124,7 @@ class Outside(QObject):
                 )
                 QMessageBox.warning(self.files.window, tr("Not merged"), words)
             elif self.document.project is not mine:
-                self.ask(changed)  # it was edited meanwhile
+                self.ask(changed)  # it was edited in the meantime
             else:
                 opened, kept = found
                 self.document.merge(opened.project, theirs, digest)

@@ -1,4 +1,4 @@
-"""Name patterns as a file, for a team or for a run without a window."""
+"""Read and write name patterns as a file, for a team or for a run without a window."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ REMEDY = tr_noop("Export name patterns from the window, or write them as docs/an
 
 
 def read_patterns(path: Path) -> Patterns:
-    """Return the patterns a file holds. Raises FileError naming the place."""
+    """Return the patterns in a file. Raises FileError naming the place."""
     from metagraph.suggest.words.patterns import Patterns, PatternsError
 
     try:
@@ -38,5 +38,5 @@ def read_patterns(path: Path) -> Patterns:
 
 
 def write_patterns(path: Path, patterns: Patterns) -> None:
-    """Write patterns whole. Raises FileError."""
+    """Write patterns, whole or not at all. Raises FileError."""
     write_atomically(path, (json.dumps(patterns.to_json(), ensure_ascii=False, indent=2) + "\n").encode())

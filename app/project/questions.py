@@ -1,4 +1,4 @@
-"""What is asked about a project file: who has it open, what to do when another program has written it."""
+"""Ask about a project file: who has it open, what to do if another program has written it."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ Changed = Literal["merge", "save as", "reload", "anyway"]
 
 
 def describe_moment(seconds: float) -> str:
-    """Return a time since 1970 as people say it: the hour, and the day where it is another than today."""
+    """Return a time since 1970 in words: the time of day, and the date if it is not today."""
     then, now = time.localtime(seconds), time.localtime()
     return time.strftime("%H:%M" if then[:3] == now[:3] else tr("%H:%M on %d %B %Y"), then)
 
 
 def describe_holder(holder: Holder) -> str:
-    """Say who has a file: user, computer, since when."""
+    """Describe who has a file: user, computer, since when."""
     owner = holder.owner
     if owner is None:
         return tr("another window, whose user is unknown")
@@ -86,7 +86,7 @@ def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
 
 
 def ask_folder_gone(window: QWidget, error: FolderGoneError) -> Gone | None:
-    """Ask where to save a project whose folder is not there any more."""
+    """Ask where to save a project whose folder no longer exists."""
     box = QMessageBox(
         QMessageBox.Icon.Warning,
         tr("Not saved"),
@@ -111,9 +111,7 @@ def ask_folder_gone(window: QWidget, error: FolderGoneError) -> Gone | None:
 def ask_changed(
     window: QWidget, changed: FileChangedError, common: Project | None, mine: Project, dirty: bool
 ) -> Changed | None:
-    """Ask what to do when the project file is not the one that was read; the differences can be looked at
-    first.
-    """
+    """Ask what to do if the project file is not the one that was read; the differences can be shown first."""
     name = changed.path.name
     box = QMessageBox(
         QMessageBox.Icon.Question,
@@ -157,7 +155,7 @@ def ask_changed(
 
 
 class DifferencesDialog(QDialog):
-    """What the file on disk and the project here have become since they were the same."""
+    """Shows how the file on disk and the project here have changed since they were the same."""
 
     def __init__(
         self, changed: FileChangedError, common: Project | None, mine: Project, parent: QWidget | None = None

@@ -1,4 +1,4 @@
-"""What crashes left, each with a name, a time and a picture: gone on with, copied, kept or discarded."""
+"""Show what crashes left, each with a name, a time and a picture, to recover, copy, keep or discard."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ WORDS: dict[Choice, str] = lazy_texts(
 )
 PICTURE = QSize(132, 76)  # pixels
 LOST = 5  # damaged edits that are named
-SHOWN = 4  # sittings that are seen at once
+SHOWN = 4  # sittings that are visible at once
 
 
 def describe_left(left: Left, saved: Path | None) -> tuple[str, str]:
-    """Return what a sitting is called, and what is to be known of it. saved: the project that is being
-    opened; None where any sitting is listed.
+    """Return the name of a sitting, and what to know about it. `saved` is the project that is being opened;
+    None if all sittings are listed.
     """
     named = saved or project_of(left.path)
     name = named.name if named is not None else left.project.name or tr("untitled")
@@ -82,7 +82,7 @@ def describe_left(left: Left, saved: Path | None) -> tuple[str, str]:
 
 
 def describe_lost(left: Left) -> list[str]:
-    """Return what a damaged journal cannot give back, a line each; nothing for a whole one."""
+    """Return what a damaged journal cannot give back, one line each; nothing for a complete one."""
     words = []
     if left.lost:
         words.append(
@@ -122,7 +122,7 @@ def is_junk(path: Path) -> bool:
 
 
 def ask_recover(window: QWidget, found: FoundJournal, saved: Path | None) -> tuple[Choice, ...] | None:
-    """Ask what becomes of each sitting; None when that is put off. At most one is gone on with."""
+    """Ask what becomes of each sitting; None if the user postpones it. At most one is recovered."""
     dialog = RecoverDialog(found, saved, window)
     taken = dialog.exec() == QDialog.DialogCode.Accepted
     choices = dialog.choices()
@@ -131,7 +131,7 @@ def ask_recover(window: QWidget, found: FoundJournal, saved: Path | None) -> tup
 
 
 class ChoiceField(QComboBox):
-    """What becomes of a sitting; scrolling never changes it."""
+    """Chooses what becomes of a sitting; scrolling never changes it."""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()
@@ -161,7 +161,7 @@ class RecoverDialog(QDialog):
         self.fields: list[ChoiceField] = []
         offered: list[Choice] = ["recover", "copy", "later", "discard"]
         if saved is None:
-            offered.remove("copy")  # there is nothing to lie beside
+            offered.remove("copy")  # there is no project file to save it beside
         for n, left in enumerate(found.left):
             name, words = describe_left(left, saved)
             grid.addWidget(SittingPicture(left.project, found.poses.get(left.path), rows), n, 0)
@@ -197,11 +197,11 @@ class RecoverDialog(QDialog):
         layout.addWidget(buttons)
 
     def choices(self) -> tuple[Choice, ...]:
-        """Return what is chosen for each sitting, in the order they were given."""
+        """Return the choice for each sitting, in the given order."""
         return tuple(field.currentData() for field in self.fields)
 
     def _only(self, chosen: ChoiceField) -> None:
-        """A window goes on with one of them."""
+        """Let a window recover only one of them."""
         if chosen.currentData() == "recover":
             for field in self.fields:
                 if field is not chosen and field.currentData() == "recover":
@@ -224,7 +224,7 @@ def _escaped(text: str) -> str:
 
 
 class SittingPicture(QWidget):
-    """The figure as it stands first, beside what is on the layers: told apart at a glance."""
+    """The figure in its first pose, beside the content of the layers, to recognise a sitting at a glance."""
 
     def __init__(self, project: Project, clip: Clip | None, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -259,7 +259,7 @@ class SittingPicture(QWidget):
             painter.drawLine(*(QPointF(x + scale * (a - middle), y - scale * (b - low[1])) for a, b in bone))
 
     def _paint_layers(self, painter: QPainter, room: QRectF) -> None:
-        """A bar for each layer, in the colours of what is on it."""
+        """Paint a bar for each layer, in the colours of what is on it."""
         look = theme("dark" if self.palette().window().color().lightness() < 128 else "light")
         high = room.height() / len(LAYERS)
         counts = {
@@ -280,8 +280,8 @@ class SittingPicture(QWidget):
 
 
 def _figure(clip: Clip) -> np.ndarray | None:
-    """Return the bones of a clip's first pose, as the preview's stick figure has them: where each begins and
-    ends, across and up `[B, 2, 2]`. None where there are none.
+    """Return the bones of a clip's first pose, as in the preview's stick figure: where each begins and ends,
+    across and up `[B, 2, 2]`. None if there are none.
     """
     skeleton = clip.skeleton
     if len(skeleton) < 2 or not clip.frames:

@@ -1,6 +1,4 @@
-"""Shows files and folders in the system's file manager, which only shows them: nothing of a project is
-opened as a program.
-"""
+"""Show files and folders in the system's file manager; nothing in a project is opened as a program."""
 
 from __future__ import annotations
 
@@ -15,8 +13,8 @@ from metagraph.common.programs import run_program, system_program
 
 
 def reveal_command(path: Path, platform: str = sys.platform) -> tuple[str, list[str]] | None:
-    """Return the name of the system's program, with its arguments, that shows a file in its folder; None
-    where there is none that can be relied on.
+    """Return the name of the system's program, with its arguments, that shows a file in its folder; None if
+    there is no reliable one.
     """
     if platform == "win32":
         return "explorer", ["/select,", str(path).replace("/", "\\")]
@@ -26,15 +24,15 @@ def reveal_command(path: Path, platform: str = sys.platform) -> tuple[str, list[
 
 
 def reveal(path: Path) -> None:
-    """Show a file; where it is gone, the nearest folder that is there."""
+    """Show a file; if it is gone, the nearest folder that exists."""
     if path.exists() and _shown(path):
         return
     open_folder(next((p for p in path.parents if p.is_dir()), Path.home()))
 
 
 def open_folder(folder: Path) -> None:
-    """Show what is in a folder. What is no folder is not opened, and on macOS a folder that is a program is
-    shown, too, not started.
+    """Show the content of a folder. Only folders are opened; on macOS, a folder that is a program is shown,
+    not started.
     """
     if not folder.is_dir() or (sys.platform == "darwin" and folder.suffix and _shown(folder)):
         return

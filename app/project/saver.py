@@ -1,4 +1,4 @@
-"""Saving on a thread: one writing after another, told when done, waited for at closing."""
+"""Save on a thread: one writing after another, reported when done, waited for on closing."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from app.translation import tr, tr_phrase
 
 
 class Saver(QObject):
-    """saved: the path that was written, and whether its own file was not there any more. noted: that path,
-    and a remark. failed: why not, and the place asked for (None: its own). changed: FileChangedError, when
-    another program has written the file. gone: FolderGoneError, when its folder is not there any more. idle:
-    nothing is being written any more.
+    """Saves the document.
+
+    `saved` has the path that was written, and whether its own file had been missing. `noted` has that path
+    and a remark. `failed` has the reason, and the requested place (None: its own). `changed` has a
+    FileChangedError if another program has written the file, `gone` a FolderGoneError if its folder no longer
+    exists. `idle` is emitted when nothing is being written any more.
     """
 
     saved = Signal(object, bool)
@@ -39,14 +41,14 @@ class Saver(QObject):
         return self._writing is not None
 
     def save(self, path: Path | None = None, anyway: bool = False) -> None:
-        """Begin to write the project as it is now, or as it is when what is being written is done. anyway:
-        whatever its file has become.
+        """Begin to write the current project, or its later state once the present writing is done. With
+        `anyway`, whatever has happened to its file.
         """
         if self._writing is not None:
             self._next.append((path, anyway))
             return
         document = self.document
-        document.finish_merging()  # what comes now is not saved with it, and is a step of its own
+        document.finish_merging()  # later edits are not saved with it, and are a step of their own
         writing = self._writing = document.begin_saving(path)
         self._left = False
         expected = document.digest if writing.target == document.path and not anyway else None
@@ -64,8 +66,8 @@ class Saver(QObject):
         )
 
     def wait(self) -> bool:
-        """Wait until nothing is being written, with the window painted but taking no input; return whether
-        all edits are saved.
+        """Wait until nothing is being written, with the window painted but without input; return whether all
+        edits are saved.
         """
         while self.busy:
             loop = QEventLoop()

@@ -1,5 +1,5 @@
-"""Which files are a conversation: sounds and transcripts among what is dropped, and what lies beside a
-sound.
+"""Find which files are a conversation: sounds and transcripts among dropped files, and files beside
+a sound.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from app.translation import tr_plural
 from metagraph.graph.conversation.model import MOST_SPEAKERS
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
-# Three sounds or more are of one conversation where they differ in length by so many seconds at most, and are
-# longer than lines of dialogue, which may be alike by chance.
+# Three sounds or more belong to one conversation if they differ in length by at most this many seconds, and
+# are longer than lines of dialogue, which may have equal lengths by chance.
 UNLIKE, LONG = 0.5, 10.0
 TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
 
@@ -26,8 +26,8 @@ def sort_speech_files(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Pa
 
 
 def is_conversation(paths: Sequence[Path]) -> bool:
-    """Whether files dropped on the window are a conversation: two sounds, or more that last long and as
-    long as each other, a sound and its words, or a sound with a channel for each. A single sound with one
+    """Return whether files dropped on the window are a conversation: two sounds, or more that are long and of
+    equal length, a sound and its words, or a sound with a channel for each speaker. A single sound with one
     channel is a line of dialogue, and so is each of many.
     """
     sounds, transcripts = sort_speech_files(paths)
@@ -40,7 +40,7 @@ def is_conversation(paths: Sequence[Path]) -> bool:
 
 
 def channels_of(path: Path) -> int:
-    """Return how many channels a sound file has, by its head; 0 where that cannot be read."""
+    """Return how many channels a sound file has, from its header; 0 if that cannot be read."""
     import soundfile
 
     try:
@@ -50,7 +50,7 @@ def channels_of(path: Path) -> int:
 
 
 def read_sound_seconds(path: Path) -> float:
-    """Return how long a sound file is, by its head; 0 where that cannot be read."""
+    """Return the length of a sound file in seconds, from its header; 0 if that cannot be read."""
     import soundfile
 
     try:
@@ -60,7 +60,7 @@ def read_sound_seconds(path: Path) -> float:
 
 
 def facts_of(path: Path) -> str:
-    """Return a sound file's name with its channels and length, by its head; the name alone where that cannot
+    """Return a sound file's name with its channels and length, from its header; only the name if that cannot
     be read.
     """
     import soundfile
@@ -75,7 +75,7 @@ def facts_of(path: Path) -> str:
 
 
 def find_transcripts_beside(sounds: Sequence[Path]) -> tuple[Path, ...]:
-    """Return the transcripts that lie beside sounds and are called like them, one a sound."""
+    """Return the transcripts beside sounds with the same names, at most one for each sound."""
     out = []
     for sound in sounds:
         try:

@@ -1,5 +1,5 @@
-"""Work that is in no file after a crash, wherever it lies: each sitting offered, one gone on with, the others
-kept or discarded.
+"""Offer unsaved work after a crash, wherever it is: one sitting can be recovered, the others kept or
+discarded.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from metagraph.formats.store import Opened, absolute
 
 
 class Unsaved(QObject):
-    """The part of a window's files that is in journals alone."""
+    """The part of a window's files that is only in journals."""
 
     def __init__(self, files: FilesHost) -> None:
         super().__init__(files.window)
         self.files = files
 
     def offer(self, otherwise: Callable[[], object] | None = None) -> None:
-        """Offer what opening no project would offer; where nothing is, or is gone on with, do `otherwise`, or
-        say so.
+        """Offer what opening a project would not offer. If there is nothing, or nothing is recovered, call
+        `otherwise` or say so.
         """
         journals = list_untitled_journals()
         if not journals:
@@ -43,7 +43,7 @@ class Unsaved(QObject):
         self._read(lambda: journals, otherwise)
 
     def offer_all(self) -> None:
-        """Offer every journal there is, wherever it lies."""
+        """Offer every journal, wherever it is."""
         recent = self.files.recent()
         path = self.files.document.path
         self._read(lambda: list_known_journals([*recent, path] if path is not None else recent), None)
@@ -107,7 +107,7 @@ class Unsaved(QObject):
             self._take_over(chosen)
 
     def _take_over(self, left: Left) -> None:
-        """Go on with a sitting: in its project file's place, where that has a folder still."""
+        """Continue with a sitting, in its project file's place if that still has a folder."""
         files = self.files
         document, before = files.document, files.document.project
         saved = project_of(left.path)
@@ -120,7 +120,7 @@ class Unsaved(QObject):
             if document.project is not before and not files.may_leave():
                 return  # it is offered again another time
             opened, steps = result
-            if saved is not None:  # its folder is gone: it is a project that was never saved
+            if saved is not None:  # its folder is gone, so it becomes a project that was never saved
                 steps = ()
             project = opened.project if saved is None else absolute(opened.project, folder)
             document.load(project, None, count_lost_steps(left, steps), steps=steps)
@@ -137,5 +137,5 @@ class Unsaved(QObject):
 
 
 def count_lost_steps(left: Left, steps: Sequence[UndoStep]) -> int:
-    """Return how many of a journal's edits are in no file and can no longer be undone one by one."""
+    """Return how many of a journal's edits are unsaved and can no longer be undone one by one."""
     return left.unsaved if steps else left.edits

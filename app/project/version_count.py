@@ -1,4 +1,6 @@
-"""How many earlier versions of a project a save keeps: one setting for the window and the command line."""
+"""Set how many earlier versions of a project a save keeps: one setting for the window and the
+command line.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ KEY = "versions"
 
 
 def version_count() -> int:
-    """Return how many versions are kept, 0 for none; METAGRAPH_VERSIONS goes before what the window set."""
+    """Return how many versions are kept, 0 for none; METAGRAPH_VERSIONS overrides the window's setting."""
     told = os.environ.get("METAGRAPH_VERSIONS")
     try:
         return max(0, min(MOST, int(str(_settings().value(KEY, KEPT) if told is None else told))))
@@ -25,5 +27,5 @@ def set_version_count(count: int) -> None:
 
 
 def _settings() -> QSettings:
-    """Return the window's settings, also for the command line, which has no application that is called so."""
+    """Return the window's settings, also for the command line, whose application has no such name."""
     return QSettings(QSettings.defaultFormat(), QSettings.Scope.UserScope, "Metagraph", "Metagraph")

@@ -1,8 +1,8 @@
-"""Clip files that change on disk, as when they are exported again, are read anew in place: timing and labels
-stay, one step to undo.
+"""Read clip files again, in place, when they change on disk, for example after another export: timing and
+labels stay, and it is one step to undo.
 
-Files that were missing and are back are read, too; and whoever asks is told when the project's own file may
-have changed.
+Files that were missing and are back are read, too. A signal says when the project's own file may have
+changed.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from metagraph.formats.imports import Imported, import_files
 from metagraph.formats.store import Opened, load_returned
 from metagraph.graph.model import ClipEntry
 
-EVERY = 1500  # ms between two looks; files on network drives tell nobody when they change
-SHARE = 20  # one part in so many of the time, at most, is spent looking
-State = tuple[int, int] | None  # of a file: when it was written, and its size; None while it is not there
+EVERY = 1500  # ms between two checks; files on network drives give no notice of changes
+SHARE = 20  # the inverse of the largest share of time spent on checks
+State = tuple[int, int] | None  # of a file: modification time and size; None while it is missing
 
 
 class Watcher(QObject):
-    """Looks at the files of the project's clips. told: words for the status bar. file_touched: look whether
-    the project file changed.
+    """Checks the files of the project's clips. `told` has words for the status bar. `file_touched` asks to
+    check whether the project file changed.
     """
 
     told = Signal(str)
@@ -40,8 +40,8 @@ class Watcher(QObject):
         super().__init__(parent)
         self.document, self.jobs = document, jobs
         self._known: dict[str, State] = {}  # as they were last read
-        self._changing: dict[str, State] = {}  # seen to have changed, perhaps still being written
-        self._clips: Mapping[str, ClipEntry] = {}  # those that `_paths` are of
+        self._changing: dict[str, State] = {}  # changed, and perhaps still being written
+        self._clips: Mapping[str, ClipEntry] = {}  # the clips that `_paths` belongs to
         self._paths: list[str] = []
         self._missing: frozenset[str] = frozenset()  # those of clips without motion
         self._file: State = None  # the project file
@@ -56,16 +56,16 @@ class Watcher(QObject):
         return self._timer.isActive()
 
     def set_on(self, on: bool) -> None:
-        """Begin or end looking; what changed in between is not taken up."""
+        """Begin or end checking. Changes in between are not read."""
         self._forget()
         (self._timer.start if on else self._timer.stop)()
 
     def _forget(self) -> None:
-        self._known, self._changing = {}, {}  # new ones: a look may be under way
+        self._known, self._changing = {}, {}  # new ones, because a check may be running
         self._clips, self._file = {}, None
 
     def look(self) -> None:
-        """Look at the files once, on a thread."""
+        """Check the files once, on a thread."""
         if self._busy or not (self.document.project.clips or self.document.path):
             return
         self._busy = True
@@ -89,15 +89,15 @@ class Watcher(QObject):
         )
 
     def _gather(self) -> None:
-        """Find out which files are looked at; a clip whose motion came or went is another mapping of
-        clips.
+        """Find which files to check. If a clip's motion came or went, the mapping of clips is
+        another object.
         """
         clips = self.document.project.clips
         if clips is self._clips:
             return
         folder = str(self.document.folder or "")
         self._clips = clips
-        joined = os.path.join  # ten thousand paths as text take a tenth of what they take as `Path`
+        joined = os.path.join  # as text, ten thousand paths take a tenth of the time that `Path`s take
         missing = {e.path.replace("\\", "/") for e in clips.values() if e.motion is None}
         self._missing = frozenset(joined(folder, path) for path in missing)
         here = {joined(folder, path) for path in {e.path for e in clips.values() if e.motion is not None}}
@@ -111,7 +111,7 @@ class Watcher(QObject):
     ) -> None:
         self._busy = False
         if known is not self._known:
-            return  # another project was opened meanwhile
+            return  # another project was opened in the meantime
         if self.on:
             self._timer.setInterval(max(EVERY, int(seconds * 1000 * SHARE)))
         if file != self._file:
@@ -119,7 +119,7 @@ class Watcher(QObject):
             self.file_touched.emit()
         ready = [
             path for path, state in now.items() if self._changing.get(path, ()) == state
-        ]  # whoever writes it is done
+        ]  # the program that writes it is done
         self._changing = {path: state for path, state in now.items() if path not in ready}
         self._known.update((path, now[path]) for path in ready)
         if ready:
@@ -191,10 +191,9 @@ def _state(path: str) -> State:
 
 
 def _changed(paths: list[str], missing: frozenset[str], known: dict[str, State]) -> dict[str, State]:
-    """Return the states of files that are not as they are known, and note those that are seen for the first
-    time.
+    """Return the states of files that changed, and note those that are seen for the first time.
 
-    One that is not there is being replaced, or gone; what is missing is told elsewhere.
+    A missing file is being replaced, or gone; missing files are reported elsewhere.
     """
     out: dict[str, State] = {}
     for path in paths:

@@ -1,4 +1,4 @@
-"""Writing a project on a thread while it is edited on, one writing after another."""
+"""Write a project on a thread while editing continues, one writing after another."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from metagraph.graph.model import Project
 
 
 class FileChangedError(Exception):
-    """The project file is not the one that was read or saved last. theirs: what it holds now, None where that
-    cannot be read.
+    """Raised if the project file is not the one that was last read or saved. `theirs` is its present content,
+    None if that cannot be read.
     """
 
     def __init__(self, path: Path, theirs: Project | None, digest: str | None, why: str = "") -> None:
@@ -35,7 +35,7 @@ class FileChangedError(Exception):
 
 
 class FolderGoneError(FileError):
-    """The folder of a project is not there any more. place: where it is by now, None where nobody knows."""
+    """Raised if the folder of a project no longer exists. `place` is where it is now, None if unknown."""
 
     def __init__(self, path: Path, place: Path | None) -> None:
         self.place = place
@@ -52,12 +52,12 @@ class FolderGoneError(FileError):
 
 @dataclass
 class Writing:
-    """One writing of a project as it was when it was asked for.
+    """One writing of a project in the state in which it was requested.
 
-    was: the file its paths are relative to. mark: where it stands in the journal. versions: how many earlier
-    ones are kept. home: what the folder of its own file is known by. access: who may read it. When it is
-    written: after, the project as the file has it, digest, that file's SHA-256, note, why its earlier version
-    could not be kept, and anew, whether its own file was not there any more.
+    `was` is the file its paths are relative to. `mark` is its position in the journal. `versions` is the
+    number of earlier ones that are kept. `home` identifies the folder of its own file. `access` says who may
+    read it. After writing: `after` is the project as in the file, `digest` the file's SHA-256, `note` the
+    reason if its earlier version could not be kept, and `anew` whether its own file had been missing.
     """
 
     project: Project
@@ -74,8 +74,8 @@ class Writing:
     note: str | None = None
 
     def write(self, expected: str | None = None) -> None:
-        """Write the file whole or not at all. expected: the digest it has to have. Raises FileError,
-        FileChangedError.
+        """Write the file, whole or not at all. `expected` is the digest that the old file must have. Raises
+        FileError, FileChangedError.
         """
         if self.target == self.was:
             self._look_for_folder()
@@ -92,13 +92,13 @@ class Writing:
             if changed is not None and changed.digest != self.digest:
                 raise changed
         if self.journal is not None and self.mark is not None:
-            with suppress(FileError):  # what cannot be journalled is to be saved all the same
+            with suppress(FileError):  # what cannot be journalled must be saved in any case
                 self.journal.settle(self.mark, self.digest)
         self.note = write_project(self.target, content, self.versions, self.access)
 
     def _look_for_folder(self) -> None:
-        """Raise FolderGoneError where the folder has gone or has another name: nobody looks for the project
-        in a new one.
+        """Raise FolderGoneError if the folder is gone or has another name, because nobody would look for the
+        project in a new one.
         """
         folder = self.target.parent
         there = identity_of(folder)
@@ -110,11 +110,11 @@ class Writing:
 
 
 def find_file_change(path: Path, expected: str) -> FileChangedError | None:
-    """Return how a project file has changed; None when it has not, or is not there."""
+    """Return how a project file has changed; None if it has not, or is missing."""
     try:
         now = file_digest(path)
     except FileError:
-        return None  # whoever writes or reads it will say so
+        return None  # the code that writes or reads it will report this
     if now is None or now == expected:
         return None
     try:
@@ -124,7 +124,7 @@ def find_file_change(path: Path, expected: str) -> FileChangedError | None:
 
 
 def name_after_file(path: Path) -> str:
-    """Return what a project saved as `path` is called: the file's name without `.metagraph.yaml`."""
+    """Return the name of a project saved as `path`: the file's name without `.metagraph.yaml`."""
     name = path.name
     for suffix in (SUFFIX, ".yaml", ".yml"):
         if name.lower().endswith(suffix) and len(name) > len(suffix):

@@ -1,1 +1,1 @@
-"""The window round the features: docks, menus, header, status. It knows no feature by name."""
+"""Build the window around the features: docks, menus, header, status bar. It knows no feature by name."""

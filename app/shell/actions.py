@@ -1,5 +1,5 @@
-"""The commands of all features as data: one table makes the menus, the header, the shortcuts and the list of
-shortcuts.
+"""Define the commands of all features as data: one table makes the menus, the header, the shortcuts and the
+list of shortcuts.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from app.widgets.soon import Soon
 Standard = QKeySequence.StandardKey
 Words = str | Callable[..., str]
 
-# The menus with their groups, in order; a line is drawn between groups. A group that is not named here comes
-# last in its menu.
+# The menus with their groups, in order; a line separates groups. A group that is not listed here comes last
+# in its menu.
 MENUS: dict[str, tuple[str, ...]] = {
     tr_noop("&File"): ("project", "save", "import", "character", "write", "quit"),
     tr_noop("&Edit"): ("history", "selection", "properties", "find"),
@@ -41,12 +41,12 @@ MENUS: dict[str, tuple[str, ...]] = {
 class Command:
     """Something a user can do.
 
-    id: stable. menu, group: where it stands, see `MENUS`. keys: shortcuts. tip: a word more than its text.
-    enabled, checked: asked whenever something changed. visible: whether it is in its menu. text may be asked
-    for, too. when: the mode in which it can be used. study: whether it is offered to who works on a study's
-    task; "labels": where the study allows proposals. menus: the context menus it is in, "action" or "clip" or
-    another's. fill: fills a submenu that is shown instead. In a table (`app/shell/command_table.py`) all
-    functions take the feature first.
+    `id` is stable. `menu` and `group` say where it is, see `MENUS`. `keys` are its shortcuts. `tip` adds to
+    its text. `enabled` and `checked` are called whenever something changed, `visible` says whether it is in
+    its menu; `text` may be a function, too. `when` is the mode in which it can be used. `study` says whether
+    it is offered during a study's task; "labels" offers it if the study allows proposals. `menus` are the
+    context menus it is in: "action", "clip" or others. `fill` fills a submenu that is shown instead. In a
+    table (`app/shell/command_table.py`) all functions take the feature first.
     """
 
     id: str
@@ -67,12 +67,12 @@ class Command:
 
     @property
     def words(self) -> str:
-        """The text as it is now."""
+        """Return the current text."""
         return self.text if isinstance(self.text, str) else self.text()
 
     @property
     def plain(self) -> str:
-        """The text without marks, as a tooltip or a list shows it."""
+        """Return the text without marks, as a tooltip or a list shows it."""
         return self.words.replace("&", "").rstrip("…")
 
 
@@ -82,10 +82,11 @@ def _run(command: Command) -> None:
 
 
 class Actions:
-    """The window's QActions by command id. `refresh` enables and checks them as things are now;
-    `refresh_soon` does so once for all changes that come in one go, or when somebody asks for one of them.
+    """The window's QActions by command id. `refresh` updates whether they are enabled and checked;
+    `refresh_soon` does so once for several changes at a time, or when one of them is needed.
 
-    allowed: which commands may be used at all; None for every one. mode: what is edited now.
+    `allowed` says which commands may be used at all; None allows every one. `mode` returns what is edited
+    now.
     """
 
     def __init__(self, parent: QWidget, commands: Iterable[Command], mode: Callable[[], str]) -> None:
@@ -95,15 +96,14 @@ class Actions:
         self._mode = mode
         self._soon = Soon(self.refresh, parent)
         self._made: dict[str, QAction] = {}
-        room = QObject(parent)  # the window is told of each child of its own
+        room = QObject(parent)  # a window handles an event for each child of its own
         for command in self.commands:
             if command.id in self._made:
                 raise ValueError(f"two commands are called {command.id!r}")
             action = QAction(command.words, room)
             action.setObjectName(command.id)
             if command.keys:
-                # A platform's standard key may be the one that is given beside it; twice, it would be
-                # ambiguous.
+                # A platform's standard key may equal the one given beside it; twice, it would be ambiguous.
                 keys_once = dict.fromkeys(QKeySequence(k).toString() for k in command.keys)
                 action.setShortcuts([QKeySequence(k) for k in keys_once])
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
@@ -121,7 +121,7 @@ class Actions:
 
     @property
     def by_id(self) -> dict[str, QAction]:
-        """All of them, as things are now."""
+        """Return all of them, up to date."""
         self.settle()
         return self._made
 
@@ -132,7 +132,7 @@ class Actions:
         return ident in self._made
 
     def of_menu(self, name: str) -> list[QAction]:
-        """Return the actions that go into a context menu, in the menus' order."""
+        """Return the actions of a context menu, in the menus' order."""
         return [self._made[c.id] for c in self.commands if name in c.menus]
 
     def fill(self, bar: QMenuBar) -> dict[str, QMenu]:
@@ -153,15 +153,15 @@ class Actions:
         return menus
 
     def settle(self) -> None:
-        """Show every command as it is now, where that is still to be done."""
+        """Update every command, if that is still to be done."""
         self._soon.now()
 
     def refresh_soon(self) -> None:
-        """Show every command as it is once what changes it is over."""
+        """Update every command once the present changes are over."""
         self._soon.ask()
 
     def refresh(self) -> None:
-        """Show every command as it is now."""
+        """Update every command now."""
         self._soon.done()
         mode = self._mode()
         for command in self.commands:
@@ -180,7 +180,7 @@ class Actions:
 
 
 def _in_order(commands: tuple[Command, ...]) -> tuple[Command, ...]:
-    """Return commands by menu and group; within a group as they came."""
+    """Return commands by menu and group; within a group in the given order."""
     menus = list(MENUS)
 
     def place(command: Command) -> tuple[int, str, int]:

@@ -1,4 +1,4 @@
-"""Puts docks into the areas of a workspace, and gives each area its share."""
+"""Put docks into the areas of a workspace, and give each area its share."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Filled = Mapping[str, Sequence[QDockWidget]]  # the docks of each area, the one 
 def arrange_docks(
     window: QMainWindow, docks: Sequence[QDockWidget], workspace: Workspace, filled: Filled, shown: set[str]
 ) -> None:
-    """Put all docks where a workspace has them. docks: all. filled: where each belongs. shown: the object
-    names of those that are to be seen; the others keep a place for when they are opened.
+    """Put all docks where a workspace has them. `filled` has the docks of each area. `shown` has the object
+    names of those that are visible; the others keep a place for when they are opened.
     """
     for dock in docks:
         dock.setFloating(False)
@@ -39,8 +39,8 @@ def arrange_docks(
 
 
 def share_window(workspace: Workspace, filled: Filled) -> dict[str, tuple[float, float]]:
-    """Return by name which part of the window's width and height each dock has that is not hidden; what an
-    empty area would have goes to those beside it.
+    """Return by name the share of the window's width and height for each dock that is not hidden. The share
+    of an empty area goes to those beside it.
     """
     out: dict[str, tuple[float, float]] = {}
     _share(workspace.tree, filled, 1.0, 1.0, out)
@@ -80,7 +80,7 @@ def _share(
 
 
 def _seen(part: str | Split, filled: Filled) -> bool:
-    """Return whether anything of a part is to be seen."""
+    """Return whether anything of a part is visible."""
     if isinstance(part, str):
         return any(not d.isHidden() for d in filled.get(part, ()))
     return any(_seen(inner, filled) for inner, _ in part.parts)

@@ -1,4 +1,4 @@
-"""A feature's commands as a static table, and what they are enabled by.
+"""Define a feature's commands as a static table, and the conditions that enable them.
 
 A table is a tuple of `Command`s whose functions take the feature and whose texts are marked by `tr_noop`.
 `bind_commands` makes the commands of one window from it. Named conditions enable commands; `all_met`,
@@ -28,7 +28,7 @@ class Feature:
 
 
 def bind_commands(table: Iterable[Command], feature: Feature) -> tuple[Command, ...]:
-    """Return a table's commands in the window's language, each done by the feature."""
+    """Return a table's commands in the window's language, with their functions bound to the feature."""
     return tuple(_bound(command, feature) for command in table)
 
 
@@ -43,17 +43,17 @@ def _bound(command: Command, feature: Feature) -> Command:
 
 
 def all_met(*conditions: Condition) -> Condition:
-    """Return the condition that all of them are met."""
+    """Return the condition that all conditions are met."""
     return lambda feature: all(met(feature) for met in conditions)
 
 
 def any_met(*conditions: Condition) -> Condition:
-    """Return the condition that one of them is met."""
+    """Return the condition that at least one condition is met."""
     return lambda feature: any(met(feature) for met in conditions)
 
 
 def not_met(condition: Condition) -> Condition:
-    """Return the condition that it is not met."""
+    """Return the condition that a condition is not met."""
     return lambda feature: not condition(feature)
 
 

@@ -1,5 +1,5 @@
-"""What the shell and the features know of each other: a feature's `contribute(shell)` takes a `Shell` and
-returns a `Contribution`.
+"""Define what the shell and the features know of each other: a feature's `contribute(shell)` takes a `Shell`
+and returns a `Contribution`.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ Place = Literal["left", "right", "right below", "bottom", "centre", "beside"]
 
 
 class Services:
-    """What the rooms below offer to all features, by class: `services[Files]`."""
+    """The services that lower layers offer to all features, by class: `services[Files]`."""
 
     def __init__(self) -> None:
         self._by_class: dict[type, Any] = {}
 
     def add(self, service: T) -> T:
-        """Offer a service under its own class; return it. Raises ValueError where there is one."""
+        """Offer a service under its own class; return it. Raises ValueError if there is one already."""
         if type(service) in self._by_class:
             raise ValueError(f"there is a {type(service).__name__} already")
         self._by_class[type(service)] = service
         return service
 
     def __getitem__(self, kind: type[T]) -> T:
-        """Return the service of a class. Raises LookupError where nobody offers one."""
+        """Return the service of a class. Raises LookupError if there is none."""
         try:
             found: T = self._by_class[kind]
         except KeyError:
@@ -46,8 +46,8 @@ class Services:
 
 
 class Shell(Protocol):
-    """What a feature is given. widget: the window as Qt knows it, the parent of dialogs. settings: kept
-    between programs.
+    """What a feature gets. `widget` is the window as Qt knows it, the parent of dialogs. `settings` are kept
+    between runs of the program.
     """
 
     document: Document
@@ -63,27 +63,30 @@ class Shell(Protocol):
     def settings(self) -> QSettings: ...
 
     def tell(self, words: str) -> None:
-        """Say something in the status bar."""
+        """Show a message in the status bar."""
 
     def panel(self, ident: str) -> Any:
-        """Return a panel's widget, which is made now where it was not made yet. Raises LookupError where
-        there is no such panel.
+        """Return a panel's widget, which is made now if it was not yet. Raises LookupError if there is no
+        such panel.
         """
 
     def show(self, ident: str, on: bool = True) -> None:
-        """Show a panel in front of those it shares its place with, or hide it."""
+        """Show a panel in front of those with the same place, or hide it."""
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel of the window. make: its widget. place: where it stands where all stand at once. late: made
-    when it is first seen or asked for, and not before the first picture. when: in which mode it is shown.
-    instead_of: the panel whose place it takes then. study: whether it is shown while somebody works on a
-    study's task. imports: modules that are imported on a thread before it is made because it is seen.
+    """A panel of the window.
 
-    where: by workspace the area in which it stands; the first is where it is at home. opens: by workspace
-    the area in which it opens when it is asked for. rank: which of an area's panels is in front, the lowest.
-    least: width and height in pixels, so small it can always be made; what needs more room is scrolled.
+    `make` makes its widget. `place` is where it is when all panels are shown at once. A `late` panel is made
+    when it is first seen or needed, and not before the first picture. `when` is the mode in which it is
+    shown, and `instead_of` the panel whose place it then takes. `study` says whether it is shown during a
+    study's task. `imports` are modules that are imported on a thread before it is made for being seen.
+
+    `where` has, by workspace, the area in which it is; the first workspace is its home. `opens` has, by
+    workspace, the area in which it opens on demand. `rank` says which of an area's panels is in front: the
+    lowest. `least` is the width and height in pixels to which it can always shrink; content that needs more
+    room is scrolled.
     """
 
     id: str
@@ -103,8 +106,8 @@ class Panel:
 
 @dataclass(frozen=True)
 class HeaderItem:
-    """Something in the bar on top. side: left, middle or right. make: its widget, or the id of a command to
-    show as a button.
+    """Something in the bar on top. `side` is left, middle or right. `make` makes its widget, or is the id of
+    a command to show as a button.
     """
 
     side: Literal["left", "middle", "right"]
@@ -113,7 +116,7 @@ class HeaderItem:
 
 @dataclass(frozen=True)
 class Contribution:
-    """What a feature adds to the window. close: called when the window closes."""
+    """What a feature adds to the window. `close` is called when the window closes."""
 
     panels: tuple[Panel, ...] = ()
     commands: tuple[Command, ...] = ()

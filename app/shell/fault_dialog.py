@@ -1,4 +1,4 @@
-"""What is said when something went wrong that nobody foresaw: a plain sentence, and a report to be kept."""
+"""Report unexpected errors: a plain sentence, and a report that can be saved."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 
-CHILDREN = 5000  # ms between two looks for what processes have written down
+CHILDREN = 5000  # ms between two checks for what processes have written
 
 
 def fault_folder() -> Path:
-    """Return where what ended the program is written."""
+    """Return the folder for reports of crashes."""
     return state_folder() / "faults"
 
 
 class FaultTeller(QObject):
-    """Tells of errors in the window, on its thread; first sees that the journal is on the disk."""
+    """Reports errors in the window, on its thread. First it makes sure that the journal is on the disk."""
 
     _arrived = Signal(object)
 
@@ -52,18 +52,18 @@ class FaultTeller(QObject):
         self._timer.start()
 
     def _note_step(self, index: int) -> None:
-        """Remember the first word of what was done: what comes after it may name something of the project."""
+        """Remember the first word of what was done; the words after it may name something of the project."""
         words = self.document.undo_stack.undoText().split()
         faults.note(f"step {index}: {words[0] if words else 'none'}")
 
     def stop(self) -> None:
         self._timer.stop()
-        self.document.undo_stack.indexChanged.disconnect(self._note_step)  # it tells of its end, too
+        self.document.undo_stack.indexChanged.disconnect(self._note_step)  # it also reports its own end
         if self._listener in faults.listeners:
             faults.listeners.remove(self._listener)
 
     def _show(self, told: faults.UncaughtError | Exception) -> None:
-        if isinstance(told, Exception):  # it says itself what can be done
+        if isinstance(told, Exception):  # its message says what can be done
             self.words(str(told))
             return
         safe = self.document.secured() or not self.document.dirty
@@ -74,7 +74,7 @@ class FaultTeller(QObject):
         dialog.show()
 
     def offer_left(self) -> None:
-        """Offer what ended the program the last time."""
+        """Offer the report of a crash that ended the program last time."""
         left = faults.read_crash_reports(fault_folder())
         if left:
             faults.note("started after it had ended by itself")
@@ -108,7 +108,7 @@ def _sentence(safe: bool) -> str:
 
 
 class FaultDialog(QDialog):
-    """Lies beside the window, which can be worked in. There is one; more faults are added to it."""
+    """A window beside the main one, which stays usable. There is only one; further faults are added to it."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)

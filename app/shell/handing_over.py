@@ -1,4 +1,4 @@
-"""A new window takes the place of an old one: same project, undo steps, file, selection and place."""
+"""Replace an old window by a new one with the same project, undo steps, file, selection and place."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.translation import tr
 
 
 def describe_running(window: Window) -> str:
-    """Return what would end if a window were replaced now, as a message; "" where nothing would."""
+    """Return a message about what would end if a window were replaced now, "" if nothing would."""
     if window.shell.jobs.running:
         title = window.shell.jobs.running[0].title
         return tr("The language changes once '{job}' has finished.", job=title)
@@ -20,7 +20,7 @@ def describe_running(window: Window) -> str:
 
 
 def hand_over(old: Window, new: Window) -> None:
-    """Show `new` instead of `old`, with all that the user did and sees in it; `old` is closed."""
+    """Show `new` instead of `old`, with everything that the user did and sees in it; `old` is closed."""
     new.restoreGeometry(old.saveGeometry())
     new.shell.document.take_over(old.shell.document)
     new.shell.files.opened.emit()

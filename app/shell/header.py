@@ -1,5 +1,5 @@
-"""The bar on top: the project's name, and what features put into it at the left, in the middle, at the
-right.
+"""Show the bar on top: the project's name, and what features add at the left, in the middle and at
+the right.
 """
 
 from __future__ import annotations
@@ -18,13 +18,11 @@ from app.shell.context import HeaderItem
 from app.stage.session import StageSession
 from app.translation import tr
 
-NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window that has room for three times that
+NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window with room for three times that
 
 
 class Header(QToolBar):
-    """Shows the document's name and whether it is saved; its other parts follow what they show by
-    themselves.
-    """
+    """Shows the document's name and whether it is saved. Its other parts update themselves."""
 
     def __init__(
         self,
@@ -59,7 +57,7 @@ class Header(QToolBar):
                 self.addSeparator()
 
     def refresh(self) -> None:
-        """Show name and dirty mark as they are now."""
+        """Show the current name and whether it is saved."""
         d = self.document
         saved = tr("unsaved") if d.path is None else tr("edited") if d.dirty else tr("saved")
         saved = tr("read-only, {saved}", saved=saved) if d.read_only else saved
@@ -68,7 +66,7 @@ class Header(QToolBar):
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
         words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         self.name.setToolTip(f"{d.project.name}, {saved}")
-        if words != self.name.text():  # rich text is laid out anew each time
+        if words != self.name.text():  # rich text is laid out again each time
             self.name.setText(words)
 
     def resizeEvent(self, event: QResizeEvent) -> None:

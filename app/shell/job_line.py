@@ -1,4 +1,4 @@
-"""The running job in the status bar: what it does, how far it is, and a way to stop it."""
+"""Show the running job in the status bar: what it does, its progress, and a way to stop it."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from app.project.jobs import Jobs
 from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 
-PAUSE = 40  # milliseconds between two stands of the bar
+PAUSE = 40  # milliseconds between two updates of the bar
 
 
 class JobLine(QWidget):
-    """Hidden while nothing runs. told: words for the status bar."""
+    """The job in the status bar, hidden while nothing runs. `told` has words for the status bar."""
 
     told = Signal(str)
 
@@ -30,7 +30,7 @@ class JobLine(QWidget):
             row.addWidget(widget)
         jobs.changed.connect(self._show)
         jobs.outlived.connect(self._tell_end)
-        self._latest: tuple[int, int, str] | None = None  # told, and not shown yet
+        self._latest: tuple[int, int, str] | None = None  # reported, but not shown yet
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._show_progress)
         self.hide()
@@ -50,8 +50,8 @@ class JobLine(QWidget):
             self._show_progress()
 
     def _show_progress(self) -> None:
-        """Show what was told last. A bar is painted at once whenever it moves, which takes longer than many a
-        step of a job.
+        """Show the latest progress. A bar is painted at once whenever it moves, which takes longer than many
+        steps of a job.
         """
         if self._latest is None:
             return
@@ -63,7 +63,7 @@ class JobLine(QWidget):
             self.label.setText(f"{self.jobs.running[-1].title}: {words}")
 
     def _tell_end(self, title: str, error: Exception | None, stands: bool) -> None:
-        """Say how a job ended whose dialog was closed."""
+        """Report how a job ended whose dialog was closed."""
         if error is not None:
             self.told.emit(tr("{title}: {error}", title=title, error=tr_error(error)))
         elif stands:

@@ -1,5 +1,5 @@
-"""The keyboard: commands have their keys whatever is typed in, those of the number pad, too, and a dialog
-gives the focus back to what had it.
+"""Handle the keyboard: commands have their keys in every field, also those of the number pad, and a dialog
+returns the focus.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from shiboken6 import isValid
 
 from app.shell.actions import Actions, Standard
 
-# What a field does with its own text stays the field's.
+# Keys for a field's own text stay with the field.
 EDITING = (
     Standard.Undo, Standard.Redo, Standard.Cut, Standard.Copy, Standard.Paste, Standard.SelectAll,
     Standard.Delete, Standard.DeleteStartOfWord, Standard.DeleteEndOfWord, Standard.Backspace,
@@ -24,7 +24,7 @@ HELD = (
 
 
 class Keyboard(QObject):
-    """Watches what has the focus, and the window for keys that nothing in it wants."""
+    """Watches the focus, and the window for keys that nothing in it handles."""
 
     def __init__(self, window: QMainWindow, actions: Actions) -> None:
         super().__init__(window)
@@ -39,7 +39,7 @@ class Keyboard(QObject):
 
     def _moved(self, old: QWidget | None, new: QWidget | None) -> None:
         left = self._watched
-        if left is not None and left is not self.window and isValid(left):  # the window is watched all along
+        if left is not None and left is not self.window and isValid(left):  # the window is always watched
             left.removeEventFilter(self)
         self._watched = None
         if new is None:
@@ -62,7 +62,7 @@ class Keyboard(QObject):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if watched is self.window and event.type() == QEvent.Type.ShortcutOverride:
-            self.actions.settle()  # a key may come in one go with what makes its command one that can be used
+            self.actions.settle()  # a key may come right after the change that enables its command
         if watched is self._watched and event.type() == QEvent.Type.ShortcutOverride:
             return isinstance(event, QKeyEvent) and self._ours(event)
         if watched is self.window and isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
@@ -74,8 +74,8 @@ class Keyboard(QObject):
         return False
 
     def _number_pad(self, event: QKeyEvent) -> bool:
-        """Run the command of a number pad's key that nothing in the window wanted: on X11 Qt's shortcuts are
-        asked for the plain digit alone, and never for "Num+3".
+        """Run the command of a number pad's key that nothing in the window handled: on X11, Qt only checks
+        shortcuts for the plain digit, never for "Num+3".
         """
         if not event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
             return False
@@ -88,8 +88,8 @@ class Keyboard(QObject):
         return action is not None
 
     def _ours(self, event: QKeyEvent) -> bool:
-        """Keep a key from a field that would take it for itself, where it is a command's: Ctrl+E goes to the
-        end of a line on some systems, and exports here.
+        """Keep a command's key from a field that would use it itself: Ctrl+E goes to the end of a line on
+        some systems, and exports here.
         """
         key, held = event.key(), event.modifiers() & HELD
         function = Qt.Key.Key_F1 <= key <= Qt.Key.Key_F35
@@ -102,14 +102,14 @@ class Keyboard(QObject):
         return ours
 
     def _give_back(self) -> None:
-        """Give the focus back to what had it before a dialog came."""
+        """Return the focus to the widget that had it before a dialog opened."""
         if not isValid(self.window) or not self.window.isVisible():
             return
         if QApplication.activeModalWidget() is not None or QApplication.activePopupWidget() is not None:
             return
         over = QApplication.activeWindow()
         if isinstance(over, QDialog) and over.isVisible():
-            return  # another one is used now
+            return  # another dialog is used now
         self.window.activateWindow()
         last = self._last
         if last is not None and isValid(last) and last.isVisible() and not last.hasFocus():

@@ -1,4 +1,4 @@
-"""The menu that chooses the language of the window."""
+"""Define the menu that chooses the language of the window."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from app.translation import tr
 
 
 def language_command(shell: Shell, chosen: Callable[[str], object]) -> Command:
-    """Return the command whose menu lists the languages, each as it calls itself. chosen: called with one."""
+    """Return the command whose menu lists the languages, each by its own name. `chosen` is called with the
+    code of one.
+    """
 
     def choose(code: str) -> None:
         shell.settings.setValue("language", code)

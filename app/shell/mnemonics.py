@@ -1,4 +1,4 @@
-"""Keys that choose in an open menu: each stands for one entry, in any language."""
+"""Assign the keys that choose in an open menu: each belongs to one entry, in any language."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ from functools import lru_cache
 
 @lru_cache(maxsize=256)
 def with_distinct_keys(texts: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the texts of one menu with a key for one entry at most: the first that marks a key keeps it, and
-    one that marks it again has another of its letters, beginnings of words first, or none where all are
-    taken.
+    """Return the texts of one menu, with each key used for at most one entry. The first text that marks a key
+    keeps it. A later one gets another of its letters, beginnings of words first, or none if all are taken.
 
     A text without a mark stays without.
     """
-    taken: dict[str, int] = {}  # key -> which has it
+    taken: dict[str, int] = {}  # key -> index of its text
     for place, text in enumerate(texts):
         key = mnemonic_key(text)
         if key:
@@ -36,13 +35,13 @@ def with_distinct_keys(texts: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def mnemonic_key(text: str) -> str:
-    """Return the key that a text marks, in lower case; "" where it marks none."""
+    """Return the key that a text marks, in lower case; "" if it marks none."""
     place = _marked(text)
     return text[place + 1].lower() if place is not None else ""
 
 
 def _marked(text: str) -> int | None:
-    """Return where the mark is; two stand for one that is shown."""
+    """Return where the mark is. Two in a row are one visible "&"."""
     place = 0
     while (place := text.find("&", place)) >= 0 and place + 1 < len(text):
         if text[place + 1] != "&":
@@ -57,7 +56,7 @@ def _without(text: str) -> str:
 
 
 def _offered(plain: str) -> Iterator[int]:
-    """Yield places of letters and digits: those that begin words, then the others."""
+    """Yield the indices of letters and digits: those that begin words, then the others."""
     begins = [n for n, c in enumerate(plain) if c.isalnum() and (n == 0 or not plain[n - 1].isalnum())]
     yield from begins
     yield from (n for n, c in enumerate(plain) if c.isalnum() and n not in begins)

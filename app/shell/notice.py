@@ -1,5 +1,5 @@
-"""A word in the status bar that stays until it is looked at: something is worth reading, and stands in
-nobody's way.
+"""Show a text in the status bar that stays until it is clicked: something is worth reading, and blocks
+nobody.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QToolButton, QWidget
 
 
 class Notice(QToolButton):
-    """Hidden while there is nothing to read; a click shows it, and the notice is gone."""
+    """Hidden while there is nothing to read. A click shows it, and removes the notice."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)

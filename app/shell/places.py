@@ -1,5 +1,5 @@
-"""Where panels are: each in a dock, and the docks in the areas of a workspace; they can be moved, hidden, and
-put back.
+"""Place panels: each is in a dock, and the docks are in the areas of a workspace; they can be moved, hidden,
+and put back.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ BEHIND = 6  # the rank of panels above which they are behind the others where al
 
 
 class Room(QScrollArea):
-    """What a dock holds: it can always be made as small as it says, whatever is in it and whenever that was
-    made.
+    """What a dock holds. It can always shrink to its minimum, whatever is in it and whenever that
+    was made.
     """
 
     def __init__(self, least: tuple[int, int], parent: QWidget) -> None:
@@ -56,7 +56,7 @@ class Room(QScrollArea):
 
 
 def fetch_now(names: Iterable[str], then: Callable[[], object]) -> None:
-    """Import modules, and go on."""
+    """Import modules, then continue."""
     for name in names:
         import_module(name)
     then()
@@ -64,12 +64,12 @@ def fetch_now(names: Iterable[str], then: Callable[[], object]) -> None:
 
 class PanelPlaces:
     """The panels' docks. A dock is empty until its panel is made: those of the first picture before it is
-    painted, each other once its dock is seen in front of those it shares its place with, or somebody asks for
-    it. Many never are.
+    painted, every other one once its dock is seen in front of those with the same place, or when it is
+    needed. Many never are.
 
-    docks: by the panel's id. centre: the panels that take turns in one dock, and what stands beside them.
-    workspace: the one whose areas the docks are in. ready: the first picture is painted, panels are made when
-    they are seen. fetch: imports what a panel needs, and goes on then.
+    `docks` are by the panel's id. `centre` has the panels that alternate in one dock, and those beside them.
+    `workspace` is the one whose areas the docks are in. `ready` means that the first picture is painted, so
+    that panels are made when they are seen. `fetch` imports what a panel needs, and then continues.
     """
 
     def __init__(self, window: QMainWindow, panels: Iterable[Panel], session: StageSession) -> None:
@@ -81,8 +81,8 @@ class PanelPlaces:
         self._in_sight: dict[str, bool] = {}  # docks
         self._soon = Soon(self._fill, window)
         self._made: dict[str, QWidget] = {}
-        self._beside: set[str] = set()  # what is wanted beside the centre
-        self._before: QByteArray | None = None  # how it was before one panel had the whole window
+        self._beside: set[str] = set()  # what should be visible beside the centre
+        self._before: QByteArray | None = None  # the arrangement before one panel had the whole window
         self._shares = ""
         self._hidden: list[QWidget] = []  # bars, while one panel has the whole window
         self._bare: QDockWidget | None = None
@@ -106,7 +106,9 @@ class PanelPlaces:
         session.onstage.mode_changed.connect(self.follow_mode)
 
     def dock(self, ident: str) -> QDockWidget:
-        """Return the dock in which a panel is, alone, by turns or beside another. Raises LookupError."""
+        """Return the dock in which a panel is, alone, in turn with others or beside another. Raises
+        LookupError.
+        """
         panel = self.panels.get(ident)
         if panel is None:
             raise LookupError(f"there is no panel {ident!r}")
@@ -126,7 +128,7 @@ class PanelPlaces:
                 self.panel(panel.id)
 
     def make_late(self) -> None:
-        """Make what is seen by now and was left out for a fast start."""
+        """Make the visible panels that were left out for a fast start."""
         if self.ready:
             return
         self.ready = True
@@ -135,14 +137,14 @@ class PanelPlaces:
         self.follow_mode()
 
     def make_all(self) -> None:
-        """Make every panel, seen or not, of whatever mode."""
+        """Make every panel of every mode, visible or not."""
         self.ready = True
         for ident in self.panels:
             self.panel(ident)
         self.follow_mode()
 
     def lacking(self) -> list[Panel]:
-        """Return the panels that are to be seen now and are not made yet."""
+        """Return the panels that should be visible now and are not made yet."""
         mode = self.session.onstage.mode
         return [
             panel
@@ -154,17 +156,17 @@ class PanelPlaces:
         ]
 
     def to_import(self) -> list[str]:
-        """Return the modules that those need and that are not imported yet."""
+        """Return the modules that these need and that are not imported yet."""
         return [name for panel in self.lacking() for name in panel.imports if name not in sys.modules]
 
     def _seen(self, ident: str, seen: bool) -> None:
-        """A dock came into sight or left it, perhaps only for as long as others take to come before it."""
+        """Note that a dock came into sight or left it, perhaps only until others come before it."""
         self._in_sight[ident] = seen
         if seen:
             self._soon.ask()
 
     def _fill(self) -> None:
-        """Make what is seen now and was not before."""
+        """Make the panels that are visible now and were not before."""
         if not self.ready:
             return
         names = self.to_import()
@@ -175,7 +177,7 @@ class PanelPlaces:
             self.panel(panel.id)
 
     def panel(self, ident: str) -> QWidget:
-        """Return a panel's widget, made now where it was not yet. Raises LookupError."""
+        """Return a panel's widget, made now if it was not yet. Raises LookupError."""
         if ident in self._made:
             return self._made[ident]
         panel = self.panels.get(ident)
@@ -186,11 +188,11 @@ class PanelPlaces:
         return widget
 
     def made(self, ident: str) -> QWidget | None:
-        """Return a panel's widget where it was made."""
+        """Return a panel's widget if it was made, else None."""
         return self._made.get(ident)
 
     def holding(self, inner: QWidget | None) -> str:
-        """Return the panel in which a widget is; "" where it is in none."""
+        """Return the panel in which a widget is; "" if it is in none."""
         if inner is None:
             return ""
         return next((i for i, made in self._made.items() if made is inner or made.isAncestorOf(inner)), "")
@@ -203,7 +205,7 @@ class PanelPlaces:
             )  # what stands beside them comes after all that take turns
             widget.setVisible(panel.when in ("any", self.session.onstage.mode))
         elif panel.place == "beside":
-            widget.hide()  # else what it stands beside would be narrow for a moment
+            widget.hide()  # otherwise the widget beside it would be narrow for a moment
             self.centre.addWidget(widget)
             widget.setVisible(self.shows(panel.id))
         else:
@@ -213,7 +215,7 @@ class PanelPlaces:
         room = self.docks[panel.instead_of or panel.id].widget()
         assert isinstance(room, Room)
         if not panel.instead_of and not self._turns(panel.id):
-            room.setWidget(widget)  # what was in it is deleted
+            room.setWidget(widget)  # its previous content is deleted
             return
         stack = room.widget()
         if not isinstance(stack, QStackedWidget):
@@ -228,9 +230,10 @@ class PanelPlaces:
         return [p for p in self.panels.values() if p.instead_of == ident]
 
     def follow_mode(self) -> None:
-        """Show the panels of the mode that is on now; those that were never wanted before are made."""
+        """Show the panels of the current mode; those that were not needed before are made."""
         mode = self.session.onstage.mode
-        # First what goes: both side by side would want a wider window for a moment, and it would stay so.
+        # Hide the old ones first: both side by side would need a wider window for a moment, and it would stay
+        # wide.
         for ident, widget in self._made.items():
             panel = self.panels[ident]
             if panel.place in ("centre", "beside") and panel.when not in ("any", mode):
@@ -253,7 +256,7 @@ class PanelPlaces:
     # --- showing
 
     def show(self, ident: str, on: bool = True) -> None:
-        """Show a panel in front, or hide it. Raises LookupError where there is none."""
+        """Show a panel in front, or hide it. Raises LookupError if there is none."""
         dock = self.dock(ident)
         if self.panels[ident].place == "beside":
             if on and self.ready:
@@ -279,11 +282,11 @@ class PanelPlaces:
         self.docks[ident].setVisible(on)
 
     def wanted(self, ident: str) -> bool:
-        """Return whether a panel beside the centre was asked for, in its mode."""
+        """Return whether a panel beside the centre should be visible in its mode."""
         return ident in self._beside
 
     def shows(self, ident: str) -> bool:
-        """Return whether a panel is shown, or would be if the window was."""
+        """Return whether a panel is shown, or would be if the window were."""
         panel = self.panels[ident]
         if panel.place == "beside":
             return ident in self._beside and panel.when in ("any", self.session.onstage.mode)
@@ -291,11 +294,11 @@ class PanelPlaces:
 
     @property
     def alone(self) -> bool:
-        """Whether one panel has the whole window."""
+        """Return whether one panel has the whole window."""
         return self._before is not None
 
     def only(self, ident: str) -> None:
-        """Give one panel the whole window, its bars and titles included, or put everything back."""
+        """Give one panel the whole window, without bars and titles, or restore everything."""
         if self._before is None:
             self._before, self._shares = self.window.saveState(ARRANGED), self.proportions.text()
             for name, dock in self.docks.items():
@@ -332,7 +335,7 @@ class PanelPlaces:
     # --- arranging
 
     def area(self, ident: str, workspace: Workspace) -> str:
-        """Return the area in which the dock of a panel stands in a workspace, or opens there."""
+        """Return the area in which the dock of a panel is in a workspace, or opens there."""
         panel = self.panels[ident]
         if workspace.id == ALL.id:
             return panel.place
@@ -344,12 +347,12 @@ class PanelPlaces:
         return workspace.id == ALL.id or workspace.id in panel.where or workspace.id in panel.opens
 
     def large(self) -> str:
-        """Return the panel that is large in the present workspace."""
+        """Return the panel that is large in the current workspace."""
         there = self._filled(self.workspace).get(self.workspace.large, ())
         return there[0].objectName() if there else ""
 
     def arrange(self, workspace: Workspace, kept: tuple[QByteArray, str] | None = None) -> None:
-        """Put every dock where a workspace has it, or where it was when `kept` was taken by `state`."""
+        """Put every dock where a workspace has it, or where it was when `state` returned `kept`."""
         self._before, self._shares = None, ""
         self._show_bars()
         with self._quietly():
@@ -384,7 +387,7 @@ class PanelPlaces:
 
     @contextmanager
     def _quietly(self) -> Iterator[None]:
-        """Nothing is drawn before everything is in place, and the window stays as large as it is."""
+        """Draw nothing before everything is in place, and keep the window's size."""
         window, size = self.window, self.window.size()
         window.setUpdatesEnabled(False)
         window.setAnimated(False)
@@ -399,6 +402,6 @@ class PanelPlaces:
             window.setUpdatesEnabled(True)
 
     def state(self) -> tuple[QByteArray, str]:
-        """Return how the docks stand now, and which share of the window each has."""
+        """Return where the docks are now, and their shares of the window."""
         state = self._before if self._before is not None else self.window.saveState(ARRANGED)
         return state, self._shares if self._before is not None else self.proportions.text()

@@ -1,5 +1,5 @@
-"""What share of the window each dock has, and that it keeps it when the window becomes larger or smaller: Qt
-alone gives all that is won to one of them.
+"""Keep each dock's share of the window when the window is resized; Qt would give all the additional room to
+one of them.
 """
 
 from __future__ import annotations
@@ -10,18 +10,18 @@ from collections.abc import Mapping
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QToolBar
 
-DIRECT = Qt.FindChildOption.FindDirectChildrenOnly  # the whole window is some thousand objects
+DIRECT = Qt.FindChildOption.FindDirectChildrenOnly  # the whole window has about a thousand objects
 Shares = dict[str, tuple[float, float]]  # of the width and the height, by the dock's name
 
 
 class Proportions(QObject):
-    """Follows what hands do with the docks, and holds to it. docks: by name."""
+    """Follows how the user moves the docks, and keeps their shares. `docks` are by name."""
 
     def __init__(self, window: QMainWindow, docks: Mapping[str, QDockWidget]) -> None:
         super().__init__(window)
         self.window, self.docks = window, docks
         self.shares: Shares = {}
-        self._of: frozenset[str] = frozenset()  # what was open when they were taken
+        self._of: frozenset[str] = frozenset()  # the docks that were open when the shares were taken
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self.note)
         for dock in docks.values():
@@ -29,19 +29,19 @@ class Proportions(QObject):
             dock.topLevelChanged.connect(lambda _: self._soon.start())
 
     def follow(self) -> None:
-        """Follow the window's size from now on, and what hands do: nothing of either comes while it is made,
-        but some hundred other events.
+        """Follow the window's size and the mouse from now on. While the window is made there would be no such
+        events, but some hundred others.
         """
         self.window.installEventFilter(self)
 
     def want(self, shares: Shares) -> None:
-        """Hold to these shares from now on."""
+        """Keep these shares from now on."""
         self.shares, self._of = shares, self._open()
         self._soon.stop()
         self.hold()
 
     def note(self) -> None:
-        """Take the shares as they are now for those that are wanted."""
+        """Keep the current shares from now on."""
         width, height = self._room()
         out: Shares = {}
         for name in self._open():
@@ -52,16 +52,16 @@ class Proportions(QObject):
         self.shares, self._of = out, self._open()
 
     def _open(self) -> frozenset[str]:
-        """Return what is in the window, in front or behind another."""
+        """Return which docks are in the window, in front or behind another."""
         return frozenset(n for n, d in self.docks.items() if not d.isHidden() and not d.isFloating())
 
     def _changed(self) -> None:
-        """A dock came or went; the others have other shares now."""
+        """Note that a dock was opened or closed, so the others have other shares now."""
         if self._open() != self._of:
             self._soon.start()
 
     def hold(self) -> None:
-        """Give each dock the share that is wanted."""
+        """Give each dock the share to keep."""
         width, height = self._room()
         seen = [(d, self.shares[n]) for n, d in self.docks.items() if n in self.shares and _in_front(d)]
         docks = [d for d, _ in seen]
@@ -85,7 +85,7 @@ class Proportions(QObject):
         if event.type() == QEvent.Type.Resize:
             self._soon.stop()
             self.hold()
-        elif event.type() == QEvent.Type.MouseButtonRelease:  # a line between two docks was let go
+        elif event.type() == QEvent.Type.MouseButtonRelease:  # a line between two docks was released
             self._soon.start()
         return False
 
@@ -96,7 +96,7 @@ class Proportions(QObject):
         return json.dumps({n: [round(x, 4), round(y, 4)] for n, (x, y) in self.shares.items()})
 
     def read(self, text: object) -> None:
-        """Want the shares that `text` once returned; those of now where it cannot be read."""
+        """Keep the shares in a text that `text` returned; the current ones if it cannot be read."""
         try:
             rows = json.loads(str(text))
             self.want({str(n): (float(x), float(y)) for n, (x, y) in rows.items()})

@@ -1,5 +1,5 @@
-"""Verbs that mean something else wherever the hand is: remove, rename, copy, paste, select all. Features
-offer what they do.
+"""Define verbs that depend on the context: remove, rename, copy, paste, select all. Features offer what they
+do.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ class _Offer:
 
 
 class Verbs:
-    """Of what is offered for a verb, the one of the lowest rank that applies is done."""
+    """Runs, of the offers for a verb that apply, the one with the lowest rank."""
 
     def __init__(self) -> None:
         self._offers: dict[Verb, list[_Offer]] = {}
 
     def offer(self, verb: Verb, applies: Callable[[], bool], do: Callable[[], object], rank: int = 5) -> None:
-        """Let a verb do something while `applies`. rank: who is asked first, 0 to 9."""
+        """Make a verb do something while `applies` returns True. Offers are tried by `rank`, 0 to 9."""
         offers = self._offers.setdefault(verb, [])
         offers.append(_Offer(rank, applies, do))
         offers.sort(key=lambda o: o.rank)
 
     def can(self, verb: Verb) -> bool:
-        """Return whether there is anything to do it to."""
+        """Return whether the verb does anything now."""
         return any(o.applies() for o in self._offers.get(verb, ()))
 
     def do(self, verb: Verb) -> None:
-        """Do it; nothing where nothing applies."""
+        """Run the verb; nothing happens if no offer applies."""
         found = next((o for o in self._offers.get(verb, ()) if o.applies()), None)
         if found is not None:
             found.do()

@@ -1,4 +1,4 @@
-"""The main window: it composes what the features contribute, and knows none of them."""
+"""Compose the main window from what the features contribute; it knows none of them."""
 
 from __future__ import annotations
 
@@ -36,13 +36,11 @@ from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
 from app.translation import tr
 
-LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
+LATE = 4000  # milliseconds after which the late panels are made in any case
 
 
 class WindowShell:
-    """The `Shell` that the features of a window are given; panels and actions are there once all have
-    contributed.
-    """
+    """The `Shell` of a window's features. Panels and actions exist once all features have contributed."""
 
     places: PanelPlaces
     workspaces: Workspaces
@@ -79,11 +77,10 @@ class WindowShell:
 
 
 class Window(QMainWindow):
-    """Owns the shell, and composes panels, menus, header and status bar of what the features contribute to
-    it.
+    """Owns the shell, and composes panels, menus, header and status bar from what the features contribute.
 
-    language_chosen: the code of a language, for whoever can replace the window. replaced: another window goes
-    on with the document.
+    `language_chosen` has the code of a language, for the object that can replace the window. `replaced` means
+    that another window continues with the document.
     """
 
     language_chosen = Signal(str)
@@ -188,8 +185,8 @@ class Window(QMainWindow):
     # --- the panels that are not in the first picture
 
     def load_late_panels_soon(self) -> None:
-        """Load those that are seen once the first picture is painted and the project is open, which must not
-        wait for them.
+        """Load the visible late panels once the first picture is painted and the project is open, which must
+        not wait for them.
         """
         self.shell.stage.painted.connect(self._late_now)
         QTimer.singleShot(LATE, self.load_late_panels)  # the character may be hidden
@@ -200,7 +197,7 @@ class Window(QMainWindow):
             self.load_late_panels()
 
     def load_late_panels(self) -> None:
-        """Import what the late panels that are seen need on a thread, then make them."""
+        """Import on a thread what the visible late panels need, then make them."""
         if not self._loading:
             self._loading = True
             self._fetch(self.places.to_import(), self.make_late_panels)
@@ -208,7 +205,7 @@ class Window(QMainWindow):
     _loading = False
 
     def _fetch(self, names: Iterable[str], then: Callable[[], object]) -> None:
-        """Import modules on a thread, and go on."""
+        """Import modules on a thread, then continue."""
 
         def fetched(_: object) -> None:
             then()
@@ -218,8 +215,8 @@ class Window(QMainWindow):
         )
 
     def make_late_panels(self) -> None:
-        """Fill the docks that are seen and were left empty for a fast start; from now on each is filled when
-        it is first seen.
+        """Fill the visible docks that were left empty for a fast start; from now on each is filled when it is
+        first seen.
         """
         if not self.places.ready:
             self.places.make_late()
@@ -242,7 +239,7 @@ class Window(QMainWindow):
         self._show_title()
 
     def _follow(self) -> None:
-        """Show it, the commands once for all that changes in one go."""
+        """Show it, updating the commands once for several changes."""
         self.shell.actions.refresh_soon()
         self._show_title()
 
@@ -250,17 +247,16 @@ class Window(QMainWindow):
         document = self.shell.document
         read_only = tr(" (read-only)") if document.read_only else ""
         self.setWindowTitle(f"{document.project.name}{'[*]'}{read_only} - Metagraph")
-        if self.isWindowModified() != document.dirty:  # Qt tells all of the window each time
+        if self.isWindowModified() != document.dirty:  # Qt notifies the whole window each time
             self.setWindowModified(document.dirty)
         self.header.refresh()
 
     # --- the window itself
 
     def event(self, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.WindowActivate:  # whoever comes back may have written the file
+        if event.type() == QEvent.Type.WindowActivate:  # the user may have changed the file meanwhile
             self.shell.files.look_at_file()
-        # Asked last, when what has the keyboard does not want a key for itself: the space bar presses a
-        # focused button.
+        # Checked last, for keys that the focused widget does not use: the space bar presses a focused button.
         if (
             event.type() == QEvent.Type.ShortcutOverride
             and isinstance(event, QKeyEvent)

@@ -1,4 +1,6 @@
-"""Which workspace is on, how each was left, and the user's own; all kept from one time to the next."""
+"""Keep the current workspace, how each was left, and the user's own workspaces, between runs of the
+program.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +17,13 @@ from app.translation import tr
 GROUP = (
     f"workspaces {ARRANGED}"  # what was kept when docks were made otherwise lies elsewhere, and is not read
 )
-OLD = "state"  # one arrangement for everything, as it was kept before there were workspaces
+OLD = "state"  # one arrangement for everything, as kept before there were workspaces
 
 
 @dataclass(frozen=True)
 class Tab:
-    """A workspace as it can be chosen. id: the workspace's own for those that come with the program. of: what
-    it is an arrangement of.
+    """A workspace that can be chosen. `id` is the workspace's own for those that come with the program. `of`
+    is the workspace that it is an arrangement of.
     """
 
     id: str
@@ -30,12 +32,14 @@ class Tab:
 
     @property
     def own(self) -> bool:
-        """Whether the user made it."""
+        """Return whether the user made it."""
         return self.id != self.of.id
 
 
 class Workspaces(QObject):
-    """changed: another is on, or there are others. current: the id of the one that is on."""
+    """The workspaces of a window. `changed` is emitted if another one is current, or the list changed.
+    `current` is the id of the current one.
+    """
 
     changed = Signal()
 
@@ -48,13 +52,13 @@ class Workspaces(QObject):
 
     @property
     def tab(self) -> Tab:
-        """The workspace that is on."""
+        """Return the current workspace."""
         return next(t for t in self.tabs if t.id == self.current)
 
     # --- from one time to the next
 
     def restore(self) -> None:
-        """Open the workspace that was on when the window was last closed, as it was left."""
+        """Open the workspace that was current when the window was last closed, as it was left."""
         settings = QSettings()
         settings.remove(OLD)
         geometry = settings.value("geometry")
@@ -66,14 +70,14 @@ class Workspaces(QObject):
         self._open()
 
     def save(self) -> None:
-        """Keep everything for the next time."""
+        """Keep everything for the next run."""
         settings = QSettings()
         settings.setValue("geometry", self.places.window.saveGeometry())
         settings.setValue(f"{GROUP}/current", self.current)
         self._keep()
 
     def _keep(self) -> None:
-        """Keep how the present workspace is left, unless all panels are shown for something else."""
+        """Keep how the current workspace is left, unless all panels are shown for something else."""
         if self.places.workspace.id != ALL.id:
             self._write(self.current, "left")
 
@@ -85,7 +89,7 @@ class Workspaces(QObject):
         settings.setValue(f"{GROUP}/{ident}/panels", self._panels)
 
     def _read(self, ident: str, key: str) -> tuple[QByteArray, str] | None:
-        """Return an arrangement that was kept; None where it is of other panels than there are."""
+        """Return an arrangement that was kept; None if it is for other panels than the current ones."""
         settings = QSettings()
         if settings.value(f"{GROUP}/{ident}/panels") != self._panels:
             return None
@@ -96,7 +100,7 @@ class Workspaces(QObject):
     # --- choosing
 
     def choose(self, ident: str) -> None:
-        """Open a workspace as it was left. Raises LookupError where there is none."""
+        """Open a workspace as it was left. Raises LookupError if there is none."""
         if not any(t.id == ident for t in self.tabs):
             raise LookupError(f"there is no workspace {ident!r}")
         if ident == self.current and self.places.workspace.id != ALL.id and not self.places.alone:
@@ -116,7 +120,7 @@ class Workspaces(QObject):
         return self._read(self.current, "first") if self.tab.own else None
 
     def _follow_focus(self, focus: QWidget | None) -> None:
-        """Give the keyboard back to what had it, or to what is large where that is not seen any more."""
+        """Return the focus to the widget that had it, or to the large panel if that is no longer visible."""
         window = self.places.window
         if focus is None or focus is window or not window.isAncestorOf(focus):
             return
@@ -136,8 +140,8 @@ class Workspaces(QObject):
         self.changed.emit()
 
     def show(self, ident: str, on: bool = True) -> None:
-        """Show a panel in front, or hide it. What has no place in the present workspace is shown where it is
-        at home, unless it was opened here already.
+        """Show a panel in front, or hide it. A panel without a place in the current workspace is shown in its
+        home workspace, unless it was opened here already.
         """
         places = self.places
         panel = places.panels[places.dock(ident).objectName()]
@@ -150,7 +154,7 @@ class Workspaces(QObject):
     # --- changing
 
     def reset(self) -> None:
-        """Put the panels of the present workspace back."""
+        """Put the panels of the current workspace back."""
         if self.places.workspace.id == ALL.id:
             self.places.arrange(ALL)
             return
@@ -159,7 +163,7 @@ class Workspaces(QObject):
         self.changed.emit()
 
     def save_as(self, title: str) -> None:
-        """Keep the present arrangement as an own workspace, and go on in it. Raises ValueError for a title
+        """Keep the current arrangement as an own workspace, and continue in it. Raises ValueError for a title
         that is empty or taken.
         """
         title = self._free(title)
@@ -173,8 +177,8 @@ class Workspaces(QObject):
         self.changed.emit()
 
     def rename(self, title: str) -> None:
-        """Rename the present workspace, which is an own one. Raises ValueError for a title that is empty or
-        taken, and where it is not the user's.
+        """Rename the current workspace, which must be the user's. Raises ValueError for a title that is empty
+        or taken, and if it is not the user's.
         """
         tab = self._mine()
         if title.strip() == tab.title:
@@ -185,8 +189,8 @@ class Workspaces(QObject):
         self.changed.emit()
 
     def delete(self) -> None:
-        """Delete the present workspace, and go to the one it was made from. Raises ValueError where it is not
-        the user's.
+        """Delete the current workspace, and open the one it was made from. Raises ValueError if it is not the
+        user's.
         """
         tab = self._mine()
         self.tabs = [t for t in self.tabs if t.id != tab.id]
@@ -219,7 +223,7 @@ class Workspaces(QObject):
 
 
 def _own(kept: object) -> list[Tab]:
-    """Return the user's own workspaces; what cannot be read is left out."""
+    """Return the user's own workspaces; those that cannot be read are left out."""
     of = {w.id: w for w in WORKSPACES}
     try:
         rows = json.loads(str(kept or "[]"))

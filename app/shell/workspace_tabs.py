@@ -1,4 +1,4 @@
-"""The workspaces as tabs in the header, and their commands."""
+"""Show the workspaces as tabs in the header, and define their commands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WIDEST = 110  # pixels of an own workspace's name
 
 
 def list_workspace_commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command, ...]:
-    """Return what can be done with workspaces."""
+    """Return the commands for workspaces."""
 
     def choose(place: int) -> None:
         if place < len(keeper().tabs):
@@ -100,7 +100,7 @@ def list_workspace_commands(keeper: Callable[[], Workspaces], window: QWidget) -
 
 
 class WorkspaceTabs(QWidget):
-    """A tab for each workspace; the one that is on is pressed."""
+    """A tab for each workspace; that of the current one is pressed."""
 
     def __init__(self, keeper: Workspaces, actions: Actions, parent: QWidget) -> None:
         super().__init__(parent)
@@ -115,7 +115,7 @@ class WorkspaceTabs(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show which there are, and which is on."""
+        """Show which workspaces there are, and which is current."""
         tabs = self.keeper.tabs
         while len(self.buttons) > len(tabs):
             gone = self.buttons.pop()
@@ -146,7 +146,7 @@ class WorkspaceTabs(QWidget):
 
     def _choose(self, place: int) -> None:
         self.keeper.choose(self.keeper.tabs[place].id)
-        self.refresh()  # a click on the one that is on lets go of its button
+        self.refresh()  # a click on the pressed button releases it
 
     def _menu(self, place: int, at: QPoint) -> None:
         self._choose(place)

@@ -1,7 +1,7 @@
-"""The workspaces as data: arrangements of the same panels, in each of which one thing is large.
+"""Define the workspaces as data: arrangements of the same panels, in each of which one thing is large.
 
-A workspace divides the window into named areas. Which panel stands in which area is not said here: panels
-declare it themselves, see `Panel.where` and `Panel.opens`.
+A workspace divides the window into named areas. Panels declare themselves which area they are in, see
+`Panel.where` and `Panel.opens`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from app.translation import tr_noop
 
 @dataclass(frozen=True)
 class Split:
-    """Parts side by side, or below each other where `down`. parts: each an area's name or another split, with
-    its share of the whole.
+    """Parts side by side, or one below the other if `down`. Each part is an area's name or another split,
+    with its share of the whole.
     """
 
     parts: tuple[tuple[str | Split, int], ...]
@@ -24,8 +24,10 @@ class Split:
 
 @dataclass(frozen=True)
 class Workspace:
-    """id: stable, and what panels name. title, tip: on its tab. tree: its areas. large: the area that has
-    most room. spare: the area in which a panel opens that has none of its own here.
+    """An arrangement of the window.
+
+    `id` is stable; panels refer to it. `title` and `tip` are on its tab. `tree` has its areas. `large` is the
+    largest area, `spare` the area in which a panel opens that has no area of its own here.
     """
 
     id: str
@@ -37,7 +39,7 @@ class Workspace:
 
     @property
     def areas(self) -> tuple[str, ...]:
-        """The names of its areas, from the upper left on."""
+        """Return the names of its areas, from the upper left on."""
         return tuple(_areas(self.tree))
 
 
@@ -90,8 +92,8 @@ TALK = Workspace(
 WORKSPACES: tuple[Workspace, ...] = (LABEL, GRAPH, TIME, PERFORM, TALK)
 FIRST = GRAPH
 
-# Every panel at once, each in its `Panel.place`: what a study's tasks are done in, so that nothing has to be
-# looked for.
+# Every panel at once, each in its `Panel.place`. A study's tasks are done here, so that nothing has to be
+# searched for.
 ALL = Workspace(
     "all",
     tr_noop("All"),

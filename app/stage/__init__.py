@@ -1,1 +1,1 @@
-"""What is looked at and what plays: selection, transport, performance, pictures, sound."""
+"""Hold what the user looks at and what plays: selection, transport, performance, pictures, sound."""

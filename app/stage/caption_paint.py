@@ -1,5 +1,5 @@
-"""Captions painted into a picture: at the bottom, inside the safe area, light on a dark ground, whatever is
-behind.
+"""Paint captions into a picture: at the bottom, inside the safe area, light on a dark ground that covers what
+is behind.
 """
 
 from __future__ import annotations
@@ -12,16 +12,14 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter
 
 from metagraph.speech.captions import Caption
 
-SAFE = 0.05  # of width and height at each edge that stays free (EBU R 95: the graphics safe area of 16:9)
-TALL = (
-    0.046  # of the picture's height a line's letters are set in; as broadcasters do, about 20 lines a picture
-)
+SAFE = 0.05  # of width and height, free at each edge (EBU R 95: graphics safe area of 16:9)
+TALL = 0.046  # of the picture's height: the size of letters; about 20 lines a picture, as broadcasters do
 LEAST = 11  # pixels
 GROUND, INK = QColor(0, 0, 0, 175), QColor(255, 255, 255)
 
 
 def paint_captions(painter: QPainter, width: float, height: float, shown: Sequence[Caption]) -> None:
-    """Paint what is said now."""
+    """Paint the captions that are shown now."""
     lines = [line for caption in shown for line in caption.text.split("\n")]
     if not lines:
         return
@@ -31,7 +29,7 @@ def paint_captions(painter: QPainter, width: float, height: float, shown: Sequen
     font.setPixelSize(max(LEAST, round(min(height, width * 9 / 16) * TALL)))
     widest = max(QFontMetricsF(font).horizontalAdvance(line) for line in lines)
     room = width * (1 - 2 * SAFE)
-    if widest > room:  # a picture so narrow that a line would leave the safe area
+    if widest > room:  # a narrow picture, in which a line would leave the safe area
         font.setPixelSize(max(4, int(font.pixelSize() * room / widest)))
     painter.setFont(font)
     metrics = QFontMetricsF(font)

@@ -1,8 +1,7 @@
-"""Keeps the statistics of visible jumps up to date with the project: on a thread, and only what an edit made
-stale.
+"""Keep the statistics of visible jumps up to date with the project, on a thread, recomputing only what an
+edit changed.
 
-What is said about an action comes out as problems that can be mended with one press; curves and matrices are
-made when asked for.
+Findings about an action become problems that one press can fix. Curves and matrices are made on demand.
 """
 
 from __future__ import annotations
@@ -25,19 +24,19 @@ if TYPE_CHECKING:  # their imports wait for the first job
     from metagraph.suggest.jumps.compatibility import Matrix, ProposedTimes
     from metagraph.suggest.jumps.found import Curves, Jump, Measured
 
-AFTER = 400  # milliseconds of quiet after an edit
+AFTER = 400  # milliseconds without edits
 EDGES = {
     "far-start": "begins",
     "far-end": "ends",
     "open-loop": "loops",
-}  # what `check` says of the same places, in rougher words
+}  # the codes of `check_project` for the same places, in less precise words
 REASONS = {"begins": "jump-start", "ends": "jump-end", "loops": "jump-loop"}
 
 
 @dataclass(frozen=True, eq=False)
 class JudgedJumps:
-    """What was found of a project. measured: its layers' statistics. known: what was found of each action.
-    jumps: all of it.
+    """The jumps of a project. `measured` has its layers' statistics, `known` the findings for each action,
+    `jumps` all of them.
     """
 
     measured: Mapping[Layer, Measured]
@@ -48,7 +47,7 @@ class JudgedJumps:
 def judge_jumps(
     project: Project, before: JudgedJumps | None = None, cancelled: Callable[[], bool] | None = None
 ) -> JudgedJumps:
-    """Return all jumps of a project, taking what still holds from an earlier judgement."""
+    """Return all jumps of a project, reusing what still holds from an earlier judgement."""
     from metagraph.suggest.jumps.found import Measured, jumps
 
     measured: dict[Layer, Measured] = {}
@@ -71,12 +70,14 @@ def judge_jumps(
 
 
 def describe_jumps(project: Project, judged: JudgedJumps) -> dict[Problem, Fix | None]:
-    """Return jumps as problems, each with what mends it; layers of which too little is known say so."""
+    """Return jumps as problems, each with its fix. Layers with too little data have a problem that
+    says so.
+    """
     out: dict[Problem, Fix | None] = {}
     for jump in judged.jumps:
         action, stance = project.action(jump.action), project.stance(jump.stance)
         if action is None or stance is None:
-            continue  # it went meanwhile
+            continue  # it was removed in the meantime
         if jump.edge == "loops":
             words = tr(
                 "'{name}' has a visible jump at its loop seam: {cost:.1f} times the limit",
@@ -158,7 +159,7 @@ def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | No
 
 
 def merge_problems(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Problem, ...]:
-    """Return both, errors first; a place of an action is told of once, in the statistics' words."""
+    """Return both, errors first. Each place of an action is reported once, in the words of the statistics."""
     flags = tuple(flags)
     told_of = {(p.action, p.code) for p in flags}
     rest = [p for p in problems if p.code not in EDGES or (p.action, REASONS[EDGES[p.code]]) not in told_of]
@@ -167,7 +168,7 @@ def merge_problems(problems: Iterable[Problem], flags: Iterable[Problem]) -> tup
 
 
 def compare_proposed_timing(action: Action, times: ProposedTimes, duration: float) -> dict[str, Any]:
-    """Return the Timing fields that proposed times change. duration: of the clip, seconds."""
+    """Return the Timing fields that proposed times change. `duration` is the clip's, in seconds."""
     end = None if times.end >= duration - 1e-3 else round(times.end, 3)
     out: dict[str, Any] = {"start": round(times.start, 3), "end": end, "blend_in": round(times.blend_in, 3)}
     if action.kind != "stance":
@@ -180,8 +181,10 @@ def compare_proposed_timing(action: Action, times: ProposedTimes, duration: floa
 
 
 class Compatibility(QObject):
-    """changed: the project was judged anew. seen: curves of an action (id) are there. compared: a layer's
-    matrix is there.
+    """Judges the project's jumps.
+
+    `changed` is emitted after a new judgement, `seen` when the curves of an action (id) are ready, `compared`
+    when a layer's matrix is ready.
     """
 
     changed = Signal()
@@ -194,8 +197,8 @@ class Compatibility(QObject):
         self.document, self.jobs = document, jobs
         self.judged: JudgedJumps | None = None
         self.flags: dict[Problem, Fix | None] = {}
-        self.on = False  # until the window has come up
-        self._judging = self._again = self._looking = False  # again: more changed while it was judged
+        self.on = False  # until the window has opened
+        self._judging = self._again = self._looking = False  # `_again`: more changed during the judgement
         self._wanted: Action | None = None
         self._curves: dict[str, tuple[Action, Measured, Curves | None]] = {}
         self._matrices: dict[Layer, tuple[Measured, Matrix]] = {}
@@ -215,7 +218,7 @@ class Compatibility(QObject):
         self._timer.stop()
 
     def forget(self) -> None:
-        """Judge no more, and take back what was found."""
+        """Stop judging, and discard the findings."""
         self.stop()
         self.judged, self.flags = None, {}
         self.changed.emit()
@@ -261,8 +264,8 @@ class Compatibility(QObject):
     # --- one action's curves
 
     def curves(self, action: Action) -> Curves | None:
-        """Return what is known of an action's clip beside its stances; what is not known yet is looked for,
-        and `seen` told.
+        """Return what is known of an action's clip beside its stances. Unknown curves are computed, and then
+        `seen` is emitted.
         """
         if self.judged is None:
             return None
@@ -295,7 +298,7 @@ class Compatibility(QObject):
         self.jobs.start("curves", work, done, gave_up, quick=True)
 
     def use_proposed(self, actions: Iterable[str]) -> None:
-        """Give actions the times that are proposed for them, in one step."""
+        """Give actions their proposed times, in one step."""
         project, judged = self.document.project, self.judged
         chosen = [a for i in actions if (a := project.action(i)) is not None]
         if judged is None:
@@ -326,7 +329,7 @@ class Compatibility(QObject):
         )
 
     def mend(self, fixes: Iterable[Fix]) -> None:
-        """Mend problems, in one step."""
+        """Fix problems, in one step."""
         todo = list(fixes)
 
         def all_of(project: Project) -> Project:
@@ -345,8 +348,8 @@ class Compatibility(QObject):
     # --- matrices
 
     def matrix(self, layer: Layer) -> Matrix | None:
-        """Return clips against stances of a layer as last compared; what changed is compared anew, and
-        `compared` told.
+        """Return the latest comparison of clips with the stances of a layer. What changed is compared again,
+        and then `compared` is emitted.
         """
         known = self._matrices.get(layer)
         if self.judged is not None and layer not in self._comparing:
@@ -384,8 +387,8 @@ def extend_matrix(
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Matrix:
-    """Return a layer's matrix; rows of clips that stand in an earlier one, of the same stances, are taken
-    from there.
+    """Return a layer's matrix. Rows of clips that an earlier matrix of the same stances has are taken from
+    there.
     """
     import numpy as np
 
@@ -411,7 +414,7 @@ def extend_matrix(
 
 
 def _alike(a: Action, b: Action) -> bool:
-    """Whether curves of one hold for the other: all that its timing moves is where it is blended."""
+    """Return whether curves of one action hold for the other: its timing only moves where it is blended."""
     return (a.clip, a.stance, a.end_stance, a.limb, a.joints, a.joint_weights, a.kind) == (
         b.clip,
         b.stance,

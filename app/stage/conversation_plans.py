@@ -1,5 +1,5 @@
-"""A conversation on stage: all characters' plans, made on a job's thread, with what was read for them kept
-at hand.
+"""Plan a conversation on stage: the plans of all characters, made on a job's thread, with what was read for
+them kept.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Key = tuple[Any, ...]
 
 
 class ConversationPlans:
-    """Reads voices and other projects once. One thread after another: who comes second waits."""
+    """Reads voices and other projects once. Threads run one after another: the second one waits."""
 
     def __init__(self) -> None:
         self._one = Lock()
@@ -33,7 +33,9 @@ class ConversationPlans:
         self._bodies: dict[Key, tuple[str, ...]] = {}  # morph targets of characters
 
     def show(self, project: Project, ident: str, folder: Path, side: int = 0) -> ShownPlayback:
-        """Return what all play, a side first, the others with it. folder: what paths begin at."""
+        """Return what all characters play: that of one side, with the others in it. `folder` is what paths
+        are relative to.
+        """
         with self._one:
             return self._show(project, ident, folder, side)
 
@@ -80,11 +82,11 @@ class ConversationPlans:
             )
             for n, (p, s) in enumerate(zip(made.parts, conversation.sides, strict=True))
         )
-        side = side if side < len(everyone) else 0  # of a conversation that had more
+        side = side if side < len(everyone) else 0  # for a conversation that had more sides
         return replace(everyone[side], others=tuple(one for one in everyone if one.side != side))
 
     def _project(self, project: Project, path: str | None, folder: Path, notes: list[str]) -> Project:
-        """Return the project whose graph moves a side: another one's, or the one at hand where that cannot be
+        """Return the project whose graph moves a side: another project, or the current one if that cannot be
         read.
         """
         if path is None:
@@ -109,8 +111,8 @@ class ConversationPlans:
         return self._projects[key]
 
     def _drawn(self, project: Project, path: str | None, folder: Path, notes: list[str]) -> Project:
-        """Return the project with the character a side is drawn with, and what that one's face can do; with
-        its own where there is no such file.
+        """Return the project with the character that draws a side, and the morph targets of that face; its
+        own character if there is no such file.
         """
         if path is None:
             return project
@@ -132,7 +134,7 @@ class ConversationPlans:
 
 
 def _motion(project: Project, side: Side, notes: list[str]) -> str | None:
-    """Return the clip a side moves with instead of a graph, if it is there and fits."""
+    """Return the clip that moves a side instead of a graph, if it exists and fits."""
     if side.motion is None:
         return None
     entry = project.clips.get(side.motion)
@@ -156,9 +158,10 @@ def _written(path: Path) -> int:
 
 def keep_conversation(project: Project, ident: str, shown: ShownPlayback) -> tuple[Project, tuple[str, ...]]:
     """Keep what all sides of a conversation do as performances, each with the line it says; return the
-    performances' ids.
+    project and the performances' ids.
 
-    A side that another project moves is left out: its asks would mean nothing to this one's graph.
+    A side that another project moves is left out, because its requests would mean nothing to this project's
+    graph.
     """
     conversation = project.conversations[ident]
     kept: list[str] = []

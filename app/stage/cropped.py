@@ -1,4 +1,4 @@
-"""Pictures that are mostly transparent, held without what is empty round what they show."""
+"""Hold mostly transparent pictures without the empty space around what they show."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from app.stage.gl_view import to_image
 
 
 class Cropped(Sequence[QImage]):
-    """A loop's pictures `[H, W, 4]`, premultiplied. Each is made whole when it is asked for, a tenth of a
-    millisecond; the one that was asked for last is still there. bytes: that are held.
+    """A loop's pictures `[H, W, 4]`, premultiplied. Each is restored to full size when it is needed, which
+    takes a tenth of a millisecond; the latest one is kept. `bytes` is the memory they take.
     """
 
     def __init__(self, pictures: Iterable[np.ndarray]) -> None:
@@ -42,5 +42,5 @@ class Cropped(Sequence[QImage]):
             return [self[n] for n in range(*at.indices(len(self)))]
         if self._last is None or self._last[0] != at:
             whole, part = self._held[at]
-            self._last = at, part.copy(whole)  # what is beyond a picture is transparent
+            self._last = at, part.copy(whole)  # everything beyond the cropped picture is transparent
         return self._last[1]

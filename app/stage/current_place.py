@@ -1,5 +1,5 @@
-"""Where in the graph somebody works: the layer, its current stance, and the other stance, where transitions
-go.
+"""Keep where in the graph the user works: the layer, its current stance, and the other stance, where
+transitions end.
 """
 
 from __future__ import annotations
@@ -11,8 +11,10 @@ from metagraph.graph.model import Layer
 
 
 class CurrentPlace(QObject):
-    """layer_changed: another layer's tab. stance_changed: another current stance, or another other stance for
-    transitions.
+    """The current place.
+
+    `layer_changed` is emitted for another layer's tab, `stance_changed` for another current stance, or
+    another other stance for transitions.
     """
 
     layer_changed = Signal()
@@ -26,7 +28,7 @@ class CurrentPlace(QObject):
         self.others: dict[Layer, str] = {}  # the other stance, where a dropped transition ends
 
     def forget(self) -> None:
-        """Take back what was chosen: another project is shown."""
+        """Discard the choices, because another project is shown."""
         self.stances.clear()
         self.others.clear()
 

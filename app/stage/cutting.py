@@ -1,5 +1,5 @@
-"""The camera of a conversation, as its cuts say, and the captions of what is said: for the preview and for
-what is written alike.
+"""Find the camera of a conversation from its cuts, and the captions of what is said, both for the preview and
+for exported pictures.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from preview.camera import Camera
 from preview.shots import shot_camera
 
 Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
-SAMPLED = 2  # moments of a cut from which it is told where heads are
+SAMPLED = 2  # moments of a cut at which the positions of heads are taken
 HEAD, MOST = (
     0.085,
     4.0,
-)  # of the height, from a head's middle to its top, hair included; most that it is larger
-FARTHEST = 8.0  # seconds of a cut over which they are
+)  # of the height, from a head's middle to its top with hair; how many times larger it may be
+FARTHEST = 8.0  # seconds of a cut over which they are taken
 
 
 class Cutting:
-    """Finds cameras once for each cut: they stand still, where those who talk are while it is seen."""
+    """Finds one camera for each cut. It stands still, placed for where the speakers are during the cut."""
 
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
@@ -45,7 +45,9 @@ class Cutting:
     def camera(
         self, seen: Sequence[Seen], cuts: tuple[Cut, ...], seconds: float, aspect: float
     ) -> Camera | None:
-        """Return the camera at a time; None where no cut says any. seen: who talk, the first side first."""
+        """Return the camera at a time; None if there is no cut. `seen` has the speakers, the first side
+        first.
+        """
         found = cut_at(cuts, seconds)
         if found is None or len(seen) < 2:
             return None
@@ -64,7 +66,7 @@ class Cutting:
 
 def _head(figure: Any) -> tuple[float, float]:
     """Return how far the middle of a figure's head is above where `Figure.head` says, and how tall a person
-    with such a head is, metres: a figure of a cartoon may have one three times as large.
+    with such a head is, in metres: a cartoon figure may have a head three times as large.
     """
     rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
     above = float(figure.bounds(positions)[1][1] - figure.head(rotations, positions)[1])
@@ -99,7 +101,7 @@ def list_captions(
     folder: Path,
     lines: Mapping[str, Sequence[Word]] | None = None,
 ) -> tuple[Caption, ...]:
-    """Return the captions of what is played, by start. lines: the words of lines by time, None to read
+    """Return the captions of what is played, by start. `lines` has the timed words of lines, None to read
     them.
     """
     if shown.clip is not None:

@@ -1,4 +1,6 @@
-"""Which figure draws the character: the project's own GLB, or a stick figure for any skeleton without one."""
+"""Choose the figure that draws the character: the project's own GLB, or a stick figure for any skeleton
+without one.
+"""
 
 from __future__ import annotations
 
@@ -17,11 +19,11 @@ from preview.character_file import figure_from_file
 from preview.figure import MeshFigure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
-REST = 1500  # milliseconds after a figure has come, in which much else is made
+REST = 1500  # milliseconds after a new figure, in which much else is made
 
 
 class Figures(QObject):
-    """changed: another figure is to be drawn. Figures are read and built on a thread."""
+    """Reads and builds figures on a thread. `changed` is emitted if another figure should be drawn."""
 
     changed = Signal()
 
@@ -35,7 +37,7 @@ class Figures(QObject):
         ] = {}  # characters of other projects, who talk with this one's
         self._wanted: Key | None = None
         self._unreadable: Key | None = None
-        self._whole: list[MeshFigure] = []  # whose levels of detail are to be made
+        self._whole: list[MeshFigure] = []  # figures whose levels of detail are still to be made
         self._later = QTimer(self, singleShot=True, interval=REST)
         self._later.timeout.connect(self._make_levels)
         document.changed.connect(self._follow)
@@ -81,12 +83,12 @@ class Figures(QObject):
         """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick
         figure.
 
-        None while it is being made; `changed` tells when it is there.
+        None while it is being made; `changed` is emitted when it is ready.
         """
         project = self.document.project
         key = self._key(project)
         if key is not None and key != self._unreadable and skeleton == project.skeleton:
-            # Until meshes are shown or hidden, what was drawn stays.
+            # Until meshes are shown or hidden, the drawn figure stays.
             return self._skinned[1] if self._skinned is not None and self._skinned[0][:2] == key[:2] else None
         if skeleton.fingerprint not in self._sticks:
             self._sticks[skeleton.fingerprint] = None
@@ -96,8 +98,8 @@ class Figures(QObject):
         return self._sticks[skeleton.fingerprint]
 
     def of(self, shown: ShownPlayback) -> MeshFigure | None:
-        """Return the figure of who is shown: of another project's character that one's own. None while it is
-        being made.
+        """Return the figure for what is shown; for another project's character, that one's own. None while it
+        is being made.
         """
         skeleton, character = shown.skeleton, shown.project.character
         if skeleton is None:
@@ -113,7 +115,7 @@ class Figures(QObject):
             def work(_: object) -> tuple[Key, MeshFigure]:
                 try:
                     return key, _ready(figure_from_file(Path(key[0]), skeleton, key[2]))
-                except FileError:  # it moves all the same
+                except FileError:  # it moves in any case
                     return key, _ready(figure_from_file(None, skeleton))
 
             self.jobs.start("character", work, self._came, quick=True)
@@ -125,7 +127,7 @@ class Figures(QObject):
         self.changed.emit()
 
     def _simplify(self, figure: MeshFigure) -> None:
-        """Make its levels of detail while it is already drawn, once the window has come to rest."""
+        """Make its levels of detail while it is already drawn, once the window is idle."""
         self._whole.append(figure)
         self._later.start()
 
@@ -145,7 +147,7 @@ class Figures(QObject):
 
 
 def _ready(figure: MeshFigure) -> MeshFigure:
-    """Work out on this thread what would otherwise be worked out while the first picture is drawn."""
+    """Compute on this thread what would otherwise be computed while the first picture is drawn."""
     from preview.gpu import decode_texture
 
     for batch in figure.mesh.batches:

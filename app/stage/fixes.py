@@ -1,4 +1,6 @@
-"""What mends a problem with one press: other times, another end, another clip, or ways by blending."""
+"""Define what fixes a problem with one press: other times, another end, another clip, or bridges by
+blending.
+"""
 
 from __future__ import annotations
 
@@ -17,21 +19,23 @@ BRIDGE = tr_noop("Bridge by blending")
 
 @dataclass(frozen=True)
 class Fix:
-    """One press that mends a problem. words: on the button. action: whose fields change, as
-    `edits.update_actions` takes them, or whose end. stance: that is led to and from by blending. tip: what
-    comes of it. instead: another way, offered in the menu of the problem's row.
+    """One press that fixes a problem.
+
+    `words` are on the button. `action` is the one whose fields change, as in `edits.update_actions`, or whose
+    end changes. `stance` is one that gets transitions to and from it by blending. `tip` says what will
+    happen. `instead` is another fix, offered in the menu of the problem's row.
     """
 
     words: str
     action: str | None = None
     changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
-    end: str | None = None  # the stance a transition should end in
+    end: str | None = None  # the stance in which a transition should end
     stance: str | None = None
     tip: str = field(default_factory=partial(tr, "One step that can be undone"))
     instead: Fix | None = None
 
     def __call__(self, project: Project) -> Project:
-        """Return the project mended; as it is where what was to be mended went meanwhile."""
+        """Return the project with the fix; unchanged if what it fixes was removed in the meantime."""
         if self.stance is not None:
             from metagraph.suggest.jumps.bridges import bridge_stance
 
@@ -44,8 +48,8 @@ class Fix:
 
 
 def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
-    """Return what gives actions back the clips they were made of, where those are in the project; else what
-    keeps the clips they have.
+    """Return fixes that give actions back the clips they were made of, if those are in the project; otherwise
+    fixes that keep the clips they have.
     """
     out: dict[Problem, Fix] = {}
     for problem in problems:
@@ -65,14 +69,14 @@ def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fi
 
 
 def find_original_clip(project: Project, action: Action) -> str | None:
-    """Return the id of the clip that an action says it was made of; None where that is not in the project."""
+    """Return the id of the clip that an action was made of; None if it is not in the project."""
     of = [e for e in project.clips.values() if e.name == action.clip_name]
     same = [e for e in of if action.clip_sha256 and e.digest.startswith(action.clip_sha256)]
     return next((e.id for e in (*same, *of)), None)
 
 
 def fix_unreachable(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
-    """Return what joins stances that cannot be reached or left to the others by blending."""
+    """Return fixes that connect stances that cannot be reached or left to the others by blending."""
     from metagraph.suggest.jumps import bridges
 
     out: dict[Problem, Fix] = {}

@@ -1,5 +1,5 @@
-"""The picture of the character: one painter behind two hosts, an OpenGL widget and, where there is none, an
-image.
+"""Draw the picture of the character: one painter for two widgets, an OpenGL widget and, where there is no
+OpenGL, an image.
 
 Left drag orbits, right or middle drag (or Shift + left) pans, the wheel zooms, a double click frames the
 character.
@@ -42,7 +42,7 @@ MOUSE = tr_noop("Drag to orbit, right-drag to pan, wheel to zoom, double-click t
 
 
 class CameraMouse(_Base):
-    """Mouse to camera, for any widget that has `frame_wanted`."""
+    """Moves the camera with the mouse, for any widget that has `frame_wanted`."""
 
     camera: Camera
     failed: Any
@@ -53,12 +53,12 @@ class CameraMouse(_Base):
         self._last: QPointF | None = None
 
     def _cannot_draw(self, error: Exception) -> None:
-        """Say in the middle of the view why it stays empty, and to whoever listens."""
+        """Say in the middle of the view why it stays empty, and emit it."""
         words = QLabel(tr_error(error), self, wordWrap=True, alignment=Qt.AlignmentFlag.AlignCenter)
         words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        words.setAutoFillBackground(True)  # what an OpenGL widget leaves is black
+        words.setAutoFillBackground(True)  # otherwise an OpenGL widget's background is black
         words.setContentsMargins(24, 24, 24, 24)
-        words.lower()  # buttons over the view stay to be seen
+        words.lower()  # buttons over the view stay visible
         room = QVBoxLayout(self)
         room.setSizeConstraint(QLayout.SizeConstraint.SetNoConstraint)
         room.addWidget(words)
@@ -96,7 +96,9 @@ class CameraMouse(_Base):
 
 
 class GLView(CameraMouse, QOpenGLWidget):
-    """Draws the scene with OpenGL into the widget. painted: milliseconds one frame took to issue."""
+    """Draws the scene with OpenGL into the widget. `painted` has the milliseconds that issuing a
+    frame took.
+    """
 
     painted = Signal(float)
     frame_wanted = Signal()
@@ -140,10 +142,10 @@ class GLView(CameraMouse, QOpenGLWidget):
 
 
 class ImageView(CameraMouse, QWidget):
-    """The same picture through an offscreen context, for platforms without OpenGL widgets.
+    """Draws the same picture through an offscreen context, for platforms without OpenGL widgets.
 
-    coarse: how many times wider and higher than the picture's pixels those of the widget are; more than 1
-    where nobody looks. beside: another view of the same scenes, which is painted first and lives longer.
+    `coarse` is how many times wider and higher the picture's pixels are than the widget's; it is more than 1
+    where nobody looks. `beside` is another view of the same scenes, which is painted first and lives longer.
     """
 
     coarse = 1
@@ -161,7 +163,7 @@ class ImageView(CameraMouse, QWidget):
         self._offscreen: Any = None
         self._pixels: np.ndarray | None = None
         self._drawn: tuple[object, Scene, QImage] | None = None  # the last picture, and what it shows
-        self._contexts: list[Any] = []  # nobody else gives a context back when the widget goes
+        self._contexts: list[Any] = []  # nothing else releases a context when the widget is deleted
         self.destroyed.connect(lambda *_, made=self._contexts: [each.release() for each in made])
         self.theme: SceneTheme = DARK
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
@@ -182,7 +184,7 @@ class ImageView(CameraMouse, QWidget):
                 self._cannot_draw(error)
         painter = QPainter(self)
         if self._offscreen:
-            scene = self._compose()  # which may move the camera
+            scene = self._compose()  # this may move the camera
             look = self.camera, self.theme, size, ratio
             drawn = self._drawn
             if drawn is None or drawn[0] != look or not drawn[1].same(scene):
@@ -195,7 +197,7 @@ class ImageView(CameraMouse, QWidget):
         self.painted.emit(0.0)
 
     def _fresh(self, scene: Scene, size: tuple[int, int]) -> QImage:
-        """Draw, and return the image, whose pixels lie in the same memory as those of the one before."""
+        """Draw, and return the image. Its pixels use the same memory as those of the previous one."""
         if self._pixels is None or self._pixels.shape[:2] != size[::-1]:
             self._pixels = np.empty((size[1], size[0], 4), np.uint8)
         self._offscreen.render(scene, self.camera, self.theme, size, self._pixels)
@@ -203,14 +205,14 @@ class ImageView(CameraMouse, QWidget):
 
 
 def make_beside(view: GLView | ImageView, compose: Compose, parent: QWidget) -> GLView | ImageView:
-    """Return one more view of what another shows, of its kind."""
+    """Return another view of the scene in a view, of the same kind."""
     return ImageView(compose, parent, view) if isinstance(view, ImageView) else GLView(compose, parent)
 
 
 def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:
-    """Return the host that is right here: OpenGL in the widget on a graphics card, a drawn image elsewhere.
+    """Return the right widget here: OpenGL in the widget with a graphics card, a drawn image otherwise.
 
-    An OpenGL widget makes Qt compose the whole window through OpenGL; in software that costs more than the
+    An OpenGL widget makes Qt compose the whole window through OpenGL; in software that takes longer than the
     picture.
     """
     without = {"offscreen", "minimal", "vnc", "linuxfb", "minimalegl", "eglfs"}
@@ -222,7 +224,7 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
 
 
 def _in_software() -> bool:
-    """Return whether the window system's OpenGL has no graphics card behind it."""
+    """Return whether the window system's OpenGL runs without a graphics card."""
     if not any(any(Path("/dev").glob(name)) for name in ("dri/card*", "dri/render*", "nvidia*", "dxg")):
         return True  # there is none, and asking OpenGL takes long
     context, surface = QOpenGLContext(), QOffscreenSurface()

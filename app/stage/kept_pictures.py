@@ -1,4 +1,4 @@
-"""Looks on a thread for pictures that were drawn before, and keeps there what is drawn now."""
+"""Search on a thread for pictures that were drawn before, and keep new ones there."""
 
 from __future__ import annotations
 
@@ -16,21 +16,23 @@ Work = PictureOrder | tuple[str, list[QImage]] | None
 
 
 class KeptPictures(QObject):
-    """found: an order's number and its pictures. missing: an order of which the disk has nothing."""
+    """Searches and keeps pictures on disk. `found` has an order's number and its pictures, `missing` an order
+    without pictures on disk.
+    """
 
     found = Signal(int, object)
     missing = Signal(object)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._work: queue.LifoQueue[Work] = queue.LifoQueue()  # what was asked for last is in sight
-        self._keys: dict[int, str] = {}  # of orders that are missing, what they are found by
+        self._work: queue.LifoQueue[Work] = queue.LifoQueue()  # the latest orders are visible now
+        self._keys: dict[int, str] = {}  # by number of a missing order: the key of its pictures
         self._wanted: set[int] = set()
         self._thread: threading.Thread | None = None
         self._stopped = False
 
     def ask(self, order: PictureOrder) -> None:
-        """Look for an order's pictures; `found` or `missing` tells."""
+        """Search for an order's pictures; `found` or `missing` is emitted."""
         if self._stopped:
             return
         if self._thread is None:
@@ -40,18 +42,18 @@ class KeptPictures(QObject):
         self._work.put(order)
 
     def keep(self, number: int, pictures: list[QImage]) -> None:
-        """Keep what was drawn for an order that was missing."""
+        """Keep the pictures that were drawn for a missing order."""
         key = self._keys.pop(number, None)
         if key is not None and not self._stopped:
             self._work.put((key, pictures))
 
     def forget(self, number: int) -> None:
-        """Nobody wants an order's pictures any more."""
+        """Drop an order whose pictures are no longer needed."""
         self._wanted.discard(number)
         self._keys.pop(number, None)
 
     def stop(self) -> None:
-        """End the thread; at closing."""
+        """End the thread, on closing."""
         self._stopped = True
         self._work.put(None)
         if self._thread is not None:

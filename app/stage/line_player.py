@@ -1,8 +1,7 @@
-"""What is said, heard in step with the picture.
+"""Play spoken lines in step with the picture.
 
-A thread of the sound library asks for samples; what it gets is mixed from the lines that the plan says.
-Without a sound device, or without the library, everything else works and the status bar says why it is
-silent.
+A thread of the sound library requests samples, which are mixed from the lines in the plan. Without a sound
+device, or without the library, everything else works and the status bar says why it is silent.
 """
 
 from __future__ import annotations
@@ -22,14 +21,14 @@ from app.translation import tr, tr_error
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 
-RATE = 44100  # as speech.soundtrack's, which is not imported before something is said
-LATENCY = 0.08  # seconds of sound on its way to the ear: enough that a busy machine does not tear it
-DRIFT = 0.08  # seconds the sound may be apart from the picture before it is set right
+RATE = 44100  # as in speech.soundtrack, which is not imported before something is said
+LATENCY = 0.08  # seconds of sound on its way to the ear: enough to avoid gaps on a busy machine
+DRIFT = 0.08  # seconds the sound may differ from the picture before it is corrected
 EMPTY: list[tuple[float, np.ndarray]] = []
 
 
 class Sound(QObject):
-    """Plays the lines of what is on stage while the playhead runs at its own speed. told: why it is
+    """Plays the lines of what is on stage while the playhead runs at normal speed. `told` says why it is
     silent.
     """
 
@@ -47,10 +46,10 @@ class Sound(QObject):
         self.document, self.session, self.performance, self.jobs = document, session, performance, jobs
         self.muted = False
         self.sounds: dict[str, np.ndarray] = {}
-        self.parts = EMPTY  # what sounds when; replaced, never changed, since another thread reads it
-        self.place = 0  # the next sample that is asked for
+        self.parts = EMPTY  # what sounds when; replaced, never changed, because another thread reads it
+        self.place = 0  # the next sample to play
         self._stream: Any = None
-        self._silent = False  # there is no way to be heard; that was told
+        self._silent = False  # there is no way to play sound; this was reported
         self._files: dict[str, tuple[str, int | None]] = {}
         document.changed.connect(self._edited)
         document.state_changed.connect(lambda: self._edited(document.project, document.project))
@@ -65,7 +64,7 @@ class Sound(QObject):
         self._want({**after.lines, **self._said()})
 
     def _said(self) -> dict[str, Line]:
-        """Return the lines of a conversation on stage: they are in no project."""
+        """Return the lines of a conversation on stage, which are in no project."""
         talking = self.performance.shown.everyone if self.performance.shown.others else ()
         return {
             s.line: one.project.lines[s.line]
@@ -120,7 +119,7 @@ class Sound(QObject):
 
     @property
     def audible(self) -> bool:
-        """Whether there is anything to be heard now."""
+        """Return whether there is anything to hear now."""
         s = self.session
         return (
             bool(self.parts)
@@ -131,7 +130,7 @@ class Sound(QObject):
         )
 
     def _moved(self, *_: object) -> None:
-        """Follow the playhead: begin, go on, jump or fall silent with it."""
+        """Follow the playhead: begin, continue, jump or fall silent with it."""
         if not self.audible:
             if self._stream is not None and self._stream.active:
                 self._stream.stop()
@@ -173,7 +172,7 @@ class Sound(QObject):
         return True
 
     def fill(self, out: np.ndarray, frames: int, time: object, status: object) -> None:
-        """Give the next samples `[frames, 1]`; called on the sound library's thread."""
+        """Write the next samples `[frames, 1]`; called on the sound library's thread."""
         from metagraph.speech.soundtrack import mix_track
 
         out[:, 0] = mix_track(self.parts, self.place, frames)
@@ -184,7 +183,7 @@ class Sound(QObject):
         self._moved()
 
     def stop(self) -> None:
-        """Fall silent for good: the window closes."""
+        """Stop all sound, because the window closes."""
         self.parts = EMPTY
         if self._stream is not None:
             self._stream.close()

@@ -1,4 +1,4 @@
-"""Going live and coming back: agents drive the character meanwhile; what was played is kept at hand."""
+"""Go live and come back. In between, agents drive the character; what was played is kept."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 
 class LiveControl(QObject):
-    """changed: live begins, ends, or is connected otherwise. ticked: the live plan went on. stage: while it
-    is on.
+    """Controls live play. `changed` is emitted if it begins, ends, or its connection changes, `ticked` when
+    the live plan advanced. `stage` exists while it is on.
     """
 
     changed = Signal()
@@ -27,8 +27,8 @@ class LiveControl(QObject):
         super().__init__(parent)
         self.document, self.session = document, session
         self.stage: LiveStage | None = None
-        self.following = True  # the playhead is now, not somewhere in the past
-        self.last: KeptPerformance | None = None  # what was played live last, if anything was asked
+        self.following = True  # the playhead is at the present, not in the past
+        self.last: KeptPerformance | None = None  # what was played live last, if there were requests
 
     def begin(self, options: Options | None = None) -> None:
         """Let agents drive the character from now on."""
@@ -47,7 +47,7 @@ class LiveControl(QObject):
         self.changed.emit()
 
     def end(self) -> None:
-        """Hang up, and keep at hand what was played."""
+        """Disconnect, and keep what was played."""
         if self.stage is None:
             return
         stage, self.stage = self.stage, None
@@ -59,7 +59,7 @@ class LiveControl(QObject):
         self.changed.emit()
 
     def follow(self) -> None:
-        """Back to now, after scrubbing through the past."""
+        """Go back to the present, after scrubbing through the past."""
         self.following = True
         self.session.transport.show_plan()
         self.session.transport.set_playing(True)

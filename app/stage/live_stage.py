@@ -1,7 +1,8 @@
-"""The stage played live: agents ask over WebSocket and OSC on this machine, the window shows what they get.
+"""Play the stage live: agents send requests over WebSocket and OSC on this machine, and the window shows the
+result.
 
-The lines to clients are in a process of their own; here is one tick a frame, which answers what came in since
-the last.
+The connections to clients are in another process. Here is one tick for each frame, which answers what arrived
+since the previous one.
 """
 
 from __future__ import annotations
@@ -30,15 +31,15 @@ from metagraph.live.tick_work import Out
 from metagraph.playback.planning.extend_performance import AskAnswer, answer_asks
 
 TICK = 16  # milliseconds
-SHOWN = 300  # requests that are shown in the timeline, the latest
-ANSWERED = 0.2  # seconds between two looks at what becomes of them
+SHOWN = 300  # latest requests that the timeline shows
+ANSWERED = 0.2  # seconds between two updates of what becomes of them
 RATED = 1.0  # seconds over which requests are counted
 WINDOW = 0  # the window is a client, too
-TAKES = "takes"  # what clients call the motion graph of the project's own
+TAKES = "takes"  # the clients' name for the motion graph of the project itself
 
 
 class _Shown(Tape):
-    """A tape that also keeps the latest requests at hand. count: how many were taken on."""
+    """A tape that also keeps the latest requests. `count` is the number of accepted requests."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -54,7 +55,7 @@ class _Shown(Tape):
 
 
 class _Counted(LiveSession):
-    """A session that knows how many requests it has answered, whatever it said."""
+    """A session that counts the requests it has answered."""
 
     answered = 0
 
@@ -65,8 +66,8 @@ class _Counted(LiveSession):
 
 
 class LiveStage(QObject):
-    """ticked: the plan went on. told: words about who can connect, or why nobody can. folder: beside which
-    models are looked for.
+    """Plays live. `ticked` is emitted when the plan advanced; `told` has words about who can connect, or why
+    nobody can. Models are searched beside `folder`.
     """
 
     ticked = Signal()
@@ -99,14 +100,14 @@ class LiveStage(QObject):
     # --- from beginning to end
 
     def start(self) -> None:
-        """Begin: open the lines and let time run."""
+        """Begin: open the connections and start the clock."""
         self._clock.start()
         self._open(self.options)
         self._make_graph()
         self._timer.start()
 
     def _make_graph(self) -> None:
-        """Begin to make the motion graph of the project's own takes, where it has any, beside all else."""
+        """Begin to make the motion graph of the project's own takes on a thread, if it has any."""
         project = self.session.project
         clips, speech = list_recorded_takes(project)
         if not clips:
@@ -120,13 +121,13 @@ class LiveStage(QObject):
                 graph = live_graph(clips, speech)
                 graph.warm(project)
                 future.set_result(graph)
-            except Exception as error:  # told to who asks for it
+            except Exception as error:  # reported to clients that ask for it
                 future.set_exception(error)
 
         Thread(target=make, name="motion graph", daemon=True).start()
 
     def _take_graph(self) -> None:
-        """Offer the motion graph once it is made; where there is none, say why."""
+        """Offer the motion graph once it is made; otherwise say why there is none."""
         future, self._graph = self._graph, None
         error = None if future is None else future.exception()
         if future is not None and error is None:
@@ -144,7 +145,7 @@ class LiveStage(QObject):
             self.told.emit(self.words())
 
     def stop(self) -> None:
-        """End: clients are hung up on."""
+        """End, and disconnect the clients."""
         self._timer.stop()
         if self.relay is not None:
             self.relay.close()
@@ -152,13 +153,13 @@ class LiveStage(QObject):
 
     @property
     def now(self) -> float:
-        """Seconds since it began."""
+        """Return the seconds since it began."""
         return self._clock.elapsed() / 1000 if self._clock.isValid() else 0.0
 
     # --- what happens
 
     def tick(self) -> None:
-        """Answer what came in, and go on."""
+        """Answer what arrived, and advance."""
         now = self.now
         if self._graph is not None and self._graph.done():
             self._take_graph()
@@ -181,25 +182,25 @@ class LiveStage(QObject):
         if relay is not None:
             relay.close()
         if not self._ready and (self.options.port, self.options.osc) == (PORT, OSC_PORT):
-            self.options = Options(port=0, osc=0)  # someone else listens there: any free ones will do
+            self.options = Options(port=0, osc=0)  # another program uses these ports: use any free ones
             self._open(self.options)
             return
         self.error = error
         self.told.emit(self.words())
 
     def ask(self, ask: AnyRequest) -> None:
-        """Ask as a client does."""
+        """Send a request as a client does."""
         self.session.receive(WINDOW, msgspec.json.encode(ask))
 
     def change(self, project: Project) -> None:
-        """Go on with an edited project."""
+        """Continue with an edited project."""
         self.session.change(project)
 
     # --- what is known
 
     @property
     def asks(self) -> tuple[AnyRequest, ...]:
-        """The latest requests of all clients."""
+        """Return the latest requests of all clients."""
         return self.tape.latest
 
     def answers(self) -> dict[str, AskAnswer]:
@@ -211,7 +212,7 @@ class LiveStage(QObject):
 
     @property
     def rate(self) -> float:
-        """Requests a second, lately."""
+        """Return the recent number of requests a second."""
         if len(self._rated) < 2:
             return 0.0
         (a, first), (b, last) = self._rated[0], self._rated[-1]
@@ -242,5 +243,5 @@ class LiveStage(QObject):
         return tr("Live at {address}: {who}{lacks}", address=ready.websocket, who=who, lacks=lacks)
 
     def performance(self) -> Performance:
-        """Return what was played so far, to be kept."""
+        """Return what was played so far, to keep it."""
         return self.session.performance(tr("Live session"))

@@ -1,5 +1,5 @@
-"""Who is on stage: the models that improvise, a kept performance or a conversation; and which of the two
-editors' graphs moves them.
+"""Keep what is on stage: the models that improvise, a kept performance or a conversation; and which of the
+two editors' graphs plays.
 """
 
 from __future__ import annotations
@@ -14,9 +14,11 @@ Mode = Literal["meta", "manual"]
 
 
 class OnStage(QObject):
-    """performance_changed: another kept performance is on stage, or other requests of it are selected.
-    mode_changed: the meta-graph or the manual state machine is edited and played. conversation_changed:
-    another conversation is on stage, or another side of it shown.
+    """What is on stage.
+
+    `performance_changed` is emitted if another kept performance is on stage, or other requests of it are
+    selected; `mode_changed` if the meta-graph or the manual state machine is edited and played instead;
+    `conversation_changed` if another conversation is on stage, or another side of it is shown.
     """
 
     performance_changed = Signal()
@@ -29,9 +31,9 @@ class OnStage(QObject):
         self.performance: str | None = None  # the kept performance on stage, None while the models improvise
         self.requests: tuple[str, ...] = ()  # selected in the timeline
         self.conversation: str | None = (
-            None  # the conversation on stage, None for none; never while a kept performance is
+            None  # the conversation on stage, None for none; never together with a kept performance
         )
-        self.side = 0  # of those who talk, whose plan the timeline shows
+        self.side = 0  # the speaker whose plan the timeline shows
 
     def set_mode(self, mode: Mode) -> None:
         """Edit and play the meta-graph, or the manual state machine."""
@@ -40,7 +42,7 @@ class OnStage(QObject):
             self.mode_changed.emit()
 
     def set_performance(self, ident: str | None) -> None:
-        """Put a kept performance on stage, or none; a conversation leaves it for one."""
+        """Put a kept performance on stage, or none; it replaces a conversation."""
         if ident is not None:
             self.set_conversation(None)
         if ident != self.performance:
@@ -53,21 +55,21 @@ class OnStage(QObject):
             self.performance_changed.emit()
 
     def set_conversation(self, ident: str | None) -> None:
-        """Put a conversation on stage, or none; a kept performance leaves it for one."""
+        """Put a conversation on stage, or none; it replaces a kept performance."""
         if ident is not None:
             self.set_performance(None)
         if ident != self.conversation:
-            self.conversation, self.side = ident, min(self.side, 1)  # others may have no third
+            self.conversation, self.side = ident, min(self.side, 1)  # others may have no third side
             self.conversation_changed.emit()
 
     def set_side(self, side: int) -> None:
-        """Let the timeline show the plan of one side of the conversation, from 0."""
+        """Make the timeline show the plan of one side of the conversation, from 0."""
         if side != self.side:
             self.side = side
             self.conversation_changed.emit()
 
     def follow(self, before: Project, after: Project) -> None:
-        """Let go of what an edit took away."""
+        """Drop what an edit removed."""
         if self.performance is not None and self.performance not in after.performances:
             self.set_performance(None)
         elif self.performance is not None and before.performances is not after.performances:

@@ -1,4 +1,4 @@
-"""Onion skin: other moments of an action, seen through beside the one that plays."""
+"""Show an onion skin: other moments of an action, transparent, beside the one that plays."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ MOST = 5  # ghosts; each is drawn in every frame
 
 @dataclass(frozen=True)
 class OnionSkin:
-    """action: whose. moments: seconds of its clip, each seen so much: 0..1."""
+    """The moments of an `action` to show, as pairs of seconds of its clip and opacity, 0..1."""
 
     action: Action
     moments: tuple[tuple[float, float], ...]
 
 
 class Onion(QObject):
-    """changed: other moments are to be seen, or none."""
+    """Holds the onion skin. `changed` is emitted if other moments should be shown, or none."""
 
     changed = Signal()
 
@@ -29,7 +29,7 @@ class Onion(QObject):
         self.skin: OnionSkin | None = None
 
     def show(self, skin: OnionSkin | None) -> None:
-        """Let these moments be seen, of which the first `MOST` are; None for no skin."""
+        """Show these moments, at most the first `MOST`; None for no skin."""
         if skin is not None:
             skin = OnionSkin(skin.action, skin.moments[:MOST])
         if skin != self.skin:

@@ -1,7 +1,8 @@
-"""The performance: the plan for the project as it is now, and the pose at the playhead. Derived, never saved.
+"""Hold the performance: the plan for the current project, and the pose at the playhead. It is derived, never
+saved.
 
-The plan is a pure function of (project, asks, seed, stances, length); it is made anew on a thread after each
-edit, and the old one plays until the new one is there.
+The plan is a pure function of (project, requests, seed, stances, length). It is made again on a thread after
+each edit, and the old one plays until the new one is ready.
 """
 
 from __future__ import annotations
@@ -31,17 +32,18 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import AskAnswer, answer_asks
 from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 
-LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
-BEFORE = 1.0  # seconds before a moment that is shown, at which it is stopped
+LENGTH = 60.0  # seconds planned ahead, and added whenever the playhead comes near the end
+BEFORE = 1.0  # seconds before a shown moment at which playback stops
 AHEAD = 15.0  # seconds before the end at which more is planned
 
 
 class StagePerformance(QObject):
-    """changed: something else plays, or the same was planned anew. requests: edits what is asked for.
-    timeline: edits what is noted beside it. live: begins and ends live play. muted: layers that rest while
-    one looks. before: the state of the project that
-    clips and actions are shown of instead.
-    staged: the whole performance as it was last shown, None before; a clip or an action may be shown now.
+    """The performance on stage.
+
+    `changed` is emitted if something else plays, or the same was planned again. `requests` edits the
+    requests, `timeline` the notes beside them. `live` begins and ends live play. `muted` has layers that rest
+    for the time being. `before` is the state of the project from which clips and actions are shown instead.
+    `staged` is the whole performance as it was last shown, None before; a clip or an action may be shown now.
     """
 
     changed = Signal()
@@ -65,7 +67,7 @@ class StagePerformance(QObject):
         session.onstage.mode_changed.connect(self._switched)
         session.onstage.conversation_changed.connect(self._conversed)
         self.conversations = ConversationPlans()
-        self._noted: tuple[str, ...] = ()  # about a conversation, said once
+        self._noted: tuple[str, ...] = ()  # about a conversation, reported once
         self._fires: tuple[Fire, ...] = ()  # triggers of the manual state machine, fired since it began
         self._on_stage: str | None = None
         self.live = LiveControl(document, session, self)
@@ -82,12 +84,12 @@ class StagePerformance(QObject):
     # --- what plays
 
     def replan(self) -> None:
-        """Plan anew, soon; many calls in a row make one plan."""
+        """Plan again soon; many calls in a row make one plan."""
         self._soon.start()
 
     def mute(self, layers: Iterable[Layer]) -> None:
-        """Let these layers rest in their stances, and no others, while one looks; plans and exports stay as
-        they are.
+        """Make these layers, and no others, rest in their stances for the time being; plans and exports do
+        not change.
         """
         muted = frozenset(layers)
         if muted != self.muted:
@@ -96,7 +98,7 @@ class StagePerformance(QObject):
             self.changed.emit()
 
     def compare(self, before: Project | None) -> None:
-        """Show clips and actions alone as they were in another state of the project, or, for None, as they
+        """Show single clips and actions as they were in another state of the project, or, for None, as they
         are.
         """
         if before is not self.before:
@@ -126,7 +128,7 @@ class StagePerformance(QObject):
 
     @property
     def conversation(self) -> str | None:
-        """The conversation on stage."""
+        """Return the conversation on stage."""
         found = (
             self.session.onstage.conversation
             if self.session.onstage.mode == "meta" and self.live.stage is None
@@ -136,18 +138,18 @@ class StagePerformance(QObject):
 
     @property
     def ends(self) -> bool:
-        """Whether what is on stage has an end of its own; the models improvise for ever."""
+        """Return whether what is on stage has an end; the models improvise without end."""
         return self._own_length is not None
 
     @property
     def _own_length(self) -> float | None:
-        """Seconds of what is kept and on stage; None while the models improvise, for ever."""
+        """Return the seconds of what is kept and on stage; None while the models improvise, without end."""
         if self.conversation is not None:
             return self.document.project.conversations[self.conversation].length
         return self.requests.kept.length if self.requests.kept is not None else None
 
     def keep_conversation(self) -> None:
-        """Keep what all who talk do as performances, which can be edited ask by ask and exported."""
+        """Keep what all speakers do as performances, which can be edited request by request and exported."""
         ident, shown = self.conversation, self.shown
         made: tuple[str, ...] = ()
 
@@ -171,7 +173,7 @@ class StagePerformance(QObject):
         """Fire a trigger of the layer's manual state machine, now."""
         self.session.transport.show_plan()
         at = round(self.session.transport.seconds + SOON, 3)
-        # What was fired later, before the playhead was set back, never was.
+        # Triggers fired later, before the playhead was set back, are removed.
         self._fires = (*(f for f in self._fires if f.at < at), Fire(self.session.place.layer, trigger, at))
         self.session.transport.set_playing(True)
         self.replan()
@@ -256,7 +258,7 @@ class StagePerformance(QObject):
         live = self.live.stage
         if live is None or self.session.transport.show != "plan":
             return
-        # What lies farther back than the running plan reaches is kept in pieces.
+        # The part that the running plan no longer has is kept in pieces.
         plan = (
             live.session.plan if self.live.following else live.session.plan_at(self.session.transport.seconds)
         )
@@ -282,7 +284,7 @@ class StagePerformance(QObject):
         transport.seek(max(0.0, seconds - BEFORE))
 
     def plan_beyond(self, seconds: float) -> None:
-        """Plan further where the playhead comes near the end of what goes on for ever."""
+        """Plan further if the playhead comes near the end of an endless performance."""
         if seconds > self.length - AHEAD:
             self.length += LENGTH
             self.replan()
@@ -291,7 +293,7 @@ class StagePerformance(QObject):
 
     @property
     def asks(self) -> tuple[AnyRequest, ...]:
-        """What is asked for: of the performance on stage, or lately of the live one."""
+        """Return the requests: of the performance on stage, or the latest of the live one."""
         if self.live.stage is not None:
             return self.live.stage.asks
         if self.conversation is not None:
@@ -299,7 +301,7 @@ class StagePerformance(QObject):
         return self.requests.kept.asks if self.requests.kept is not None else ()
 
     def answers(self) -> dict[str, AskAnswer]:
-        """Return what the plan that is shown does about each request."""
+        """Return what the shown plan does about each request."""
         if self.live.stage is not None:
             return self.live.stage.answers()
         if self._answered is not self.shown:
@@ -312,11 +314,11 @@ class StagePerformance(QObject):
     # --- the pose
 
     def skeleton(self) -> Skeleton | None:
-        """Return the skeleton of what plays: a clip looked at alone may have its own."""
+        """Return the skeleton of what plays; a clip shown alone may have its own."""
         return self.shown.skeleton
 
     def pose(self, seconds: float | None = None) -> Pose | None:
-        """Return the pose at the playhead (or at `seconds`), None when there is nothing to show."""
+        """Return the pose at the playhead (or at `seconds`), None if there is nothing to show."""
         return self.shown.pose(self.session.transport.seconds if seconds is None else seconds)
 
     def morphs(self) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Draws thumbnails in a process of its own: compiling shaders and reading pixels back would hold up the
+"""Draw thumbnails in a process of its own, because compiling shaders and reading pixels back would block the
 window's thread.
 """
 
@@ -25,19 +25,21 @@ MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
     180,
     12,
     72,
-)  # the loop in the stance card: pixels, pictures a second, at most
-STRIP_RATE, STRIP_MOST = 6, 36  # a filmstrip's pictures a second, at most
-SCRUB = 12  # pictures through which the pointer goes over a card
-WORTH_LEVELS = 24  # pictures of a figure after which meshes with fewer triangles pay
+)  # the loop in the stance card: pixels, pictures a second, largest number
+STRIP_RATE, STRIP_MOST = 6, 36  # a filmstrip's pictures a second, largest number
+SCRUB = 12  # pictures that the pointer passes through over a card
+WORTH_LEVELS = 24  # number of a figure's pictures from which on meshes with fewer triangles are worth making
 LARGE = 448  # pixels of a picture on a large card
-LONG = ("moving", "strip", "scrub")  # of many pictures
-FRAMED = ("card", "bare", "large", "scrub")  # as near as what the clip moves asks for
+LONG = ("moving", "strip", "scrub")  # orders of many pictures
+FRAMED = ("card", "bare", "large", "scrub")  # framed as closely as the moving parts of the clip allow
 
 
 @dataclass(frozen=True)
 class PictureOrder:
-    """what: "card", "bare", "large", "scrub", "moving" or "strip". paper: sRGB 0..1 behind the figure, None
-    for transparent. character: its file. hidden: its meshes that are not drawn.
+    """An order for pictures of a clip.
+
+    `what` is "card", "bare", "large", "scrub", "moving" or "strip". `paper` is the colour behind the figure,
+    sRGB 0..1, None for transparent. `character` is its file, `hidden` its meshes that are not drawn.
     """
 
     number: int
@@ -53,7 +55,7 @@ _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 
 
 def draw_clip_pictures(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
-    """Return a clip's pictures `[H, W, 4]`: one telling pose, or its whole loop."""
+    """Return a clip's pictures `[H, W, 4]`: one typical pose, or its whole loop."""
     from preview.scene import THEMES
     from preview.thumbnail import ThumbnailStyle, telling_frame, thumbnail, thumbnails
 
@@ -79,7 +81,7 @@ def draw_clip_pictures(offscreen: Any, figure: Any, order: PictureOrder) -> list
 
 def serve_pictures(orders: BinaryIO, results: BinaryIO) -> None:
     """Answer pickled orders with pickled (number, None) when one is begun and (number, pictures) when it is
-    drawn, until the other side is gone: stills before loops, the latest first.
+    drawn, until the other side has ended: stills before loops, the latest first.
     """
     from preview.offscreen import Offscreen, OpenGLError
 
@@ -95,7 +97,7 @@ def serve_pictures(orders: BinaryIO, results: BinaryIO) -> None:
         while (order := waiting.get()[2]) is not None:
             pickle.dump(
                 (order.number, None), results
-            )  # begun: whoever waits knows what it was if this process ends
+            )  # begun: the other side knows which one it was if this process ends
             results.flush()
             key = (order.clip.skeleton.fingerprint, order.character, order.hidden)
             if key not in figures:
@@ -122,7 +124,7 @@ def _figure(skeleton: Skeleton, character: Path | None, hidden: tuple[str, ...])
 
     try:
         return figure_from_file(character, skeleton, hidden)
-    except FileError:  # the preview says so
+    except FileError:  # the preview reports it
         return figure_from_file(None, skeleton)
 
 
@@ -133,6 +135,6 @@ if __name__ == "__main__":
 
     free_memory_early()
     install_in_child()
-    # Whoever wanted pictures may be gone in the middle of one.
+    # The other process may end in the middle of a picture.
     with contextlib.suppress(BrokenPipeError), sys.stdout.buffer as out:
         picture_process.serve_pictures(sys.stdin.buffer, out)

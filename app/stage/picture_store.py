@@ -1,5 +1,6 @@
-"""Pictures of clips kept on disk, so that a project that is opened again shows them without drawing. They are
-found by what they show: the clip's content, the figure, the look and the size. Nothing is lost with them.
+"""Keep pictures of clips on disk, so that a project that is opened again shows them without drawing. They are
+found by what they show: the clip's content, the figure, the look and the size. They can be deleted without
+loss.
 """
 
 from __future__ import annotations
@@ -13,18 +14,18 @@ from PySide6.QtGui import QImage, QImageWriter, QPainter
 from app.stage.picture_process import LARGE, SCALE, SCRUB, SIZE, PictureOrder
 from metagraph.common.disk_cache import DiskCache, cache_folder
 
-DRAWN = 4  # to be raised when pictures are drawn otherwise
+DRAWN = 4  # raise this when pictures are drawn differently
 MOST = 192 * 1024 * 1024  # bytes on disk
 KEPT = ("card", "bare", "large", "scrub")
 
 
 def pictures_folder() -> Path | None:
-    """Return where this person's pictures are kept."""
+    """Return the folder for this user's pictures."""
     return cache_folder("pictures")
 
 
 def picture_key(order: PictureOrder) -> str:
-    """Return what a picture is found by, 40 hex digits: another wherever it would look otherwise."""
+    """Return the key of a picture, 40 hex digits; it differs if the picture would."""
     clip = order.clip
     out = hashlib.blake2b(digest_size=20)
     character = None
@@ -44,13 +45,13 @@ def picture_key(order: PictureOrder) -> str:
 
 
 class PictureStore:
-    """Square pictures by keys, as `DiskCache` keeps files. Used by one thread at a time."""
+    """Keeps square pictures by keys, in a `DiskCache`. One thread may use it at a time."""
 
     def __init__(self, folder: Path | None, most: int = MOST) -> None:
         self.files = DiskCache(folder, most, ".png")
 
     def load(self, key: str) -> list[QImage] | None:
-        """Return what was kept; None where nothing is, or nothing that could be read."""
+        """Return kept pictures; None if there are none, or they cannot be read."""
         data = self.files.read(key)
         if data is None:
             return None
@@ -80,6 +81,6 @@ class PictureStore:
         data = QBuffer()
         data.open(QIODevice.OpenModeFlag.WriteOnly)
         writer = QImageWriter(data, QByteArray(b"png"))
-        writer.setQuality(80)  # packed lightly: it is read often, and soon written
+        writer.setQuality(80)  # compressed lightly, because it is read often and must be written quickly
         if writer.write(sheet):
             self.files.write(key, bytes(data.data().data()))

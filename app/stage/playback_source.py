@@ -1,4 +1,4 @@
-"""What plays: a plan on the project it was made for, or a clip alone; whoever shows it asks for the pose at a
+"""Hold what plays: a plan on the project it was made for, or a single clip. Views ask it for the pose at a
 time.
 """
 
@@ -44,21 +44,24 @@ if TYPE_CHECKING:
 
 ASIDE = (
     -0.35
-)  # radians the camera goes round those who talk, to see them from the side and not one of them from behind
+)  # radians by which the camera goes around the speakers, to see them from the side and none from behind
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 
 @dataclass(frozen=True)
 class ShownPlayback:
-    """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a
-    plan. manual: what the manual state machines play, where they do; `plan` then only shows it.
+    """What plays.
 
-    Of a conversation: others: those it talks with. side: which of them this is, from 0. stand: where it
-    stands. asks: what it is asked. notes: what could not be read. folder: what paths in its project begin at.
-    motion: the clip it moves with instead of its plan, which still says where it looks and what it says; of
-    one that was generated, what is above the hips. told: what becomes of its rates, where a plan moves it.
-    looks: of three or more, where it looks. over: what generated motion lays over the plan at a time, live.
-    muted: layers that rest in their stances while one looks at the others.
+    `project` is the one the plan was made for. `length` is in seconds. `clip` is the clip that plays alone,
+    without a plan. `manual` is what the manual state machines play, if they do; `plan` then only shows it.
+
+    For a conversation: `others` are the other speakers' playbacks, and `side` is the number of this one, from
+    0. `stand` is where it stands. `asks` are its requests. `notes` say what could not be read. `folder` is
+    what paths in its project are relative to. `motion` is the clip that moves it instead of its plan, which
+    still says where it looks and what it says; a generated clip moves what is above the hips. `told` says how
+    well its rates are met, if a plan moves it. `looks` says where it looks, if there are three or more
+    speakers. `over` returns the generated motion over the plan at a time, when live. `muted` has layers that
+    rest in their stances while the user looks at the others.
     """
 
     project: Project
@@ -80,7 +83,7 @@ class ShownPlayback:
 
     @cached_property
     def moving(self) -> Plan:
-        """The plan without what muted layers play."""
+        """Return the plan without what muted layers play."""
         if not self.muted:
             return self.plan
         layers = {
@@ -91,19 +94,19 @@ class ShownPlayback:
 
     @property
     def everyone(self) -> tuple[ShownPlayback, ...]:
-        """Who is to be seen: this one alone, or all of a conversation, its first side first."""
+        """Return the visible characters: this one, or all of a conversation, the first side first."""
         return tuple(sorted((self, *self.others), key=lambda one: one.side))
 
     @property
     def skeleton(self) -> Skeleton | None:
-        """A clip looked at alone may have its own."""
+        """Return the skeleton; a clip shown alone may have its own."""
         if self.clip is not None:
             motion = self.project.clips[self.clip].motion
             return motion.skeleton if motion is not None else None
         return self.project.skeleton
 
     def clip_seconds(self, action: Action, seconds: float) -> float | None:
-        """Return the moment of an action's clip that plays at a time; None while it does not."""
+        """Return the moment of an action's clip that plays at a time; None while it does not play."""
         if self.clip is not None:
             return seconds if self.clip == action.clip else None
         cue = self.plan.layers[action.layer].cue_at(seconds)
@@ -112,7 +115,7 @@ class ShownPlayback:
         return float(cue.clip_seconds(seconds))
 
     def seconds_of(self, action: Action, moment: float) -> float | None:
-        """Return a time at which a moment of an action's clip plays, seconds; None where it never does."""
+        """Return a time in seconds at which a moment of an action's clip plays; None if it never does."""
         if self.clip is not None:
             return moment if self.clip == action.clip else None
         for cue in self.plan.layers[action.layer].cues:
@@ -123,7 +126,7 @@ class ShownPlayback:
 
     @cached_property
     def evaluator(self) -> Poses | None:
-        """What plays, as poses; None where there is nothing to show."""
+        """Return the evaluator of what plays; None if there is nothing to show."""
         project = self.project
         entry = project.clips.get(self.clip or self.motion or "")
         motion = entry.motion if entry is not None else None
@@ -142,29 +145,29 @@ class ShownPlayback:
         return Evaluator(self.moving, project)
 
     def pose(self, seconds: Any) -> Pose | None:
-        """Return the pose at a time, or at many, None when there is nothing to show."""
+        """Return the pose at one time or many; None if there is nothing to show."""
         return self.evaluator.at(seconds) if self.evaluator is not None else None
 
     def morphs(self, seconds: float) -> dict[str, float]:
-        """Return face shapes and their weights, 0..1, at a time."""
+        """Return morph targets and their weights, 0..1, at a time."""
         return self.evaluator.morphs_at(seconds) if self.evaluator is not None else {}
 
     def faces(self, times: np.ndarray) -> list[dict[str, float]]:
-        """Return face shapes and their weights at each of many times, as `morphs` gives them."""
+        """Return morph targets and their weights at each of many times, as in `morphs`."""
         return self.evaluator.faces_at(times) if self.evaluator is not None else [{} for _ in times]
 
 
 def play_clip_alone(project: Project, clip: str) -> ShownPlayback:
-    """Return a clip playing by itself."""
+    """Return the playback of a single clip."""
     return ShownPlayback(project, Plan(1, 0.0), max(1e-3, project.clips[clip].duration), clip)
 
 
 def play_manual(
     project: Project, length: float, fires: Iterable[Fire] = (), only: str | None = None
 ) -> ShownPlayback:
-    """Return the manual state machines playing. only: a state or link to look at alone."""
+    """Return the playback of the manual state machines. `only` is a state or link to show alone."""
     if only is not None:
-        with suppress(KeyError):  # a link to a group that has no entry leads nowhere
+        with suppress(KeyError):  # a link to a group without an entry leads nowhere
             plan = (
                 link_alone(project, only) if project.state(only) is None else play_state_alone(project, only)
             )
@@ -176,10 +179,10 @@ def play_manual(
 def play_in_context(
     project: Project, ident: str, layer: Layer, stances: dict[Layer, str], anew: bool = False
 ) -> ShownPlayback:
-    """Return stance, action, back to the stance, the other layers resting in theirs.
+    """Return the playback of stance, action, and back to the stance, with the other layers resting in theirs.
 
-    ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance.
-    anew: one that was, too, unless it is placed on that very stance.
+    `ident` is an action, or a clip; a clip that is not placed yet is tried as a gesture of the current
+    stance. `anew` also tries one that is placed, unless it is on that stance.
     """
     action = project.action(ident)
     if action is None and ident in project.clips:

@@ -1,4 +1,4 @@
-"""The playhead as time goes by: through what is planned, round a loop, or with a live session."""
+"""Move the playhead with time: through the plan, around a loop, or with a live session."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from app.stage.session import StageSession
 
 
 class Playhead:
-    """Moves the session's playhead; what it runs through is the performance's."""
+    """Moves the session's playhead through the performance."""
 
     def __init__(self, session: StageSession, performance: StagePerformance) -> None:
         self.session, self.performance = session, performance
@@ -43,7 +43,7 @@ class Playhead:
         transport.seek(seconds)
 
     def _advance_live(self, elapsed: float) -> None:
-        """The playhead is now; or, once it was moved back, plays on behind until it is followed again."""
+        """Set the playhead to the present; once it was moved back, play on behind until it follows again."""
         transport, live = self.session.transport, self.performance.live
         assert live.stage is not None
         now = live.stage.now

@@ -1,5 +1,5 @@
-"""The problems of the project as it is now: found on a thread after each edit, merged with what the
-statistics of jumps flag, and what mends them with a press.
+"""Find the current problems of the project on a thread after each edit, merge them with flagged jumps, and
+find what fixes them with a press.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from metagraph.playback.rehearsal import rehearse
 
 Checked = tuple[list[Problem], dict[Problem, Fix]]
 
-AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
+AFTER = 250  # milliseconds without edits before problems are searched
 
 
 class ProblemWatch(QObject):
-    """changed: `problems` and `misfits` are of the project as it is now. misfits: action id -> words, of the
-    actions with problems. fixes: what mends some of the problems.
+    """Watches the project's problems. `changed` is emitted when `problems` and `misfits` are up to date.
+    `misfits` has words for each action with problems, by id. `fixes` has fixes for some of the problems.
     """
 
     changed = Signal()
@@ -46,7 +46,7 @@ class ProblemWatch(QObject):
         self.misfits: dict[str, str] = {}
         self.fixes: dict[Problem, Fix | None] = {}
         self._bridges: dict[Problem, Fix] = {}
-        self._found: tuple[Problem, ...] = ()  # by `check`, without what the statistics flag
+        self._found: tuple[Problem, ...] = ()  # by `check_project`, without the flagged jumps
         self._busy = False
         self._seen: tuple[tuple[Problem, object], ...] = ()  # as it played, with what was played
         self.is_playing = False
@@ -103,7 +103,7 @@ class ProblemWatch(QObject):
         self._merge()
 
     def _merge(self) -> None:
-        """Problems of what is not edited now are not shown."""
+        """Merge the problems; those of the graph that is not edited now are left out."""
         meta = self.session.onstage.mode == "meta"
         found = tuple(p for p in self._found if not (p.state or p.link if meta else p.stance or p.action))
         flags = self.compatibility.flags if meta else {}

@@ -1,4 +1,4 @@
-"""A performance written as a video, a contact sheet or plain motion, by a process of its own: it draws
+"""Write a performance as a video, a contact sheet or plain motion in a process of its own, which draws
 without disturbing the window.
 """
 
@@ -29,9 +29,12 @@ SUFFIXES = lazy_texts(
 
 @dataclass(frozen=True)
 class RenderOrder:
-    """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both.
-    size: width and height in pixels. light, background: by the names of `preview.looks`. start: second it
-    begins at. captions, cuts: whether words are shown, and a conversation's camera cuts as its lane says.
+    """What to write.
+
+    `performance` is the id of a kept one, None to improvise. `conversation` is the id of one, then with all
+    its sides. `size` is width and height in pixels. `light` and `background` are names from `preview.looks`.
+    `start` is the second at which it begins. `captions` shows words, and `cuts` uses a conversation's camera
+    cuts.
     """
 
     out: Path
@@ -49,7 +52,7 @@ class RenderOrder:
 
 
 def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: WindowJob) -> Path:
-    """Write it; runs on a job's thread. Raises RuntimeError with the reason; a cancelled job leaves nothing
+    """Write it, on a job's thread. Raises RuntimeError with the reason. A cancelled job leaves nothing
     behind.
     """
     with tempfile.TemporaryDirectory() as scratch:
@@ -116,7 +119,7 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
 
 
 def _listen(process: subprocess.Popen[str], job: WindowJob, said: list[str]) -> None:
-    """Pass progress on, and keep what else is said."""
+    """Pass on progress, and keep other output."""
     assert process.stderr is not None
     for line in process.stderr:
         done, _, total = line.strip().partition("/")

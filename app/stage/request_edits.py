@@ -1,4 +1,4 @@
-"""What is asked for, edited: in the performance on stage, in a new one, or live."""
+"""Edit requests: in the performance on stage, in a new one, or live."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.timeline_edits import lane_of
 from metagraph.playback.plan import Plan
 
-SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
+SOON = 0.15  # seconds from the playhead to the time of a request for "now", because the plan takes a moment
 
 
 class RequestEdits:
-    """Edits the requests of what is on stage; each is one step to undo. length: seconds that are planned,
-    which a new performance gets. locked: lanes whose requests are left alone. ripple: whether all that
-    follows goes along with what is moved or taken back.
+    """Edits the requests of what is on stage; each edit is one step to undo. `length` returns the planned
+    seconds, which a new performance gets. `locked` returns the lanes whose requests cannot be changed. With
+    `ripple`, everything that follows moves along with what is moved or removed.
     """
 
     def __init__(
@@ -45,13 +45,13 @@ class RequestEdits:
 
     @property
     def kept(self) -> KeptPerformance | None:
-        """The kept performance on stage, as it is now; None while the models improvise."""
+        """Return the kept performance on stage, up to date; None while the models improvise."""
         stage = self.session.onstage.performance if self.session.onstage.mode == "meta" else None
         return self.document.project.performances.get(stage or "")
 
     @property
     def editable(self) -> bool:
-        """Whether the asks that are shown can be moved and changed."""
+        """Return whether the shown requests can be moved and changed."""
         return self.live.stage is None and self.kept is not None and self.session.transport.show == "plan"
 
     def still(self) -> frozenset[str]:
@@ -61,7 +61,7 @@ class RequestEdits:
         return frozenset(x.id for x in asks if lane_of(x, project) in locked)
 
     def free(self, idents: tuple[str, ...]) -> tuple[str, ...]:
-        """Return those of some requests that are on no locked lane; say so where there are others."""
+        """Return those of some requests that are not on locked lanes; report if there are others."""
         still = self.still()
         out = tuple(i for i in idents if i not in still)
         if len(out) < len(idents):
@@ -71,15 +71,13 @@ class RequestEdits:
         return out
 
     def with_following(self, idents: tuple[str, ...]) -> tuple[str, ...]:
-        """Return what moves with some requests: where all that follows goes along, that, too."""
+        """Return what moves with some requests: with `ripple`, also everything that follows."""
         if not self.ripple or self.kept is None:
             return idents
         return performance_edits.following(self.kept, idents, self.still())
 
     def ask(self, ask: AnyRequest, text: str = "") -> None:
-        """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as
-        soon as can be.
-        """
+        """Add a request to the performance on stage or a new one; without a time, as soon as possible."""
         if self.live.stage is not None:
             if ask.at is not None and ask.at <= self.live.stage.now:
                 ask = msgspec.structs.replace(ask, at=None)
@@ -104,7 +102,7 @@ class RequestEdits:
         self.session.transport.show_plan()
 
     def change(self, ident: str, merge: str | None = None, **changes: object) -> None:
-        """Set fields of an ask of the performance on stage. Raises EditError."""
+        """Set fields of a request in the performance on stage. Raises EditError."""
         stage = self.session.onstage.performance
         if stage is not None and self.free((ident,)):
             self.document.edit(
@@ -114,7 +112,7 @@ class RequestEdits:
             )
 
     def move(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
-        """Move asks in time, with all that follows them where it goes along."""
+        """Move requests in time, with `ripple` together with everything that follows."""
         stage, idents = self.session.onstage.performance, self.with_following(self.free(idents))
         if stage is not None and idents:
             self.document.edit(
@@ -122,7 +120,7 @@ class RequestEdits:
             )
 
     def copy(self, idents: tuple[str, ...], by: float) -> None:
-        """Ask for the same once more, seconds later or earlier, and select the copies."""
+        """Copy requests to a later or earlier time, by a number of seconds, and select the copies."""
         stage, kept = self.session.onstage.performance, self.kept
         if stage is None or kept is None:
             return
@@ -141,7 +139,7 @@ class RequestEdits:
         self.session.onstage.select_requests(tuple(x.id for x in (self.kept or kept).asks[number:]))
 
     def withdraw(self, *idents: str) -> None:
-        """Take asks of the performance on stage back; all when none is named."""
+        """Remove requests from the performance on stage; all of them if none is named."""
         stage, kept = self.session.onstage.performance, self.kept
         if stage is None or kept is None:
             return
@@ -152,7 +150,9 @@ class RequestEdits:
             )
 
     def to_clipboard(self, idents: tuple[str, ...], cut: bool = False) -> None:
-        """Put requests on the clipboard, as a text any window can paste; cut: take them back here."""
+        """Put requests on the clipboard, as a text that any window can paste. With `cut`, remove
+        them here.
+        """
         stage = self.session.onstage.performance
         chosen = self.free(idents) if cut else idents
         if stage is None or self.kept is None or not chosen:
@@ -164,8 +164,8 @@ class RequestEdits:
             )
 
     def paste(self) -> None:
-        """Add the requests on the clipboard, the first of them at the playhead, in the performance on stage
-        or a new one; tell what this project does not have.
+        """Add the requests on the clipboard, the first of them at the playhead, to the performance on stage
+        or a new one; report what this project does not have.
         """
         text = QGuiApplication.clipboard().text()
         at, done = round(self.session.transport.seconds, 3), cast("Pasted | None", None)
@@ -197,7 +197,9 @@ class RequestEdits:
                 )
 
     def close_up(self, idents: tuple[str, ...], plan: Plan) -> None:
-        """Take asks back and let all that follows move up by the time they took in a plan, in one step."""
+        """Remove requests and move everything that follows up by the time they took in a plan, in
+        one step.
+        """
         stage, kept = self.session.onstage.performance, self.kept
         gone = self.free(idents)
         if stage is None or kept is None or not gone:
@@ -205,7 +207,7 @@ class RequestEdits:
         times = {x.id: performance_edits.ask_time(x) for x in kept.asks if x.id in gone}
         played = [(c.meta.partition("+")[0], c.start, c.end) for of in plan.layers.values() for c in of.cues]
         played += [(s.id, s.start, s.end) for s in plan.track.speeches]
-        # What waits for its stroke is asked for at the stroke; all it plays is gone with it.
+        # Requests with a stroke are timed by it; everything they play is removed, too.
         spans = [
             (min(times[i], start), min(end, kept.length))
             for i, start, end in played

@@ -1,4 +1,4 @@
-"""What is selected: clips in the library, actions in the graph, or states and links of the manual state
+"""Keep the selection: clips in the library, actions in the graph, or states and links of the manual state
 machine.
 """
 
@@ -11,7 +11,9 @@ from metagraph.graph.model import Action, Project
 
 
 class Selection(QObject):
-    """changed: something else is selected. Selecting in one place takes the selection from the others."""
+    """The selection. `changed` is emitted if something else is selected. Selecting in one place clears the
+    others.
+    """
 
     changed = Signal()
 
@@ -25,11 +27,11 @@ class Selection(QObject):
         self.copied: str | None = None  # the action whose properties can be pasted
 
     def select_clips(self, clips: tuple[str, ...]) -> None:
-        """Select in the library; nothing is selected in the graph then."""
+        """Select in the library; this clears the selection in the graph."""
         self._select(clips=clips)
 
     def select_actions(self, actions: tuple[str, ...]) -> None:
-        """Select in the graph; the library follows with the actions' clips by looking at `actions`."""
+        """Select in the graph; the library shows the clips of `actions`."""
         self._select(actions=actions)
 
     def select_states(self, states: tuple[str, ...] = (), links: tuple[str, ...] = ()) -> None:
@@ -57,7 +59,7 @@ class Selection(QObject):
         return tuple(a for a in found if a is not None)
 
     def follow(self, after: Project) -> None:
-        """Let go of what an edit took away."""
+        """Drop what an edit removed."""
         self._select(
             tuple(i for i in self.clips if i in after.clips),
             tuple(i for i in self.actions if after.action(i) is not None),

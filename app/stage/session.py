@@ -1,5 +1,5 @@
-"""The session: what the user looks at. Never saved with the project. Its parts are values of their own; here
-is what joins them.
+"""Hold the session: what the user looks at. It is never saved with the project. Its parts are objects of
+their own, which are connected here.
 """
 
 from __future__ import annotations
@@ -21,9 +21,11 @@ OPENED_ON: tuple[Layer, ...] = ("arms", "body", "head")
 
 
 class StageSession(QObject):
-    """place: layer and stance. selection. onstage: who is on stage, and in which mode. transport: the
-    playhead. look: the theme. onion: other moments to be seen beside the present one. watch: what helps to
-    watch the character.
+    """The session.
+
+    `place` is the layer and stance, `selection` what is selected, `onstage` what is on stage and in which
+    mode, `transport` the playhead, `look` the theme, `onion` the other moments shown beside the present one,
+    `watch` the aids for watching the character.
     """
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
@@ -39,7 +41,7 @@ class StageSession(QObject):
         document.changed.connect(self._follow)
 
     def set_mode(self, mode: Mode) -> None:
-        """Edit and play the meta-graph, or the manual state machine; nothing is selected then."""
+        """Edit and play the meta-graph, or the manual state machine; this clears the selection."""
         if mode != self.onstage.mode:
             self.onstage.set_mode(mode)
             self.selection.clear()
@@ -47,22 +49,24 @@ class StageSession(QObject):
             self.transport.seek(0.0)
 
     def show_context(self, ident: str, tried: str | None = None) -> None:
-        """Play a clip or an action in context. tried: the stance, current from then on, that a clip is shown
-        on as if it were there.
+        """Play a clip or an action in context. `tried` is a stance, current from then on, on which a clip is
+        shown as if it were placed there.
         """
         if tried is not None:
             self.place.set_stance(tried)
         self.transport.show_context(ident, tried)
 
     def open_project(self) -> None:
-        """Go to where a project that was opened begins: what it is made of, on a layer that has something."""
+        """Go to the start of a newly opened project: its meta-graph or manual machine, on a layer that has
+        something.
+        """
         place, project = self.place, self.document.project
         place.forget()
         self.selection.clear()
         drawn = [layer for layer in LAYERS if project.manual.get(layer, Manual(layer)).states]
         if any(True for _ in project.actions()):
             self.set_mode("meta")
-        elif drawn:  # one with nothing in it leaves the mode as it is
+        elif drawn:  # an empty one keeps the mode
             self.set_mode("manual")
             if place.layer not in drawn:
                 place.set_layer(drawn[0])
@@ -81,7 +85,7 @@ class StageSession(QObject):
         action: str | None = None,
         clip: str | None = None,
     ) -> None:
-        """Go to a place of the project: what the problems panel and the timeline call."""
+        """Go to a place in the project, for the problems panel and the timeline."""
         project = self.document.project
         found = project.action(action) if action else None
         drawn = (project.state(action) or project.alias(action)) if action else None

@@ -1,5 +1,5 @@
-"""The stage: what is looked at and what plays, with its pictures and its sound, as one value that features
-are given.
+"""Hold the stage: what the user looks at and what plays, with its pictures and its sound, as one object for
+features.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from app.stage.thumbnails import Thumbnails
 
 
 class Stage(QObject):
-    """painted: the character was drawn. refused: what a hand tried and cannot be done, in words. scrolled: an
-    editor shows another part.
+    """The stage. `painted` is emitted when the character was drawn, `refused` with words about something the
+    user tried that cannot be done, `scrolled` when an editor shows another part.
     """
 
     painted = Signal()
@@ -35,7 +35,7 @@ class Stage(QObject):
         self.sound = Sound(document, self.session, self.performance, jobs, self)
 
     def stop(self) -> None:
-        """End what goes on by itself; at closing."""
+        """End everything that runs on its own, on closing."""
         self.performance.live.end()
         self.sound.stop()
         self.thumbnails.stop()

@@ -1,4 +1,4 @@
-"""Stools under those who sit."""
+"""Put stools under sitting characters."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from preview.stool import stool
 
 
 def stools(shown: ShownPlayback) -> tuple[Actor, ...]:
-    """Return the stool of a character whose graph has a stance that sits; it stays there while one stands.
-    None for a clip that plays alone.
+    """Return the stool of a character whose graph has a sitting stance; it stays there while the character
+    stands. Empty for a clip that plays alone.
     """
     seat = seat_of(shown.project) if shown.clip is None else None
     if seat is None:

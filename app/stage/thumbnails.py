@@ -1,4 +1,4 @@
-"""Pictures of clips, ordered as they come into sight and drawn by another process."""
+"""Order pictures of clips as they come into sight; another process draws them."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ from metagraph.motion.clip import Clip
 Key = tuple[str, str, str]  # clip id, what, theme
 MOST = (
     128 * 1024 * 1024
-)  # bytes of pictures that are kept; those not seen for longest go, and are drawn again when they are
-REST = 20_000  # milliseconds without an order after which the process, and its memory, is let go
-WAITING = 120  # stills that wait, at most: those asked for first are asked for again when they are seen
+)  # bytes of pictures that are kept; those unseen for longest are dropped, and drawn again when needed
+REST = 20_000  # milliseconds without an order after which the process, and its memory, is released
+WAITING = 120  # stills that wait, at most; those dropped are ordered again when they are seen
 AHEAD = 4  # orders that the process has at a time
-TRIES = 3  # times the process is started without drawing anything before it is given up
+TRIES = 3  # how often the process is started without drawing anything before giving up
 
 
 class Thumbnails(QObject):
-    """ready: clip id; a picture that was asked for is there. Without OpenGL no picture ever comes, and none
-    is missed.
+    """Holds the pictures. `ready` has the id of a clip whose picture is ready. Without OpenGL there are never
+    pictures, and that is no error.
     """
 
     ready = Signal(str)
     _drawn = Signal(int, object)
-    _ended = Signal(object)  # the process
+    _ended = Signal(object)  # with the process
 
     def __init__(
         self, document: Document, session: StageSession, figures: Figures, parent: QObject | None = None
@@ -52,11 +52,11 @@ class Thumbnails(QObject):
         super().__init__(parent)
         self.document, self.session, self.figures = document, session, figures
         self._pictures: OrderedDict[Key, tuple[Clip, Sequence[QImage]]] = OrderedDict()
-        self.bytes = 0  # of all pictures
+        self.bytes = 0  # bytes of all pictures
         self._asked: dict[Key, Clip] = {}
         self._orders: dict[int, tuple[Key, Clip]] = {}
-        self._line: dict[int, PictureOrder] = {}  # of them, those that the process was not given yet
-        self._given: set[int] = set()  # and those it has
+        self._line: dict[int, PictureOrder] = {}  # those of them that the process has not got yet
+        self._given: set[int] = set()  # those that it has
         self._number = 0
         self.kept = KeptPictures(self)
         self._process: subprocess.Popen[bytes] | None = None
@@ -64,7 +64,7 @@ class Thumbnails(QObject):
         self._threads: list[threading.Thread] = []
         self._stopped = False
         self._begun: int | None = None  # the order that is being drawn
-        self._fruitless = 0  # starts of the process that have drawn nothing
+        self._fruitless = 0  # starts of the process that drew nothing
         self._rest = QTimer(self, singleShot=True, interval=REST)
         self._rest.timeout.connect(self._send_home)
         self._ended.connect(self._restart, Qt.ConnectionType.QueuedConnection)
@@ -76,12 +76,12 @@ class Thumbnails(QObject):
 
     @property
     def waiting(self) -> bool:
-        """Whether pictures that were asked for are not there yet."""
+        """Return whether ordered pictures are missing."""
         return bool(self._orders)
 
     def picture(self, clip: str, bare: bool = False, large: bool = False) -> QImage | None:
-        """Return a clip's picture; None until it is drawn. bare: transparent behind the figure. large: twice
-        as large, and bare; a small one until it is drawn.
+        """Return a clip's picture; None until it is drawn. `bare` is transparent behind the figure. `large`
+        is bare and twice as large, or a small one until it is drawn.
         """
         found = self._get(clip, "large" if large else "bare" if bare else "card")
         if large and not found:
@@ -89,21 +89,21 @@ class Thumbnails(QObject):
         return found[0] if found else None
 
     def scrub(self, clip: str) -> Sequence[QImage]:
-        """Return a few pictures from a clip's first frame to its last, framed as its still is; none until
-        they are drawn.
+        """Return a few pictures from a clip's first frame to its last, framed as its still; empty until they
+        are drawn.
         """
         return self._get(clip, "scrub") or []
 
     def moving(self, clip: str, beat: int) -> QImage | None:
-        """Return one picture of a clip's loop, the `beat`-th of 12 a second; a still until the loop is
-        drawn.
+        """Return one picture of a clip's loop, number `beat` at 12 a second; a still until the loop
+        is drawn.
         """
         found = self._get(clip, "moving")
         return found[beat % len(found)] if found else self.picture(clip, bare=True)
 
     def strip(self, clip: str) -> Sequence[QImage]:
-        """Return pictures of a clip's poses from its first frame to its last, evenly apart, transparent
-        behind the figure; none until they are drawn.
+        """Return pictures of a clip's poses from its first frame to its last, evenly spaced, transparent
+        behind the figure; empty until they are drawn.
         """
         return self._get(clip, "strip") or []
 
@@ -123,7 +123,7 @@ class Thumbnails(QObject):
         return found[1] if found is not None else None
 
     def forget(self) -> None:
-        """Draw everything anew: the figure has changed."""
+        """Draw everything again, because the figure has changed."""
         self._pictures.clear()
         self.bytes = 0
         self._asked.clear()
@@ -149,7 +149,7 @@ class Thumbnails(QObject):
                 self.kept.keep(number, pictures)
             self._feed()
         key, motion = self._orders.pop(number, (None, None))
-        if key is None or motion is None:  # it was forgotten meanwhile
+        if key is None or motion is None:  # it was dropped in the meantime
             return
         self._let_go(key)
         self._asked[key] = motion
@@ -160,7 +160,7 @@ class Thumbnails(QObject):
         self.ready.emit(key[0])
 
     def _let_go(self, key: Key) -> None:
-        """Forget a picture; it is drawn again when it is asked for."""
+        """Drop a picture; it is drawn again when it is needed."""
         found = self._pictures.pop(key, None)
         if found is not None:
             self.bytes -= _size(found[1])
@@ -187,8 +187,8 @@ class Thumbnails(QObject):
             self._wait_in_line(order)
 
     def _wait_in_line(self, order: PictureOrder) -> None:
-        """Let an order wait until the process has time for it; of too many stills the first are forgotten."""
-        if order.number not in self._orders:  # it was forgotten meanwhile
+        """Queue an order until the process has time for it; of too many stills, the oldest are dropped."""
+        if order.number not in self._orders:  # it was dropped in the meantime
             return
         self._line[order.number] = order
         self._feed()
@@ -200,7 +200,7 @@ class Thumbnails(QObject):
                 del self._asked[key]
 
     def _feed(self) -> None:
-        """Give the process what was asked for last, stills before what has many pictures."""
+        """Give the process the latest orders, stills before orders of many pictures."""
         while self._line and len(self._given) < AHEAD and not self._stopped:
             stills = (n for n in self._line if self._line[n].what not in LONG)
             number = max(stills, default=max(self._line))
@@ -211,7 +211,7 @@ class Thumbnails(QObject):
             self._queue.put(self._line.pop(number))
 
     def _start(self) -> None:
-        """Start the process; what goes out and what comes in have a thread each, since a full pipe blocks."""
+        """Start the process. Output and input have a thread each, because a full pipe blocks."""
         self._process = start(
             python_command("app.stage.picture_process"),
             stdin=subprocess.PIPE,
@@ -245,27 +245,27 @@ class Thumbnails(QObject):
         ):
             while True:
                 number, pictures = pickle.load(pipe)
-                if pictures is not None:  # one after the other, so that a loop is never there twice
+                if pictures is not None:  # one after the other, so that a loop is never in memory twice
                     each = (pictures.pop(0) for _ in range(len(pictures)))
                     (_, what, _), _ = self._orders.get(number, (("", "", ""), None))
                     pictures = Cropped(each) if what == "moving" else [to_image(p) for p in each]
                 self._drawn.emit(number, pictures)
-                del pictures  # until the next ones come, which may be long
-        with contextlib.suppress(subprocess.TimeoutExpired):  # also of one that was sent home
+                del pictures  # until the next pictures, which may take long
+        with contextlib.suppress(subprocess.TimeoutExpired):  # also one that was released
             process.wait(5)
         with contextlib.suppress(RuntimeError):  # the window is gone
             self._ended.emit(process)
 
     def _restart(self, process: subprocess.Popen[bytes]) -> None:
-        """The process has ended by itself: start another, and leave out the picture it ended over."""
+        """Start another process after one ended unexpectedly, without the picture at which it ended."""
         if self._stopped:
             return
-        if process is not self._process:  # it was sent home
+        if process is not self._process:  # it was released
             return
         self._queue.put(None)
         self._process, self._queue = None, queue.SimpleQueue()
         if self._begun is not None:
-            self._orders.pop(self._begun, None)  # it stays asked for, so nobody asks again
+            self._orders.pop(self._begun, None)  # it stays ordered, so that nobody orders it again
             self._begun = None
         else:
             self._fruitless += 1
@@ -277,7 +277,7 @@ class Thumbnails(QObject):
                 self._order(key, motion)
 
     def _send_home(self) -> None:
-        """Let a process end that has had nothing to do for long; the next order starts another."""
+        """Release a process that has been idle for long; the next order starts another."""
         if self._orders:
             self._rest.start()
         elif self._process is not None:
@@ -285,7 +285,7 @@ class Thumbnails(QObject):
             self._process, self._queue = None, queue.SimpleQueue()
 
     def stop(self) -> None:
-        """End the process; at closing."""
+        """End the process, on closing."""
         self._stopped = True
         self._rest.stop()
         self.kept.stop()

@@ -1,5 +1,5 @@
-"""What is noted on the timeline of what is on stage, edited: the range played again and again, markers,
-locked layers, cuts; and which marker is selected.
+"""Edit the timeline of what is on stage: the loop range, markers, locked layers, cuts; and which marker is
+selected.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from metagraph.graph.timeline import (
     with_cut,
 )
 
-NEAR = 0.02  # seconds within which the playhead stands on a marker
+NEAR = 0.02  # seconds within which the playhead is on a marker
 
 
 class TimelineEdits(QObject):
-    """changed: something else is noted, or another marker is selected. length: seconds of what is on stage.
-    marker: id of the selected one.
+    """Edits a timeline. `changed` is emitted if it changed, or another marker is selected. `length` returns
+    the seconds of what is on stage. `marker` is the id of the selected one.
     """
 
     changed = Signal()
@@ -53,7 +53,7 @@ class TimelineEdits(QObject):
 
     @property
     def key(self) -> str:
-        """The id of what is on stage, by which its notes are kept."""
+        """Return the id of what is on stage, by which its timeline is kept."""
         onstage = self.session.onstage
         if onstage.mode == "manual":
             return IMPROVISED
@@ -74,7 +74,7 @@ class TimelineEdits(QObject):
             self.select(None)
 
     def change(self, text: str, merge: str | None = None, **changes: object) -> None:
-        """Note something else; one step to undo."""
+        """Set fields of the timeline; one step to undo."""
         key = self.key
         self.document.edit(text, lambda p: notes.change_timeline(p, key, **changes), merge)
 
@@ -82,25 +82,23 @@ class TimelineEdits(QObject):
 
     @property
     def range(self) -> tuple[float, float] | None:
-        """First and last second of what is played again and again; None for all."""
+        """Return the first and last second of the loop range; None for everything."""
         return self.now.range
 
     def set_range(self, start: float, end: float) -> None:
-        """Play from `start` to `end`, whichever comes first, again and again; a slip of the hand is
-        nothing.
-        """
+        """Loop between `start` and `end`, in either order; a range too short to be meant is ignored."""
         start, end = sorted((round(max(0.0, start), 3), round(max(0.0, end), 3)))
         if end - start >= SHORTEST_RANGE:
             self.change(tr("Set loop range"), range=(start, end))
 
     def set_in(self, at: float | None = None) -> None:
-        """Let the range begin at a time, by default the playhead."""
+        """Begin the range at a time, by default the playhead."""
         start = self.session.transport.seconds if at is None else at
         end = self.range[1] if self.range is not None else self._length()
         self.set_range(start, end if end - start >= SHORTEST_RANGE else max(self._length(), start + 1.0))
 
     def set_out(self, at: float | None = None) -> None:
-        """Let the range end at a time, by default the playhead."""
+        """End the range at a time, by default the playhead."""
         end = self.session.transport.seconds if at is None else at
         start = self.range[0] if self.range is not None else 0.0
         self.set_range(start if end - start >= SHORTEST_RANGE else 0.0, end)
@@ -115,7 +113,7 @@ class TimelineEdits(QObject):
         return next((m for m in self.now.markers if m.id == self.marker), None)
 
     def select(self, ident: str | None) -> None:
-        """Select a marker, and no request with it; None for none."""
+        """Select a marker, which deselects requests; None for none."""
         if ident is not None and self.session.onstage.requests:
             self.session.onstage.select_requests(())
         if ident != self.marker:
@@ -123,7 +121,7 @@ class TimelineEdits(QObject):
             self.changed.emit()
 
     def add_marker(self, at: float | None = None, name: str = "") -> str:
-        """Put a marker at a time, by default the playhead, and select it; return its id."""
+        """Add a marker at a time, by default the playhead, and select it; return its id."""
         made, key = "", self.key
         seconds = self.session.transport.seconds if at is None else at
 
@@ -147,13 +145,13 @@ class TimelineEdits(QObject):
         self.document.edit(tr("Rename marker"), lambda p: notes.change_marker(p, key, ident, name=words))
 
     def remove_marker(self, *idents: str) -> None:
-        """Take markers away; all where none is named."""
+        """Remove markers; all of them if none is named."""
         key, gone = self.key, idents or tuple(m.id for m in self.now.markers)
         text = tr_plural("Remove {count:,} marker", "Remove {count:,} markers", len(gone))
         self.document.edit(text, lambda p: notes.remove_markers(p, key, gone))
 
     def jump(self, step: int) -> None:
-        """Go to the next marker, or with -1 to the one before, and select it."""
+        """Go to the next marker, or with -1 to the previous one, and select it."""
         at, markers = self.session.transport.seconds, self.now.markers
         found = (
             next((m for m in markers if m.at > at + NEAR), None)
@@ -168,14 +166,14 @@ class TimelineEdits(QObject):
     # --- layers and cameras
 
     def lock(self, lane: Lane, on: bool) -> None:
-        """Let requests of a lane not be moved or taken back, or let them again."""
+        """Lock a lane, so that its requests cannot be moved or removed, or unlock it."""
         locked = tuple(
             x for x in ("stage", "body", "arms", "head") if (on if x == lane else x in self.now.locked)
         )
         self.change(tr("Lock layer") if on else tr("Unlock layer"), locked=locked)
 
     def cut_to(self, shot: Shot, side: int, at: float) -> None:
-        """Cut to a picture at a time; the first cut of a conversation is made at its beginning, too."""
+        """Cut to a shot at a time; the first cut of a conversation also adds one at its beginning."""
         cuts = self.now.cuts
         if not cuts and at > SAME_CUT:
             cuts = (Cut(at=0.0, shot="two"),)
@@ -187,7 +185,7 @@ class TimelineEdits(QObject):
         self.set_cuts(tr("Move cut"), tuple(cuts))
 
     def remove_cut(self, number: int) -> None:
-        """Take a cut away: the picture before it goes on."""
+        """Remove a cut: the shot before it continues."""
         self.set_cuts(tr("Remove cut"), tuple(c for n, c in enumerate(self.now.cuts) if n != number))
 
     def automatic(self, talk: Conversation) -> None:

@@ -1,5 +1,5 @@
-"""The playhead and what moves it: playing, speed, loop; and what it runs through, the whole performance or a
-clip looked at.
+"""Hold the playhead and what moves it: playing, speed, loop; and what it runs through, the whole performance
+or a single clip.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ Show = Literal["plan", "clip", "context"]
 
 
 class Transport(QObject):
-    """playing_changed, moved: the playhead; seconds. show_changed: the preview shows something else (see
-    `show`). part_changed: another part of a clip is played again and again.
+    """The transport. `playing_changed` and `moved` (seconds) are about the playhead. `show_changed` is
+    emitted if the preview shows something else (see `show`), `part_changed` if another part of a clip is
+    looped.
     """
 
     playing_changed = Signal()
@@ -31,7 +32,7 @@ class Transport(QObject):
         self.seconds = 0.0
         self.show: Show = "plan"
         self.shown: str | None = None  # the clip (or action) shown alone or in context
-        self.tried: str | None = None  # the stance a clip is shown on as if it were placed there
+        self.tried: str | None = None  # the stance on which a clip is shown as if it were placed there
         self.part: tuple[str, float, float] | None = None  # of a clip shown alone: id, first and last second
         self._plan_seconds = 0.0  # where the performance was left
 
@@ -46,15 +47,15 @@ class Transport(QObject):
         self.moved.emit(self.seconds)
 
     def set_part(self, part: tuple[str, float, float] | None) -> None:
-        """Play only a part of a clip, again and again, whenever that clip is shown alone: its id, first and
-        last second; None for all of it.
+        """Loop only a part of a clip whenever that clip is shown alone: its id, first and last second; None
+        for all of it.
         """
         if part != self.part:
             self.part = part
             self.part_changed.emit()
 
     def scrub(self, clip: str, seconds: float) -> None:
-        """Show a clip alone, still, at a moment."""
+        """Show a clip alone, paused, at a moment."""
         if (self.show, self.shown) != ("clip", clip):
             self._show("clip", clip)
         self.set_playing(False)
@@ -69,8 +70,8 @@ class Transport(QObject):
         self._show("clip", clip)
 
     def show_context(self, ident: str, tried: str | None = None) -> None:
-        """Play a clip or an action in context: stance, clip, back to the stance, the other layers on. tried:
-        the stance that a clip is shown on as if it were placed there.
+        """Play a clip or an action in context: stance, clip, back to the stance, with the other layers.
+        `tried` is the stance on which a clip is shown as if it were placed there.
         """
         self._show("context", ident, tried)
 
@@ -90,7 +91,7 @@ class Transport(QObject):
             self.set_playing(True)
 
     def follow(self, after: Project) -> None:
-        """Play the performance where an edit took away what was looked at."""
+        """Play the performance if an edit removed what was shown."""
         if self.shown is None or self.shown in after.clips:
             return
         if all(find(self.shown) is None for find in (after.action, after.state, after.link)):

@@ -1,5 +1,5 @@
-"""What helps to watch the character: marks of feet, ghosts, light, background and how many views there are.
-It is the person's, not the project's, and kept in the settings.
+"""Keep the aids for watching the character: marks of feet, ghosts, light, background and the number of views.
+They belong to the user, not to the project, and are kept in the settings.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from app.translation import lazy_texts, tr
 from preview.scene import THEMES, SceneTheme
 
 KEY = "watch"
-STUDIO, STAGE = "studio", "stage"  # of `preview.looks`, which is read when others are chosen
+STUDIO, STAGE = "studio", "stage"  # names from `preview.looks`, which is imported when others are chosen
 PANES = (1, 2, 4)
 SIDES = lazy_texts(
-    lambda: {  # of a view beside the first: what it is called
+    lambda: {  # names of the views beside the first
         "front": tr("Front"),
         "left": tr("Left side"),
         "right": tr("Right side"),
@@ -28,15 +28,17 @@ SIDES = lazy_texts(
         "hands": tr("Hands"),
     }
 )
-MOST_GHOSTS = 5  # before now, and as many after it: each is drawn in every picture
+MOST_GHOSTS = 5  # before now, and the same number after it; each is drawn in every picture
 SPACINGS = (0.05, 0.1, 0.2, 0.5)  # seconds
 
 
 @dataclass(frozen=True)
 class Watched:
-    """feet: which foot is held, steps or is lifted, and slides. hands: which are kept in contact. stance: a
-    ghost in the stance underneath. before, after: how many ghosts there are of other moments, spacing seconds
-    apart. light, background: by the names of `preview.looks`.
+    """What helps to watch the character.
+
+    `feet` shows which foot is held, steps or is lifted, and slides. `hands` shows which are kept in contact.
+    `stance` shows a ghost in the stance underneath. `before` and `after` are the numbers of ghosts of other
+    moments, `spacing` seconds apart. `light` and `background` are names from `preview.looks`.
     """
 
     feet: bool = False
@@ -51,7 +53,7 @@ class Watched:
     sides: str = "front left face"
 
     def look(self, theme: str) -> SceneTheme:
-        """Return a theme as it is looked at."""
+        """Return a theme with this light and background."""
         if (self.light, self.background) == (STUDIO, STAGE):
             return THEMES[theme]
         from preview.looks import look_of
@@ -60,7 +62,7 @@ class Watched:
 
 
 class Watch(QObject):
-    """changed: something else is shown."""
+    """Holds the aids. `changed` is emitted if something else is shown."""
 
     changed = Signal()
 
@@ -69,7 +71,7 @@ class Watch(QObject):
         self.now = _kept()
 
     def set(self, **changes: Any) -> None:
-        """Show other things, named as in `Watched`, from now on and the next time, too."""
+        """Change aids, named as in `Watched`, now and for later runs."""
         after = replace(self.now, **changes)
         if after != self.now:
             self.now = after
@@ -77,12 +79,12 @@ class Watch(QObject):
             self.changed.emit()
 
     def forget(self) -> None:
-        """Show what is shown at first."""
+        """Restore the initial aids."""
         self.set(**asdict(Watched()))
 
 
 def _kept() -> Watched:
-    """Return what was shown last; what cannot be read is as at first."""
+    """Return the aids kept in the settings; those that cannot be read are the initial ones."""
     try:
         found = json.loads(str(QSettings().value(KEY) or "{}"))
         first = Watched()

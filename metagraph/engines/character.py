@@ -1,12 +1,12 @@
-"""A character that plays an export, for programs in Python: ask, update, pose. Needs neither Qt nor OpenGL.
+"""Play an export in Python programs: ask, update, pose. This needs neither Qt nor OpenGL.
 
     character = Character("talk.json")
     character.ask({"do": "gesture", "tags": ["greeting"]})
     while running:
         pose = character.update(seconds)
 
-It is the desktop's planner and composer, as the runtimes for engines are theirs; all of them make the same of
-the same.
+It uses the desktop app's planner and composer; the runtimes for engines have their own. All give the same
+result for the same input.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import AskAnswer, answer_ask, answer_asks
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
 
-LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
-SOUNDS = 16  # lines whose sound is remembered
-REMEMBERED = (
-    1000  # answers that are kept after what they tell of was forgotten, and happenings nobody asked for
-)
+LEAP = 3600.0  # seconds by which an update may advance, because everything in between is planned
+SOUNDS = 16  # lines whose sound is kept
+REMEMBERED = 1000  # final answers that are kept, and events that have not been fetched
 
 
 @dataclass(frozen=True, slots=True)
 class Happening:
-    """What began or ended. at: seconds. layer: "speech" for what is said. action: its name; of what is said
-    the line's id, else the text. meta: the id that was asked with, or the model's.
+    """Something that began or ended.
+
+    `at` is in seconds. `layer` is "speech" for speech. `action` is the action's name, or for speech the
+    line's id, else the text. `meta` is the id of the request, or the model's.
     """
 
     kind: Literal["begin", "end"]
@@ -52,11 +52,12 @@ class Happening:
 
 
 class Character:
-    """One character, played live. export: path of an exported JSON, its GLB beside it, or a project. seed:
-    32-bit, the project's when None. idle: the models fill the time nobody asks for. stances: where layers
-    begin. ahead: seconds of plan; recent: of past.
+    """One character, played live.
 
-    Raises FileError when the export cannot be read.
+    `export` is the path of an exported JSON with its GLB beside it, or a project. `seed` has 32 bits; None
+    takes the project's. With `idle`, the models fill the time without requests. `stances` says where layers
+    begin. `ahead` and `recent` are the seconds of plan and of past that are kept. Raises FileError if the
+    export cannot be read.
     """
 
     def __init__(
@@ -72,13 +73,13 @@ class Character:
         self.now = 0.0
         self._recent = recent
         self._queue: list[a.AnyRequest] = []
-        self._asked: set[str] = set()  # ids that the plan can tell of
-        self._settled: dict[str, AskAnswer] = {}  # answers of those it has forgotten or never heard of
+        self._asked: set[str] = set()  # ids that the plan knows
+        self._settled: dict[str, AskAnswer] = {}  # answers for those it has forgotten or never knew
         self._happened: list[Happening] = []
-        self._sounds: dict[str, StreamedVoice] = {}  # of lines that are heard
+        self._sounds: dict[str, StreamedVoice] = {}  # the sounds of lines that stream in
         self._count = 0
         self._cut = 0.0
-        self._seen = -inf  # when the update before was
+        self._seen = -inf  # the time of the previous update
         self._running = RunningPlan(
             self.project, None if seed is None else seed & 0xFFFFFFFF, stances, idle, ahead
         )
@@ -86,39 +87,38 @@ class Character:
 
     @property
     def plan(self) -> Plan:
-        """The plan as it is now."""
+        """Return the current plan."""
         return self._running.plan
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """What the export lacks, in words; actions without a clip show their stance."""
+        """Return what the export lacks, in words; actions without a clip show their stance."""
         return tuple(
             f"clip '{clip.name}' is missing" for clip in self.project.clips.values() if clip.motion is None
         )
 
     def describe(self) -> dict[str, Any]:
-        """Return what may be asked for, as plain data: see `metagraph.graph.offered.offered`."""
+        """Return the possible requests as plain data, see `metagraph.graph.offered.offered`."""
         return offered_requests(self.project, a.WORDS)
 
     def tools(self) -> list[dict[str, Any]]:
-        """Return what may be asked for as tools that a language model can call: see
+        """Return the possible requests as tools that a language model can call, see
         `metagraph.graph.offered.tools`.
         """
         return tools(self.project)
 
     def ask(self, request: Mapping[str, Any] | a.AnyRequest) -> str:
-        """Ask for something; return the id it goes by, made where there is none. It is worked in at the next
-        update.
+        """Send a request; return its id, which is made if it has none. It is planned at the next update.
 
-        `after`: seconds from now; it wins over `at`. What cannot be read is refused, as `answer` tells;
-        nothing is raised.
+        `after`, in seconds from now, replaces `at`. A request that cannot be read is refused, as `answer`
+        reports; nothing is raised.
         """
         self._count += 1
         made = f"#{self._count}"
         if isinstance(request, a.Request):
             ask: a.AnyRequest = request if request.id else msgspec.structs.replace(request, id=made)
             return self._take(ask)
-        data = dict(request) if isinstance(request, Mapping) else {}  # which is refused
+        data = dict(request) if isinstance(request, Mapping) else {}  # an empty request, which is refused
         ident = data.get("id")
         data["id"] = ident = ident if isinstance(ident, str) and ident else made
         try:
@@ -132,9 +132,9 @@ class Character:
             return self._refuse(ident, str(error))
 
     def say_sound(self, ident: str, samples: Sequence[float], rate: float) -> str:
-        """Say a line whose sound comes in while it is said: with each call its next samples, -1..1, of which
-        the lips do what is heard. An id is one line's; return it, as `ask` does. rate: samples a second, 8000
-        to 48000.
+        """Say a line whose sound streams in while it is said. Each call gives its next samples, -1..1, and
+        the lips follow what is heard in them. One id is one line's; it is returned, as by `ask`. `rate` is in
+        samples a second, 8000 to 48000.
         """
         if not 8000 <= rate <= 48000:
             return self._refuse(ident, "rate: should be a number from 8000 to 48000")
@@ -151,7 +151,7 @@ class Character:
         before = waiting.visemes if waiting is not None else ()
         self._queue = [x for x in self._queue if x is not waiting]
         start = voice.seconds
-        # Where no shape begins the one before goes on.
+        # If no shape begins here, the previous one continues.
         marks = voice.hear(samples) or [VisemeMark(start, voice.shape, voice.weight)]
         told = [[mark.at, mark.viseme, mark.weight] for mark in marks]
         return self.ask({"do": "say", "id": ident, "visemes": [*before, *told], "set": "oculus"})
@@ -175,10 +175,10 @@ class Character:
             del self._settled[next(iter(self._settled))]
 
     def update(self, now: float) -> Pose:
-        """Move on to `now` and return the pose there (rotations `[J, 4]`, translations `[J, 3]`).
+        """Advance to `now` and return the pose there (rotations `[J, 4]`, translations `[J, 3]`).
 
-        Seconds of the character's own time, which begins at 0, never goes backwards, and leaps an hour at
-        most.
+        `now` is in seconds of the character's own time, which begins at 0, never goes backwards, and advances
+        by at most an hour.
         """
         seconds = _seconds(now)
         if seconds is not None and seconds > self.now:
@@ -201,17 +201,17 @@ class Character:
             if isinstance(ask, a.Withdraw):
                 self._settle(AskAnswer(ask.id, "done", None, None, (), ""))
         self._queue = []
-        if self._seen - self._cut >= CUT:  # what has begun and ended since then is still to be told
+        if self._seen - self._cut >= CUT:  # what has begun and ended since then is still to be reported
             self._cut = self._seen
             self._forget(self._seen - self._recent)
 
     def _forget(self, over: float) -> None:
-        """Forget what is over, and settle the answers of what was asked for then."""
+        """Forget what is over, and settle the answers of its requests."""
         known = answer_asks(self.plan, self._asked)
         self._running.forget(over)
         left = answer_asks(self.plan, self._asked)
         for ident, told in known.items():
-            # What the plan no longer knows was played; so was a look without an end that another has
+            # What the plan no longer knows was played; so was a look without an end that another one
             # replaced.
             if told.until is not None and (told.until < over or left[ident].until is None):
                 self._settle(replace(told, state="done"))
@@ -219,7 +219,7 @@ class Character:
                 self._settle(told)
 
     def _listen(self) -> None:
-        """Note what has begun or ended since the update before."""
+        """Note what has begun or ended since the previous update."""
         found: list[Happening] = []
 
         def note(start: float, end: float, layer: Layer | Literal["speech"], action: str, meta: str) -> None:
@@ -240,14 +240,12 @@ class Character:
             self._happened = [*self._happened, *sorted(found, key=lambda event: event.at)][-REMEMBERED:]
 
     def events(self) -> tuple[Happening, ...]:
-        """Return what began and ended since this was last asked for, in order of time; of more than 1000 the
-        latest.
-        """
+        """Return what began and ended since the last call, in order of time; at most the latest 1000."""
         happened, self._happened = self._happened, []
         return tuple(happened)
 
     def answer(self, ident: str) -> AskAnswer:
-        """Say what became of a request: when it plays, or why it does not."""
+        """Return what became of a request: when it plays, or why it does not."""
         if ident in self._settled:
             return self._settled[ident]
         if ident not in self._asked:
@@ -257,7 +255,7 @@ class Character:
         return answer_ask(self.plan, ident)
 
     def pose(self, alive: bool = True) -> Pose:
-        """Return the pose at the time of the last update; alive: with the life layers."""
+        """Return the pose at the time of the last update. With `alive`, it has the life layers."""
         self._evaluator = self._evaluator.follow(self.plan, self.project)
         return self._evaluator.at(self.now, alive)
 
@@ -268,7 +266,7 @@ class Character:
 
 
 def _seconds(value: Any) -> float | None:
-    """Return a finite number, None where it is none."""
+    """Return a finite number, or None for anything else."""
     try:
         number = inf if isinstance(value, bool | str | bytes) else float(value)
     except (TypeError, ValueError, OverflowError):

@@ -1,4 +1,4 @@
-"""The exported JSON, field by field. These types write it, read it and publish its JSON Schema (draft
+"""Define the exported JSON, field by field. These types write it, read it and publish its JSON Schema (draft
 2020-12).
 
 Times are seconds, lengths metres, Y up, right-handed; quaternions xyzw. An id is never a name and never
@@ -37,7 +37,7 @@ PartName = Literal["legs", "spine", "arms", "head", "face"]
 
 class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A joint; parents come before their children. translation, rotation: local, of the rest pose. scales:
-    how it takes part where a cue is played larger or smaller than made: in both, only in smaller ones
+    whether it takes part if a cue is played larger or smaller than made: in both, only in smaller ones
     (elbows, which bend one way), or in neither (fingers).
     """
 
@@ -51,11 +51,11 @@ class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
 
 
 class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True, gc=False):
-    """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of
-    the file it came from. made_by, made_seed: the learned model that generated it, and its seed; left out of
-    others. arms: what its arms weigh, a row of eight numbers for each tenth of a second; left out where the
+    """A clip. animation: its index in the GLB's list of animations, where it has the same name. sha256: of
+    the file it came from. made_by, made_seed: the learned model that generated it, and its seed; left out for
+    other clips. arms: what its arms weigh, a row of eight numbers for each tenth of a second; left out if the
     arms' layer does not play it, or no body answers its arms. feet: where its feet are and when they stand, a
-    row of sixteen numbers for each tenth of a second, or one for all; left out where the body's layer does
+    row of sixteen numbers for each tenth of a second, or one row for all; left out if the body's layer does
     not play it, or feet are not kept planted.
     """
 
@@ -80,9 +80,10 @@ class ExportedStance(Struct, forbid_unknown_fields=True):
 
 
 class ExportedContact(Struct, forbid_unknown_fields=True):
-    """A hand kept where it is on the body. place: what of it touches. to: the name of a joint. start, end:
-    clip seconds. ease_in, ease_out: seconds inside of which it comes and goes. keys: rows of clip seconds,
-    where the wrist is in that joint's own space, metres (3), how the hand is turned there, xyzw (4).
+    """A hand kept in its place on the body. place: the part of it that touches. to: the name of a joint.
+    start, end: clip seconds. ease_in, ease_out: seconds at the ends, inside, in which it comes and goes.
+    keys: rows of clip seconds, position of the wrist in that joint's own space, metres (3), rotation of the
+    hand there, xyzw (4).
     """
 
     hand: Literal["left", "right"]
@@ -100,14 +101,13 @@ class ExportedContact(Struct, forbid_unknown_fields=True):
 
 class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
     """One use of a clip. start, end: the part of the clip that plays (whole_end: the end is the clip's own).
-    blend_in and blend_out lie inside it; a stance's blend_in is the overlap at its loop's seam.
-    earliest_exit: clip time from which it may be left, or null. joints: the only ones it moves, all when
-    empty. phases: of a gesture, clip seconds of ready, stroke, stroke end and relax; own_phases: ready,
-    stroke_end, relax as the user set them, null where found. cooldown: seconds in which it is not drawn
-    again; spacing: how many others come between, null as never_twice says. vigour: how fast its hands, head
-    or trunk move beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast.
-    contacts: where its hands stay. joint_weights: how far joints move that move in part; 1 those it does not
-    name.
+    blend_in and blend_out are inside it; a stance's blend_in is the overlap at its loop's seam.
+    earliest_exit: clip time from which it may be left, or null. joints: the only ones it moves, all if empty.
+    phases: for a gesture, clip seconds of ready, stroke, stroke end and relax; own_phases: ready, stroke_end,
+    relax as the user set them, null if found. cooldown: seconds in which it is not drawn again; spacing: how
+    many others come between, null for as never_twice says. vigour: how fast its hands, head or trunk move
+    beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast. contacts: where
+    its hands stay. joint_weights: how far joints move that move in part; 1 for those not listed.
     """
 
     id: Id
@@ -138,7 +138,7 @@ class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
 
 
 class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):
-    """The actions that lead from one stance straight to another."""
+    """The actions that lead directly from one stance to another."""
 
     source: Id
     target: Id
@@ -146,11 +146,12 @@ class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unkno
 
 
 class ExportedMarkov(Struct, forbid_unknown_fields=True):
-    """states: (limb, kind). matrix: rows of probabilities. gap: mean seconds of rest between meta actions.
-    positive, negative: the share of gestures asked for with that tag. tags: for each state the tags it asks
-    for, blanks between them; empty when no state asks for any. lengths: for each state mean and standard
-    deviation of its seconds, or empty. modes: what is performed of what it writes while one is said to idle,
-    to listen and to talk: rows of shares of gestures, fidgets and transitions; empty for all of it.
+    """A model that writes meta actions. states: (limb, kind). matrix: rows of probabilities. gap: mean
+    seconds of rest between meta actions. positive, negative: the share of gestures that ask for that tag.
+    tags: the tags that each state asks for, separated by blanks; empty if no state asks for any. lengths: for
+    each state mean and standard deviation in seconds, or empty. modes: a row each for idling, listening and
+    talking with the shares of written gestures, fidgets and transitions that are performed; empty for all of
+    them.
     """
 
     states: list[tuple[LimbName, KindName]]
@@ -166,9 +167,9 @@ class ExportedMarkov(Struct, forbid_unknown_fields=True):
 
 
 class ExportedLayer(Struct, forbid_unknown_fields=True):
-    """One layer's meta-graph. weights: how strongly it moves each body part, 0 where it is not listed. index:
-    the multi-index, stance -> kind -> action ids in the order they were placed. Weights and model are played
-    as they stand; own_weights, own_markov: what of them a user set, for programs that edit.
+    """One layer's meta-graph. weights: how strongly it moves each body part, 0 if not listed. index: the
+    multi-index, stance -> kind -> action ids in the order they were placed. Weights and model are played as
+    they are; own_weights, own_markov: which of them a user set, for programs that edit.
     """
 
     start: str | None
@@ -183,8 +184,8 @@ class ExportedLayer(Struct, forbid_unknown_fields=True):
 
 
 class Base(Struct, forbid_unknown_fields=True):
-    """The pose all offsets are taken against. clip, frame: where it came from; null for the rest pose.
-    rotations and translations: local, one per joint.
+    """The pose that all offsets are relative to. clip, frame: where it came from; null for the rest pose.
+    rotations and translations: local, one for each joint.
     """
 
     clip: str | None
@@ -195,13 +196,12 @@ class Base(Struct, forbid_unknown_fields=True):
 
 class Planner(Struct, forbid_unknown_fields=True):
     """Constants of planning. alpha: added to an action's count when it is used; an action is drawn with
-    probability likelihood / max(count, 1). never_twice: not the same in a row where there is another.
-    shortest: seconds below which what is left of a cut request is dropped. wait: how late a request may
-    start. window: seconds a request may use that does not say how long. blend: the curve of a blend's weight
-    over its time x. memory: seconds after which a use no longer counts, 0 for never. rest: least seconds
-    between two actions of a layer. lookahead: seconds ahead of now that stay as planned. hurry: how many
-    times as fast as made a hold plays at most. least_blend: seconds in which an action comes in that skips
-    its preparation.
+    probability likelihood / max(count, 1). never_twice: not the same action in a row if there is another.
+    shortest: seconds below which the rest of a cut request is dropped. wait: how late a request may start.
+    window: seconds for a request without a duration. blend: the curve of a blend's weight over its time x.
+    memory: seconds after which a use no longer counts, 0 for never. rest: least seconds between two actions
+    of a layer. lookahead: seconds ahead of now that stay as planned. hurry: how many times as fast as made a
+    hold plays at most. least_blend: seconds in which an action blends in that skips its preparation.
     """
 
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
@@ -235,7 +235,7 @@ class Randomness(Struct, forbid_unknown_fields=True):
 
 class Expanded(Struct, rename={"targets": "to", "sources": "from"}, forbid_unknown_fields=True):
     """The ordinary state machine of a layer, in columns: connection n leads from `states[from[n]]` to
-    `states[to[n]]`. leave: clip seconds at which the source may be left, -1 for at any time. blend: seconds.
+    `states[to[n]]`. leave: clip seconds at which the source may be left, -1 for any time. blend: seconds.
     """
 
     states: list[Id]
@@ -255,10 +255,10 @@ Four = Annotated[list[Number], Meta(min_length=4, max_length=4)]
 
 
 class RigEye(Struct, forbid_unknown_fields=True):
-    """An eye, or where one would be, in the head's own space: where it is, and its directions to the left, up
-    and ahead. joint: -1 where none is. turn_left, turn_up: rotation vectors in the joint's own space that
-    turn it a radian. down: the product of these four with the joint's own rotation is how far down it looks
-    already, radians.
+    """An eye, or its place if there is none, in the head's own space: where it is, and its directions to the
+    left, up and ahead. joint: -1 for none. turn_left, turn_up: rotation vectors in the joint's own space that
+    turn it by a radian. down: the dot product of these four with the joint's own rotation (w not negative) is
+    how far down it looks already, radians.
     """
 
     at: Vector
@@ -282,8 +282,8 @@ class RigShoulder(Struct, forbid_unknown_fields=True):
 
 
 class RigLooker(Struct, forbid_unknown_fields=True):
-    """A joint that takes part in turning the head: its place in the chain, and its share; all shares together
-    are 1.
+    """A joint that takes part in turning the head: its place in the chain, and its share; all shares add up
+    to 1.
     """
 
     place: Count
@@ -291,12 +291,13 @@ class RigLooker(Struct, forbid_unknown_fields=True):
 
 
 class RigFace(Struct, forbid_unknown_fields=True):
-    """What moves the face. joints: those its channels move. turns: for each channel and joint a rotation
+    """What moves the face. joints: those that its channels move. turns: for each channel and joint a rotation
     vector in the joint's own space, multiplied on the right; shifts: metres in its parent's space; both at 1.
     The channels: upper_lid_left, upper_lid_right, lower_lid_left, lower_lid_right, blink, jaw_open, then the
-    visemes but silence. follows: how far each lid shuts for an eye that looks down by a radian. lid_joints:
-    the joint of each lid, -1 for none. shut_by: the product of these four with a lid's own rotation is how
-    far it is shut already. morphs: channel -> morph target -> its weight at 1.
+    visemes without silence. follows: how far each lid shuts for an eye that looks down by a radian.
+    lid_joints: the joint of each lid, -1 for none. shut_by: the dot product of these four with a lid's own
+    rotation (w not negative) is how far it is shut already. morphs: channel -> morph target -> its weight at
+    1.
     """
 
     joints: list[Count]
@@ -309,12 +310,12 @@ class RigFace(Struct, forbid_unknown_fields=True):
 
 
 class Rig(Struct, forbid_unknown_fields=True):
-    """What of the body breathes and looks. left, up, ahead: the character's directions. chain: the joints
-    from the root to the head. breath: for each of them the axis it turns about in its own space, and the
-    radians at the top of a breath. trunk: its place in the chain; trunk_ahead, head_ahead: ahead in their own
-    space. eyes: left, right. partner: where "user" is unless a point of that name says otherwise, metres;
-    eyes_at_rest: between the eyes in the base pose. bowed: for each joint of the chain the radians of a bowed
-    posture, about the axis of its breath, thrust: of one that leans into it; none where empty.
+    """The parts of the body that breathe and look. left, up, ahead: the character's directions. chain: the
+    joints from the root to the head. breath: for each of them the axis it turns about in its own space, and
+    the radians at the top of a breath. trunk: its place in the chain; trunk_ahead, head_ahead: ahead in their
+    own space. eyes: left, right. partner: where "user" is if no point has that name, metres; eyes_at_rest:
+    between the eyes in the base pose. bowed: for each joint of the chain the radians of a bowed posture,
+    about the axis of its breath; thrust: of one that leans into it; none if empty.
     """
 
     left: Direction
@@ -337,8 +338,8 @@ class Rig(Struct, forbid_unknown_fields=True):
 
 class ExportedCapsule(Struct, forbid_unknown_fields=True):
     """A part of the body. joint, to: places in the contact rig's joints that the ends of its line are fixed
-    to; a, b: where, in their own spaces, metres. arm: 0 left, 1 right, -1 of neither. kind: 0 for what hands
-    are pushed out of, 1 for a forearm, from elbow to wrist, 2 for a part of a hand.
+    to; a, b: where, in their own spaces, metres. arm: 0 left, 1 right, -1 neither. kind: 0 for what hands are
+    pushed out of, 1 for a forearm, from elbow to wrist, 2 for a part of a hand.
     """
 
     joint: Count
@@ -351,8 +352,8 @@ class ExportedCapsule(Struct, forbid_unknown_fields=True):
 
 
 class ExportedContactRig(Struct, forbid_unknown_fields=True):
-    """What keeps hands on the body, and out of it. contacts, guard: which of the two is on. joints: those
-    that matter, parents first; parents: of each, the place of its parent among them, -1 for a root. arms:
+    """What keeps hands on the body, and outside it. contacts, guard: which of the two is on. joints: those
+    that are needed, parents first; parents: the place of each one's parent among them, -1 for a root. arms:
     left, right: places of upper arm, lower arm, hand.
     """
 
@@ -379,8 +380,8 @@ class ExportedWeightBend(Struct, forbid_unknown_fields=True):
 
 
 class ExportedWeightCollar(Struct, forbid_unknown_fields=True):
-    """A collar bone that rises with its arm. place, upper: places of it and of the upper arm. axis: what
-    lifts it, in its own space. side: 0 left, 1 right.
+    """A collar bone that rises with its arm. place, upper: places of it and of the upper arm. axis: the axis
+    that lifts it, in its own space. side: 0 left, 1 right.
     """
 
     place: Count
@@ -390,11 +391,11 @@ class ExportedWeightCollar(Struct, forbid_unknown_fields=True):
 
 
 class ExportedWeightRig(Struct, forbid_unknown_fields=True):
-    """What of the body answers its arms. joints: those that matter, parents first; parents: of each, the
-    place of its parent among them, -1 for one whose parent does not matter. legs: left, right: places of
-    upper leg, lower leg, foot. hands: names of the hands' joints. bends: the hips first. knees: where
-    straight legs bend to, in the upper legs' own spaces. levers: how far to the left and ahead of the hips
-    each arm is, metres. height: of the figure. strength: how much of what the arms' layer plays counts.
+    """The parts of the body that answer its arms. joints: those that are needed, parents first; parents: the
+    place of each one's parent among them, -1 if that is not needed. legs: left, right: places of upper leg,
+    lower leg, foot. hands: names of the hands' joints. bends: the hips first. knees: the direction in which
+    straight legs bend, in the upper legs' own spaces. levers: how far to the left and ahead of the hips each
+    arm is, metres. height: of the figure. strength: how much the motion of the arms' layer counts.
     """
 
     joints: list[Count]

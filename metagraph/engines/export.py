@@ -1,4 +1,4 @@
-"""Export: one JSON and one GLB that hold all a runtime needs, and their reading back."""
+"""Write exports: one JSON and one GLB with everything that a runtime needs."""
 
 from __future__ import annotations
 
@@ -37,13 +37,16 @@ Chosen = Callable[[Path], bool]
 
 
 def choose_nothing(path: Path) -> bool:
-    """Say of every file that the user did not choose it."""
+    """Return False for every file: the user did not choose it."""
     return False
 
 
 @dataclass(frozen=True)
 class Exported:
-    """What was written. warnings: problems that do not stop an export, in words. sounds: of lines."""
+    """What was written.
+
+    `warnings` are problems that do not stop an export, in words. `sounds` are those of lines.
+    """
 
     json: Path
     glb: Path
@@ -63,9 +66,9 @@ def export_project(
 ) -> Exported:
     """Write `<name>.json` and `<name>.glb` into a folder.
 
-    expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB;
-    `character` is it, or its file. compress: pack the GLB, see `write_glb`. Raises ExportError while the
-    project has errors, FileError when a file cannot be written.
+    `expanded` also lists the expanded state machine. `mesh` puts the character's mesh into the GLB;
+    `character` is the mesh, or its file. `compress` packs the GLB, see `write_glb`. Raises ExportError while
+    the project has errors, FileError if a file cannot be written.
     """
     warnings = require_exportable(project)
     place = Path(folder)
@@ -86,7 +89,7 @@ def export_project(
 
 def require_exportable(project: Project) -> tuple[str, ...]:
     """Return the warnings about a project that can be exported, in words. Raises ExportError with what must
-    be mended first.
+    be corrected first.
     """
     problems = check_project(project)
     errors = [p for p in problems if p.severity == "error"]
@@ -104,7 +107,7 @@ def require_exportable(project: Project) -> tuple[str, ...]:
 
 
 def stem_of(project: Project) -> str:
-    """Return what a project's exported files are called."""
+    """Return the stem of a project's exported files."""
     return file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
 
 
@@ -118,9 +121,9 @@ def write_project_files(
     chosen: Chosen = choose_nothing,
     compress: bool = False,
 ) -> Exported:
-    """Write a project that has clips without asking whether it is sound. Arguments as for `export`. base: the
-    folder its lines' sounds are relative to; they are copied into `lines/`, where it is given. chosen: see
-    `_sounds`. compress: pack the GLB, see `write_glb`.
+    """Write a project that has clips without checking it for errors. The arguments are those of
+    `export_project`. `base` is the folder that the sounds of its lines are relative to; if it is given, they
+    are copied into `lines/`. `chosen` is as in `_sounds`.
     """
     project = writable(project)
     tell = progress or (lambda done, total, words: None)
@@ -146,11 +149,11 @@ def write_project_files(
 def _sounds(
     document: c.Export, folder: Path, base: Path, chosen: Chosen
 ) -> tuple[tuple[Path, ...], tuple[str, ...]]:
-    """Copy the sounds of a document's lines beside it, and name them there; return the files, and what is
-    missing, in words.
+    """Copy the sounds of a document's lines beside it, and set their names there; return the files, and what
+    is missing, in words.
 
-    A project may come from anybody and name any file: what goes into an export reads as a sound and lies in
-    the project's folder, or is one that this user has `chosen` by hand.
+    A project may come from anybody and name any file. So only sounds that are in the project's folder, or
+    that this user has `chosen` by hand, go into an export.
     """
     lines = [(ident, line) for ident, line in document.lines.items() if line.audio]
     names = file_stems(Path(str(line.audio)).stem for _, line in lines)
@@ -179,8 +182,8 @@ def _sounds(
 
 
 def _channel(source: Path, channel: int | None) -> bytes:
-    """Return one channel of a sound as a WAV file of its own: what engines play have no channels to choose.
-    Raises FileError.
+    """Return one channel of a sound as a WAV file of its own, because engines cannot choose channels. Raises
+    FileError.
     """
     import io
 
@@ -201,7 +204,7 @@ def _write_glb(
     character: Path | CharacterMesh | None,
     compress: bool,
 ) -> list[str]:
-    """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
+    """Write the GLB without hidden meshes; return what is not in it, in words."""
     from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     skeleton = project.skeleton
@@ -225,9 +228,9 @@ def _write_glb(
 def mesh_on(
     skeleton: Skeleton, given: Path | CharacterMesh | None, hidden: Collection[str] = ()
 ) -> tuple[CharacterMesh | None, list[str]]:
-    """Return the mesh that is written for clips of a skeleton, without the meshes that are hidden, and what
-    there is to say about it. One of another skeleton is bound by the names of its joints, as the preview
-    draws it, and left out where the preview does not draw it. Raises FileError.
+    """Return the mesh that is written for clips of a skeleton, without hidden meshes, and notes about it. A
+    mesh of another skeleton is bound by the names of its joints, as the preview draws it, and left out if the
+    preview does not draw it. Raises FileError.
     """
     from metagraph.formats.gltf.reader import read_character
 
@@ -253,8 +256,8 @@ def mesh_on(
 
 
 def list_exported_clips(project: Project) -> list[Clip]:
-    """Return the motion of the clips that are written, by the names they are written with, with the curves
-    that the face wears.
+    """Return the motion of the exported clips, with the names they get, and with their curves on the
+    project's face.
     """
     used = [e for e in list_used_clips(project) if e.motion is not None]
     names = unique_names([entry.name for entry in list_used_clips(project)])
@@ -267,5 +270,5 @@ def list_exported_clips(project: Project) -> list[Clip]:
 
 
 def export_schema_text() -> bytes:
-    """Return the published schema's text."""
+    """Return the text of the published schema."""
     return msgspec.json.format(msgspec.json.encode(c.export_schema()), indent=1) + b"\n"

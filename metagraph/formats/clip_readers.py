@@ -1,6 +1,6 @@
-"""The kinds of clip files: how each is told by its first bytes, and what reads it.
+"""List the kinds of clip files: how each is recognised by its first bytes, and what reads it.
 
-Readers are imported when the first file of their kind is read.
+A reader is imported when the first file of its kind is read.
 """
 
 from __future__ import annotations
@@ -13,14 +13,16 @@ from metagraph.common.wording import phrase
 from metagraph.formats.live_link_face import is_live_link
 from metagraph.motion.clip import Clip
 
-HEAD = 4096  # bytes that tell what a file is
+HEAD = 4096  # bytes that show what a file is
 
 
 @dataclass(frozen=True)
 class ClipReader:
-    """A kind of clip file. name: what such a file is, for people. suffixes: lower case. begins: whether the
-    first bytes are of this kind; as they are, and without what may stand before text. read: takes of a file,
-    and the repairs (`takes.REPAIRS`) not to make.
+    """A kind of clip file.
+
+    `name` says for people what such a file is. `suffixes` are in lower case. `begins` returns whether the
+    first bytes are of this kind; it gets them as they are, and without what may precede text. `read` returns
+    the takes of a file; its second argument are repairs (`takes.REPAIRS`) not to make.
     """
 
     name: str
@@ -62,7 +64,7 @@ def _is_fbx(head: bytes, text: bytes) -> bool:
 LIVE_LINK = ClipReader(
     phrase("a recording of Live Link Face"), (".csv",), lambda head, text: is_live_link(head), _read_live_link
 )
-# The first that knows a file's beginning reads it.
+# The first reader that recognises the beginning of a file reads it.
 READERS = [
     ClipReader(
         phrase("a BVH file"), (".bvh",), lambda head, text: text[:9].upper() == b"HIERARCHY", _read_bvh
@@ -79,16 +81,16 @@ READERS = [
 
 
 def reader_of(head: bytes) -> ClipReader | None:
-    """Return what reads files that begin so; None where nothing does."""
+    """Return the reader of files with this beginning; None if there is none."""
     text = head.lstrip(b"\xef\xbb\xbf \t\r\n")
     return next((reader for reader in READERS if reader.begins(head, text)), None)
 
 
 def reader_for(suffix: str) -> ClipReader | None:
-    """Return what reads files of an ending, lower case; None where nothing does."""
+    """Return the reader of files with this extension, in lower case; None if there is none."""
     return next((reader for reader in READERS if suffix in reader.suffixes), None)
 
 
 def clip_suffixes() -> tuple[str, ...]:
-    """Return the endings of clip files, lower case."""
+    """Return the extensions of clip files, in lower case."""
     return tuple(suffix for reader in READERS for suffix in reader.suffixes)

@@ -1,4 +1,4 @@
-"""Read clips from files of any format, one by one or by the hundred."""
+"""Read clips from files of any format, singly or hundreds at once."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from metagraph.motion.clip import Clip, ClipError, Repair
 
 @dataclass(frozen=True, eq=False)
 class ImportReport:
-    """What came of importing many files.
+    """The result of importing many files.
 
-    clips: (file, take's number in the file, clip). failures: one error per file that could not be read.
-    notes: what the user should know, each naming its file. cancelled: whether the user stopped before the
-    end.
+    `clips` has (file, number of the take in the file, clip). `failures` has an error for each file that could
+    not be read. `notes` are for the user, each with its file's name. `cancelled` is True if the user stopped
+    before the end.
     """
 
     clips: tuple[tuple[Path, int, Clip], ...]
@@ -44,11 +44,12 @@ class ImportReport:
 
 @guard_reader
 def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
-    """Return all takes of a file, poses of one frame behind the others. A bind pose of one frame without a
-    name of its own is skipped where other takes are longer, with a note on those.
+    """Return all takes of a file, with poses of one frame after the others. A bind pose of one frame without
+    a name of its own is skipped if other takes are longer; a note on those says so.
 
-    The content decides what the file is, and must agree with its ending. as_is: repairs (`takes.REPAIRS`) not
-    to make; takes that are then not skipped stand behind the others, whose numbers stay. Raises FileError.
+    The content decides what the file is, and must agree with its extension. `as_is` names repairs
+    (`takes.REPAIRS`) not to make. Takes that are then not skipped come after the others, so that numbers stay
+    the same. Raises FileError.
     """
     path = Path(path)
     wanted, found = reader_for(path.suffix.lower()), _reader(path)
@@ -78,7 +79,7 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
 
 
 def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
-    """Put poses of one frame behind the longer takes, and drop those that tools leave behind: bind poses
+    """Move poses of one frame after the longer takes, and drop those that tools leave behind: bind poses
     without a name of their own.
     """
     short = [clip for clip in clips if clip.frames == 1]
@@ -105,13 +106,13 @@ def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
 
 
 def _unnamed(clip: Clip) -> bool:
-    """Whether a take bears its file's name for want of one of its own."""
+    """Return whether a take is named after its file because it has no name of its own."""
     return any(repair.name == NAME for repair in clip.repairs)
 
 
 def _reader(path: Path) -> ClipReader | str:
-    """Return what reads a file by its content, or what else it is. Raises FileError when it cannot be
-    read.
+    """Return the reader of a file, found by its content, or a description of what else it is. Raises
+    FileError if it cannot be read.
     """
     with open_file(path, MOTION_FILE) as file:
         head = file.read(HEAD)
@@ -128,7 +129,7 @@ def _reader(path: Path) -> ClipReader | str:
 
 
 def is_face_recording(path: Path) -> bool:
-    """Whether a table is a recording of Live Link Face."""
+    """Return whether a table is a recording of Live Link Face."""
     try:
         return _reader(path) is LIVE_LINK
     except FileError:
@@ -136,8 +137,8 @@ def is_face_recording(path: Path) -> bool:
 
 
 def find_clip_files(folder: str | Path) -> list[Path]:
-    """Return every clip file in a folder and below, sorted by path without regard to case; hidden ones are
-    skipped.
+    """Return every clip file in a folder and below, sorted by path ignoring case. Hidden files and folders
+    are skipped.
     """
     folder, endings = Path(folder), clip_suffixes()
     found = [
@@ -158,10 +159,10 @@ def import_clips(
 ) -> ImportReport:
     """Read many files; a bad one fails alone.
 
-    progress: called before each file with how many are done, how many there are, and the file. cancelled:
-    asked before each file. Files whose skeletons are the same share one Skeleton object. FBX files are read a
-    few at a time, by processes that are started once; the other formats take a few milliseconds of
-    Python's own, where threads gain nothing.
+    `progress` is called before each file with the number of files done, the number of all files, and the
+    file. `cancelled` is called before each file. Files with equal skeletons share one Skeleton object. FBX
+    files are read a few at a time by processes that are started once. Files of other formats take a few
+    milliseconds of Python code, which threads would not make faster.
     """
     files = [Path(p) for p in paths]
     with read_together(files) as begun:
@@ -170,8 +171,8 @@ def import_clips(
 
 @contextmanager
 def read_together(paths: Iterable[Path]) -> Iterator[Mapping[Path, Future[list[Clip]]]]:
-    """Begin to read those of many files that another process reads, a few at a time; what is not wanted any
-    more at the end is not read.
+    """Begin to read those of many files that another process reads, a few at a time. Files not waited for at
+    the end are not read.
     """
     fbx = [path for path in paths if path.suffix.lower() == ".fbx"]
     if len(fbx) < 2:
@@ -206,7 +207,7 @@ def _import_clips(
             progress(done, len(files), path)
         try:
             takes = begun[path].result() if path in begun else read_clips(path)
-        except Exception as error:  # no kind is trusted to be the only one
+        except Exception as error:  # readers may raise any kind of error
             failures.append(unforeseen_error(path, error))
             continue
         for number, clip in enumerate(takes):
@@ -225,6 +226,6 @@ def _import_clips(
 
 
 def digest(path: str | Path) -> str:
-    """Return the SHA-256 of a file's content, hex. Raises FileError."""
+    """Return the SHA-256 of a file's content in hex. Raises FileError."""
     with open_file(path, SOUND_FILE) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

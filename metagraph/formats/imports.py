@@ -1,6 +1,4 @@
-"""Importing into a project: files and folders in, clips on the project's skeleton out, one bad file failing
-alone.
-"""
+"""Import into a project: files and folders become clips on the project's skeleton; a bad file fails alone."""
 
 from __future__ import annotations
 
@@ -39,8 +37,9 @@ _LONGER = 0.025  # share by which bones may differ from the project's without a 
 class Strangers:
     """Clips of one other skeleton, which can be retargeted.
 
-    clips: on their own skeleton. why: how it differs, in words. joint_map: what is proposed, or what the user
-    made of the same two skeletons before (`remembered`). told: the failures by which they were left out.
+    `clips` are on their own skeleton. `why` says in words how it differs. `joint_map` is proposed, or was
+    made by the user for the same two skeletons before (`remembered`). `told` has the failures with which they
+    were left out.
     """
 
     clips: tuple[Loaded, ...]
@@ -59,7 +58,7 @@ class Strangers:
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Why they are left out, one text a file."""
+        """Return why they are left out, one text for each file."""
         files: dict[str, int] = {}
         for path, *_ in self.clips:
             files[path] = files.get(path, 0) + 1
@@ -84,14 +83,14 @@ class Strangers:
 
 @dataclass(frozen=True)
 class Imported:
-    """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers
-    changed.
+    """The result of an import.
 
-    character: the first of the files that also holds a character, for a project that draws none yet.
-    stand_ins: those whose mesh is none, where there is no character. strangers: clips of other skeletons that
-    wait to be retargeted. joint_maps: those by which clips were retargeted, to be kept in the project.
-    retargeted: how many of the loaded clips were. apart: clips of other skeletons that were left out, by the
-    user or with a reason among the failures.
+    `loaded` is what `add_clips` takes. `failures` say in words why files were left out. `notes` say what
+    readers changed. `character` is the first of the files that also holds a character, for a project that
+    draws none yet; if there is none, `stand_ins` are the files whose mesh only stands in for one. `strangers`
+    are clips of other skeletons that wait to be retargeted. `joint_maps` are those by which clips were
+    retargeted, to be kept in the project, and `retargeted` is the number of these clips. `apart` are clips of
+    other skeletons that were left out, by the user or with a reason among the failures.
     """
 
     loaded: tuple[Loaded, ...]
@@ -106,9 +105,7 @@ class Imported:
     apart: tuple[Strangers, ...] = ()
 
     def into(self, project: Project) -> Project:
-        """The edit: `project` with the clips added, and with the character that came with them if it had
-        none.
-        """
+        """Edit `project`: add the clips and, if it has no character, the one that came with them."""
         project = add_clips(project, self.loaded)
         if any(project.joint_maps.get(key) != value for key, value in self.joint_maps.items()):
             project = replace(project, joint_maps={**project.joint_maps, **self.joint_maps})
@@ -118,7 +115,7 @@ class Imported:
 
 
 def gather(paths: Iterable[str | Path]) -> list[Path]:
-    """Return the clip files among files and folders, folders searched to the bottom, each file once."""
+    """Return the clip files among files and folders, each once. Folders are searched with all subfolders."""
     out: dict[Path, None] = {}
     for path in map(Path, paths):
         found = find_clip_files(path) if path.is_dir() else [path]
@@ -138,12 +135,12 @@ def import_files(
 ) -> Imported:
     """Read files and folders for a project; nothing is changed yet.
 
-    folder: what paths are made relative to, None for absolute ones. The project's skeleton decides what fits;
-    in an empty project the skeleton on which most of the clips can play does. A clip of another skeleton is
-    retargeted when the project has a joint map for that; else `retarget` says: it is left out with its
-    reason, handed back among the `strangers`, or retargeted by the remembered or proposed map. remembered:
-    the user's maps from other projects. contacts: whether retargeted hands touch their own body where they
-    did, for skeletons that the project has no joint map for yet.
+    Paths are made relative to `folder`, or absolute if it is None. The project's skeleton decides what fits;
+    in an empty project, the skeleton on which most of the clips can play. A clip of another skeleton is
+    retargeted if the project has a joint map for it. Otherwise `retarget` decides: it is left out with its
+    reason ("no"), returned among the `strangers` ("ask"), or retargeted by the remembered or proposed map
+    ("yes"). `remembered` finds the user's maps from other projects. `contacts` says whether retargeted hands
+    touch their own body where they did, for skeletons that the project has no joint map for yet.
     """
     report = import_clips(gather(paths), progress, cancelled)
     failures: list[str] = [error.words for error in report.failures]
@@ -189,7 +186,7 @@ def import_files(
 
         still = {_name(e.path, folder): e for e in report.failures}
         character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
-        if character is not None and character.path in still:  # it is of use without a motion
+        if character is not None and character.path in still:  # it is useful without a motion
             failures.remove(still[character.path].words)
     notes = (*_together(report.clips), *_other_bones(list(apart.values())))
     if character is not None:
@@ -260,7 +257,7 @@ def bring_over(
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Imported:
-    """Retarget clips of another skeleton by a joint map; one that cannot be fails alone."""
+    """Retarget clips of another skeleton by a joint map. One that cannot be retargeted fails alone."""
     loaded: list[Loaded] = []
     failures: list[str] = []
     stopped = False
@@ -285,10 +282,10 @@ def bring_over(
 
 def find_strangers(project: Project, folder: Path | None, clips: Iterable[str] = ()) -> tuple[Strangers, ...]:
     """Return the project's retargeted clips as they are in their files, by skeleton, with the joint maps they
-    were brought by.
+    were retargeted by.
 
-    clips: only the skeletons of these; of all without. What cannot be read, or has the project's skeleton by
-    now, is left out.
+    `clips` limits this to the skeletons of these clips; without it, all are returned. Clips that cannot be
+    read, or that have the project's skeleton by now, are left out.
     """
     chosen = {project.clips[i].brought_from for i in clips if i in project.clips}
     groups: dict[str, list[Loaded]] = {}
@@ -297,7 +294,7 @@ def find_strangers(project: Project, folder: Path | None, clips: Iterable[str] =
             try:
                 takes = read_clips((folder or Path()) / entry.path, entry.as_is)
             except FileError:
-                continue  # that it is missing or broken is told elsewhere
+                continue  # a missing or broken file is reported elsewhere
             if entry.take < len(takes) and fingerprint(takes[entry.take].skeleton) == entry.brought_from:
                 found = takes[entry.take].renamed(entry.name)
                 groups.setdefault(entry.brought_from, []).append(
@@ -313,7 +310,7 @@ def _name(path: Path, folder: Path | None) -> str:
 def _as_known(
     clips: Sequence[tuple[Path, int, Clip]], project: Project, folder: Path | None
 ) -> list[tuple[Path, int, Clip]]:
-    """Return the clips, those of which the project left a repair out read that way again."""
+    """Return the clips; those for which the project left out a repair are read again in that way."""
     kept: dict[str, dict[int, tuple[str, ...]]] = {}
     for entry in project.clips.values():
         if entry.as_is:
@@ -328,14 +325,14 @@ def _as_known(
                 if as_is not in takes:
                     takes[as_is] = read_clips(path, as_is)
             except FileError:
-                break  # it is being written anew: what was read a moment ago stands
+                break  # the file is being written again; keep what was read before
             if take < len(takes[as_is]):
                 out[path, take] = takes[as_is][take]
     return [(path, take, clip) for (path, take), clip in out.items()]
 
 
 def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
-    """Return what readers noted, in one line for all files of which it is true."""
+    """Return the notes of readers, each in one line for all files that have it."""
     files: dict[str, dict[str, None]] = {}
     for path, _, clip in clips:
         for note in clip.notes:
@@ -362,7 +359,7 @@ def _other_bones(groups: Sequence[tuple[float, list[str]]]) -> tuple[str, ...]:
 
 
 def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:
-    """Return the skeleton that most clips can play on; of equal ones the one with most joints, then the
+    """Return the skeleton that most clips can play on; of equal ones, the one with most joints, then the
     first.
     """
     groups: dict[

@@ -1,10 +1,10 @@
-"""Who has a project open: a lock file beside it, for windows on one computer and on several that share a
-drive.
+"""Find out who has a project open, by a lock file beside it, for windows on one computer and on several that
+share a drive.
 
-The file is made by O_EXCL, which network drives keep too, and no lock of the system's is asked for. It says
-who made it; while its window is open it is touched every `REFRESH` seconds. A process that is gone is known
-at once on its own computer, and elsewhere by a file that was not touched for `STALE` seconds by the drive's
-own clock.
+The file is made by O_EXCL, which network drives respect too; the system's own locks are not used. It says who
+made it, and is touched every `REFRESH` seconds while its window is open. That a process is gone shows at once
+on its own computer; elsewhere it shows when the file was not touched for `STALE` seconds by the drive's own
+clock.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from metagraph.common.programs import run_program, system_program
 from metagraph.formats.new_file import Access, access_of, open_new
 
 REFRESH = 30.0  # seconds
-STALE = 150.0  # seconds; a computer may be busy, and a drive away for a while
+STALE = 150.0  # seconds; a computer may be busy, and a drive unreachable for a while
 
 
 class Owner(msgspec.Struct, frozen=True):
-    """One sitting: a document in a process. machine: what else tells computers and containers of one name
-    apart, "" if unknown.
+    """One sitting: a document in a process.
 
-    started: when the process began, in the system's own terms, since numbers of processes come again. since:
+    `machine` is what else distinguishes computers and containers with the same name, "" if unknown. `started`
+    is when the process began, in the system's own notation, because process ids are reused. `since` is in
     seconds since 1970.
     """
 
@@ -58,14 +58,14 @@ def _user() -> str:
         import getpass
 
         return getpass.getuser()
-    except (OSError, KeyError, ImportError):  # a number without a name, as in containers
+    except (OSError, KeyError, ImportError):  # a user id without a name, as in containers
         return "somebody"
 
 
 @cache
 def _machine() -> str:
-    """Return what numbers of processes are valid in: a boot of Linux and its namespace; elsewhere the host's
-    name has to do.
+    """Return where process ids are valid: a boot of Linux and its namespace; "" elsewhere, where only the
+    host's name is used.
     """
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
@@ -75,8 +75,8 @@ def _machine() -> str:
 
 
 def _started(pid: int) -> str:
-    """Return when a process began, "" where that is not known. Raises ProcessLookupError when there is
-    none.
+    """Return when a process began, "" if that is unknown. Raises ProcessLookupError if there is no such
+    process.
     """
     if pid <= 0:
         raise ProcessLookupError(pid)
@@ -111,7 +111,7 @@ def _started_on_windows(pid: int) -> str:
             return ""
         raise ProcessLookupError(pid)
     try:
-        times = [ctypes.c_uint64() for _ in range(4)]  # made, ended, in the kernel, outside it
+        times = [ctypes.c_uint64() for _ in range(4)]  # created, ended, in the kernel, outside it
         if not kernel.GetProcessTimes(ctypes.c_void_p(handle), *map(ctypes.byref, times)):
             return ""
         code = ctypes.c_uint32()
@@ -125,15 +125,16 @@ def _started_on_windows(pid: int) -> str:
 
 
 def is_here(owner: Owner) -> bool:
-    """Return whether an owner is or was on this computer, where its process can be looked for."""
+    """Return whether an owner is or was on this computer, where its process can be looked up."""
     return (owner.host, owner.machine) == (platform.node(), _machine())
 
 
 def is_gone(owner: Owner | None, file: Path, look_only: bool = False) -> bool:
-    """Return whether nobody writes to a lock or journal any more. owner: as the file says; None where it says
-    nothing. look_only: make no file to ask the drive for its time; this computer's clock counts.
+    """Return whether no process writes to a lock or journal any more.
 
-    On this computer that is certain; for another one it means that the file was not touched for long.
+    `owner` is the one in the file; None if it says none. With `look_only`, no file is made to read the
+    drive's clock, and this computer's clock is used. On this computer the answer is certain; for another one
+    it means that the file was not touched for `STALE` seconds.
     """
     if owner is not None and is_here(owner):
         try:
@@ -145,7 +146,9 @@ def is_gone(owner: Owner | None, file: Path, look_only: bool = False) -> bool:
 
 
 def process_mark() -> str:
-    """Return what tells this process from all others of all computers, in letters that file names take."""
+    """Return what distinguishes this process from all others on all computers, in letters that are valid in
+    file names.
+    """
     return _mark(os.getpid())
 
 
@@ -163,7 +166,7 @@ def _plain(started: str) -> str:
 
 
 def mark_is_gone(mark: str) -> bool | None:
-    """Return whether the process of a mark is gone; None where it is or was on another computer."""
+    """Return whether the process of a mark is gone; None if it is or was on another computer."""
     place, pid, started = mark.split("-")
     if place != _place():
         return None
@@ -175,8 +178,8 @@ def mark_is_gone(mark: str) -> bool | None:
 
 
 def _untouched(file: Path, look_only: bool = False) -> float:
-    """Return for how many seconds a file was not touched, by the clock of the drive where one may write
-    there, unless one only looks.
+    """Return for how many seconds a file was not touched, by the drive's clock if a file can be made there
+    and `look_only` is False, else by this computer's.
     """
     try:
         touched = file.stat().st_mtime
@@ -195,8 +198,9 @@ def _untouched(file: Path, look_only: bool = False) -> float:
 
 @dataclass(frozen=True)
 class Holder:
-    """Who has a lock. owner: None where its file cannot be read. gone: see `is_gone`; sure: and it is
-    certain.
+    """The owner of a lock.
+
+    `owner` is None if the file cannot be read. `gone` is as in `is_gone`; `sure` is True if that is certain.
     """
 
     owner: Owner | None
@@ -209,12 +213,12 @@ class Holder:
 
 
 def lock_path(saved: Path) -> Path:
-    """Return where the lock of a project file lies: beside it, hidden."""
+    """Return the path of a project file's lock: beside it, hidden."""
     return saved.with_name(f".{saved.name}.lock")
 
 
 def holder(path: Path, look_only: bool = False) -> Holder | None:
-    """Return who has the lock file at `path`, None if nobody. look_only: see `is_gone`."""
+    """Return who has the lock file at `path`, None if nobody. `look_only` is as in `is_gone`."""
     try:
         content = path.read_bytes()
     except FileNotFoundError:
@@ -229,23 +233,25 @@ def holder(path: Path, look_only: bool = False) -> Holder | None:
 
 
 class Lock:
-    """The lock of one project file for one sitting. held: whether it is ours; it may be that the folder takes
-    none. made_again: whether somebody had removed it while it was held.
+    """The lock of one project file for one sitting.
 
-    like: who may read it where the project file is not there yet.
+    `held` says whether it is ours; there may be none if the folder cannot hold one. `made_again` says whether
+    somebody had removed it while it was held. `like` says who may read it if the project file does not exist
+    yet.
     """
 
     def __init__(self, saved: Path, owner: Owner, like: Access | None = None) -> None:
-        self.saved = saved.resolve()  # the file that a link means
+        self.saved = saved.resolve()  # the file that a link points to
         self.path, self.owner, self.like = lock_path(self.saved), owner, like
         self.held = self.made_again = False
-        self._away = False  # its folder was, when it was looked for
+        self._away = False  # whether its folder was gone at the last look
         self._content = msgspec.json.encode(owner) + b"\n"
 
     def acquire(self, take_over: bool = False) -> Holder | None:
-        """Take the lock; return who has it, or None when it is ours or none can be had there.
+        """Take the lock; return who has it, or None if it is ours or none can be made there.
 
-        What is certainly left behind is taken over; what only seems to be, when `take_over` says so.
+        A lock that was certainly left behind is taken; one that only seems to be is taken if `take_over` is
+        True.
         """
         found: Holder | None = None
         for _ in range(5):
@@ -254,7 +260,7 @@ class Lock:
             except FileExistsError:
                 found = holder(self.path)
                 if found is None:
-                    continue  # given back just now
+                    continue  # released just now
                 if found.content == self._content:
                     self.held = True
                     return None
@@ -262,7 +268,7 @@ class Lock:
                     return found if not self.path.is_dir() else None
                 self._put_aside(found)
             except OSError:
-                return None  # a read-only folder: what is opened there cannot be saved there either
+                return None  # a read-only folder: its files cannot be saved there either
             else:
                 try:
                     os.write(handle, self._content)
@@ -271,14 +277,14 @@ class Lock:
                     with contextlib.suppress(OSError):
                         self.path.unlink()
                 finally:
-                    with contextlib.suppress(OSError):  # a drive that is away by now
+                    with contextlib.suppress(OSError):  # a drive that is gone by now
                         os.close(handle)
                 return None
         return found
 
     def _put_aside(self, found: Holder) -> None:
-        """Remove a lock that was left behind, but not the one that somebody else has made in its place
-        meanwhile.
+        """Remove a lock that was left behind, but not one that somebody else made in its place in the
+        meantime.
         """
         aside = self.path.with_name(f"{self.path.name}.{self.owner.sitting}")
         with contextlib.suppress(OSError):
@@ -289,8 +295,8 @@ class Lock:
                 aside.unlink()
 
     def refresh(self) -> bool:
-        """Say that it is still held; return False when somebody has taken it over, and it is not held any
-        more.
+        """Show that the lock is still held; return False if somebody took it, so that it is no
+        longer held.
         """
         if not self.held and not self._away:
             return True
@@ -298,18 +304,18 @@ class Lock:
             content = self.path.read_bytes()
             if content == self._content:
                 os.utime(self.path)
-        except FileNotFoundError:  # somebody tidied up
+        except FileNotFoundError:  # somebody removed it
             self.held = False
             free = self.acquire() is None
             self.made_again, self._away = self.held, free and not self.held
             return free
         except OSError:
-            return True  # the drive is away
+            return True  # the drive is gone
         self.held = content == self._content
         return self.held
 
     def release(self) -> None:
-        """Give the lock back, if it is still ours."""
+        """Remove the lock, if it is still ours."""
         if self.held:
             self.held = False
             with contextlib.suppress(OSError):

@@ -1,10 +1,10 @@
-"""What a command may write over: nothing that somebody else made, that it reads, or that is open elsewhere.
+"""Decide which files a command may overwrite: none that somebody else made, that it reads, or that is open
+elsewhere.
 
-While a command runs (`writing`), each writer of files asks first (`claim_output`). A file that is there may
-be replaced where this user's Metagraph wrote it and nobody has changed it since, which a note in the user's
-data folder tells (path and SHA-256), or where `--overwrite` was said. What the command reads, and a project
-that a window has open, is never replaced. Elsewhere, as in the window, which asks by itself, nothing is
-checked.
+While a command runs (`writing`), each writer of files asks first (`claim_output`). An existing file may be
+replaced if this user's Metagraph wrote it and nobody has changed it since, which a note in the user's data
+folder shows (path and SHA-256), or with `--overwrite`. What the command reads, and a project that a window
+has open, is never replaced. Outside commands nothing is checked; the window asks on its own.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from metagraph.errors import FileError
 from metagraph.formats.locking import holder, lock_path
 from metagraph.formats.replacing import replace_file
 
-STAGED = ".exporting-"  # how folders begin in which an export is staged
-MOST = 4000  # notes that are kept; beyond them the oldest go
-# Files of folders that are read which no command reads: reports that were written there.
+STAGED = ".exporting-"  # beginning of the names of folders in which an export is staged
+MOST = 4000  # notes that are kept; the oldest are removed first
+# Reports that were written to a folder that is read; no command reads them.
 _REPORTS = (".csv", ".html", ".svg", ".pdf", ".xes", ".tsv")
 
 
@@ -39,8 +39,8 @@ class _Written(msgspec.Struct, frozen=True):
 
 
 def data_folder() -> Path | None:
-    """Return the user's folder for what the program remembers, METAGRAPH_DATA where that is set; None where
-    nobody's home is known.
+    """Return the user's folder for what the program remembers, METAGRAPH_DATA if that is set; None if the
+    home folder is unknown.
     """
     if "METAGRAPH_DATA" in os.environ:
         return Path(os.environ["METAGRAPH_DATA"])
@@ -49,22 +49,24 @@ def data_folder() -> Path | None:
 
 
 class Outputs:
-    """The outputs of one command. overwrite: whether it was told to replace what others made. command: its
-    name, since it replaces what it made itself, and not what another command did.
+    """The outputs of one command.
+
+    `overwrite` says whether it may replace what others made. `command` is its name, because it may replace
+    its own outputs, but not another command's.
     """
 
     def __init__(self, overwrite: bool = False, command: str = "") -> None:
         self.overwrite, self.command = overwrite, command
         self._read: list[Path] = []  # files
-        self._folders: list[Path] = []  # whose files are read
+        self._folders: list[Path] = []  # folders whose files are read
         self._made: list[Path] = []  # folders that are written
         self._claimed: list[Path] = []  # files that will be written
-        self._own: list[Path] = []  # files and folders that the command keeps up by itself
+        self._own: list[Path] = []  # files and folders that the command updates itself
         data = data_folder()
         self._notes = data / "written" if data is not None else None
 
     def reads(self, *paths: Path) -> None:
-        """Say that the command reads files, or folders of them. Raises FileError where it would write over
+        """Declare that the command reads files, or folders of files. Raises FileError if it would overwrite
         one.
         """
         for path in paths:
@@ -76,12 +78,12 @@ class Outputs:
             self.refuse_input(claimed)
 
     def keeps_up(self, *paths: Path) -> None:
-        """Say that the command changes files in place, which is what it is for, or files in a folder."""
+        """Declare that the command changes files, or files in a folder, in place, as is its purpose."""
         self._own += map(_whole, paths)
 
     def claim(self, path: Path) -> None:
-        """Say what will be written, a file or a folder, before the work begins. Raises FileError where that
-        would take something away.
+        """Declare a file or folder that will be written, before the work begins. Raises FileError if
+        something would be lost.
         """
         if path.is_dir():
             self._made.append(_whole(path))
@@ -92,15 +94,15 @@ class Outputs:
             self._made.append(_whole(path))  # it may become a folder
 
     def check(self, path: Path, content: bytes | None = None) -> None:
-        """Raise FileError where a file must not be written. content: what will be in it; who has the same
-        there loses nothing.
+        """Raise FileError if a file must not be written. `content` is its new content; if it has that
+        already, nothing is lost.
         """
         whole = _whole(path)
         if any(own in (whole, *whole.parents) for own in self._own):
             return
         self.refuse_input(path)
         if not whole.exists() or not stat.S_ISREG(whole.stat().st_mode):
-            return  # also: a pipe, a terminal
+            return  # also for a pipe or a terminal
         refuse_locked(whole)
         if self.overwrite or self._is_own(whole) or (content is not None and _holds(whole, content)):
             return
@@ -112,7 +114,7 @@ class Outputs:
         )
 
     def refuse_input(self, path: Path) -> None:
-        """Raise FileError where a file is one that the command reads, by whatever name."""
+        """Raise FileError if a file is one that the command reads, under any name."""
         whole = _whole(path)
         source = self._input(whole)
         if source is not None:
@@ -122,8 +124,8 @@ class Outputs:
             raise FileError(path, cause, "", "Write to another file.")
 
     def wrote(self, path: Path, whatever: bool = False) -> None:
-        """Remember that a file was written; where that cannot be noted, the next command asks for
-        --overwrite. whatever: also one that the command keeps up.
+        """Remember that a file was written. If that cannot be noted, the next command asks for --overwrite.
+        With `whatever`, files that the command updates are noted, too.
         """
         whole = _whole(path)
         own = any(own in (whole, *whole.parents) for own in self._own)
@@ -138,7 +140,7 @@ class Outputs:
                 replace_file(self._note(whole), note, sync=False)
 
     def tidy(self) -> None:
-        """Let the oldest of too many notes go."""
+        """Remove the oldest notes if there are too many."""
         if self._notes is None:
             return
         with suppress(OSError):
@@ -160,7 +162,7 @@ class Outputs:
             return False
 
     def _input(self, whole: Path) -> Path | None:
-        """Return which input a file is, by whatever name or link; None where it is none."""
+        """Return the input that a file is, under any name or link; None if it is not one."""
         for path in self._read:
             if path == whole:
                 return path
@@ -177,7 +179,7 @@ class Outputs:
         return None if whole.stat().st_nlink < 2 else self._linked(whole)
 
     def _linked(self, whole: Path) -> Path | None:
-        """Return a file of a folder that is read which is this one by another name."""
+        """Return the file in a folder that is read that is this file under another name."""
         here = whole.stat()
         for folder in self._folders:
             for top, _, names in os.walk(folder):
@@ -190,7 +192,7 @@ class Outputs:
 
 
 def refuse_locked(path: Path) -> None:
-    """Raise FileError where a window, or another command, has a project file open."""
+    """Raise FileError if a window, or another command, has a project file open."""
     if path.suffix.lower() not in (".yaml", ".yml"):
         return
     found = holder(lock_path(_whole(path)))
@@ -200,7 +202,7 @@ def refuse_locked(path: Path) -> None:
 
 
 def locked_error(path: Path, found: object) -> FileError:
-    """Return the error that says who has a project file. found: a `Holder`."""
+    """Return the error that says who has a project file open. `found` is a `Holder`."""
     owner = getattr(found, "owner", None)
     whose = f" by {owner.user} on {owner.host} (process {owner.pid})" if owner is not None else ""
     return FileError(
@@ -216,7 +218,7 @@ _now: Outputs | None = None
 
 @contextmanager
 def writing(outputs: Outputs) -> Iterator[Outputs]:
-    """Check what is written inside."""
+    """Check all files that are written inside the `with` block."""
     global _now
     before, _now = _now, outputs
     try:
@@ -228,7 +230,7 @@ def writing(outputs: Outputs) -> Iterator[Outputs]:
 
 @contextmanager
 def claim_output(path: Path, content: bytes | None = None) -> Iterator[None]:
-    """Ask whether a file may be written, and remember that it was. content: see `Outputs.check`. Raises
+    """Check that a file may be written, and remember that it was. `content` is as in `Outputs.check`. Raises
     FileError.
     """
     outputs = _now
@@ -241,33 +243,33 @@ def claim_output(path: Path, content: bytes | None = None) -> Iterator[None]:
 
 
 def claim(*paths: Path) -> None:
-    """Say what the command that runs will write; see `Outputs.claim`."""
+    """Declare what the running command will write; see `Outputs.claim`."""
     if _now is not None:
         for path in paths:
             _now.claim(path)
 
 
 def declare_inputs(*paths: Path) -> None:
-    """Say what the command that runs reads; see `Outputs.reads`."""
+    """Declare what the running command reads; see `Outputs.reads`."""
     if _now is not None:
         _now.reads(*paths)
 
 
 def declare_updates(*paths: Path) -> None:
-    """Say what the command that runs changes in place; see `Outputs.keeps_up`."""
+    """Declare what the running command changes in place; see `Outputs.keeps_up`."""
     if _now is not None:
         _now.keeps_up(*paths)
 
 
 def refuse_inputs(paths: Iterable[Path]) -> None:
-    """Raise FileError where one of some files is read by the command that runs."""
+    """Raise FileError if the running command reads one of these files."""
     if _now is not None:
         for path in paths:
             _now.refuse_input(path)
 
 
 def wrote(*paths: Path) -> None:
-    """Remember what was written by other means than `claim_output`."""
+    """Remember files that were written without `claim_output`."""
     if _now is not None:
         for path in paths:
             _now.wrote(path, whatever=True)
@@ -280,7 +282,7 @@ def _beside(path: Path) -> list[Path]:
         things = [*data.get("buffers", ()), *data.get("images", ())]
         uris = [str(thing.get("uri", "data:")) for thing in things]
     except (FileError, msgspec.MsgspecError, UnicodeError, AttributeError, TypeError, RecursionError):
-        return []  # whoever reads it says what is wrong
+        return []  # the code that reads it reports what is wrong
     return [path.parent / unquote(uri) for uri in uris if not uri.startswith("data:")]
 
 
@@ -298,7 +300,7 @@ def _digest(path: Path) -> str:
 
 
 def find_paths(values: Iterable[object]) -> Iterator[Path]:
-    """Give the paths among values, and in lists of them."""
+    """Yield the paths among values, and in lists of them."""
     for value in values:
         if isinstance(value, Path):
             yield value

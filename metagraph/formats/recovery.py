@@ -1,5 +1,5 @@
-"""What a journal gives back after a crash: whose sittings are over, and the projects with the edits worked
-in.
+"""Recover work from journals after a crash: find journals whose sittings are over, and apply their edits to
+projects.
 """
 
 from __future__ import annotations
@@ -28,23 +28,24 @@ from metagraph.formats.store import content_digest, file_digest, parse_project, 
 from metagraph.graph.model import Project
 
 JOURNAL = 1 << 33  # bytes of a journal that are read: as many as a person can fill
-DAMAGED = (
-    ".damaged"  # what the name of a damaged journal ends in, once what could be read of it was taken over
-)
-_UNFIT = 50  # edits that may not fit before all after them are left out
+DAMAGED = ".damaged"  # the end of a damaged journal's name, once everything readable in it was recovered
+_UNFIT = 50  # edits that may fail to fit; after that, all later ones are left out
 _KEPT = "It is kept."
 _ANOTHER = "belongs to another state of the project file"
 
 
 @dataclass(frozen=True)
 class Left:
-    """A journal somebody left. project: with its edits worked in, without motion; edits: how many. written:
-    when the last one was, in seconds since 1970. digest: of the file the edits build on. behind: the project
-    file has changed since; the edits are whole, but not in step with it. worked_in: as it has, and the
-    journal does not tell what it was: they are worked into what it is now. base: what the edits begin with,
-    as plain data, of which `unsaved` edits are in no file; records: the edits after it. lost: the edits that
-    the journal cannot give back, since it is damaged. doubtful: what the edits begin with was damaged, too; a
-    value in it may be wrong. saved: the project file as the journal names it.
+    """A journal that a sitting left behind.
+
+    `project` has its edits applied, without motion, and `edits` is their number. `written` is the time of the
+    last one, in seconds since 1970. `digest` is that of the file the edits build on. `behind` means that the
+    project file has changed since: the edits are complete, but do not build on its present state. `worked_in`
+    means that it has changed, and that the journal does not contain the earlier state, so the edits are
+    applied to the present one. `base` is what the edits begin with, as plain data, of which `unsaved` edits
+    are not in a file; `records` are the edits after it. `lost` are the edits that the journal cannot give
+    back because it is damaged. `doubtful` means that the base was damaged, too, so a value in it may be
+    wrong. `saved` is the project file that the journal names.
     """
 
     path: Path
@@ -68,15 +69,15 @@ class Left:
 
     @property
     def common(self) -> Project | None:
-        """What the file held that the edits build on, without motion; None where nobody knows."""
+        """Return what the file held that the edits build on, without motion; None if that is unknown."""
         return from_data(self.base, []) if self.digest is not None and not self.unsaved else None
 
 
 def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
-    """Return the project with the journal's edits worked in, without motion, and how many there were; None if
-    there is nothing.
+    """Return the project with the journal's edits applied, without motion, and their number; None if there
+    are none.
 
-    Raises FileError when the journal belongs to another state of the file, or nothing in it can be used.
+    Raises FileError if the journal belongs to another state of the file, or nothing in it can be used.
     """
     found = read_journal(journal, saved)
     if found is not None and (found.behind or found.worked_in):
@@ -85,9 +86,9 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
 
 
 def read_journal(journal: Path, saved: Path | None) -> Left | None:
-    """Return what a journal holds, None if that is no edit. A damaged record costs no other.
+    """Return what a journal holds; None if it has no edit. A damaged record does not affect the others.
 
-    Raises FileError when nothing in it can be used.
+    Raises FileError if nothing in it can be used.
     """
     try:
         content = read_file(journal, JOURNAL)
@@ -155,10 +156,10 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
 
 
 def _begun(records: Records, journal: Path) -> tuple[Data, tuple[JournalRecord | LostEdit, ...]] | None:
-    """Return what a journal begins with and what comes after it; None where that is no journal.
+    """Return what a journal begins with and what comes after it; None if it is not a journal.
 
-    Where the beginning is damaged it is pieced together: the file's digest is that of its text, and a text
-    with a wrong letter in it is better than none.
+    If the beginning is damaged, it is pieced together: the file's digest is that of its text, and a text with
+    a wrong letter in it is better than none.
     """
     entries = records.entries
     numbered = any(record.number is not None for record in records.whole)
@@ -179,7 +180,7 @@ def _begun(records: Records, journal: Path) -> tuple[Data, tuple[JournalRecord |
 
 
 def _repaired(line: bytes, journal: Path) -> Data:
-    """Return what a damaged foundation says, as far as a project can be read of it."""
+    """Return what a damaged foundation says, if a project can be read from it."""
     with suppress(ValueError, RecursionError):
         found = json.loads(line.rpartition(b"\t")[0].rpartition(b"\t")[0], strict=False)
         if isinstance(found, dict) and isinstance(found.get("base"), dict):
@@ -191,7 +192,7 @@ def _repaired(line: bytes, journal: Path) -> Data:
 
 
 def _worked_in(base: Data, edits: Sequence[Data]) -> tuple[Project, list[Data], list[Data]]:
-    """Return the project with the edits that fit worked in, those, and the others. Usually all fit."""
+    """Return the project with the edits that fit applied, these edits, and the others. Usually all fit."""
     good: list[Data] = []
     unfit: list[Data] = []
     rest = list(edits)
@@ -230,8 +231,8 @@ def _of_text(text: object, journal: Path) -> Data | None:
 
 
 def _saved_data(saved: Path | None, as_opened: bool) -> Data:
-    """Return what the project file holds. as_opened: it is as somebody opened or saved it, so no project need
-    be made of it to know that it is one. Raises FileError.
+    """Return what the project file holds. With `as_opened`, it is as a window opened or saved it, so no
+    project needs to be made of it to check that it is one. Raises FileError.
     """
     if saved is None or not saved.is_file():
         return to_data(Project())
@@ -240,13 +241,13 @@ def _saved_data(saved: Path | None, as_opened: bool) -> Data:
             data = canonical(read_file(saved, TEXT_FILE).decode("utf-8-sig"))
             if data is not None and data["metagraph"] == FORMAT:
                 data = without_clip_identities(data)
-                Replay(data)  # has all that changes are worked into, though a hand may have written it
+                Replay(data)  # has all that edits change, even if written by hand
                 return data
     return to_data(read_project(saved, []))
 
 
 def _settled(entries: Sequence[JournalRecord | LostEdit], digest: str | None) -> int:
-    """Return the number of the first entry that the file of a digest does not have."""
+    """Return the number of the first entry that the file with a digest does not have."""
     settled = [e.data for e in entries if isinstance(e, JournalRecord) and "mark" in e.data]
     marks = [r["mark"] for r in settled if digest is not None and r.get("saved") == digest]
     if not marks:
@@ -261,7 +262,7 @@ def _settled(entries: Sequence[JournalRecord | LostEdit], digest: str | None) ->
 
 
 def _lost_before(entries: Sequence[JournalRecord | LostEdit], most: int) -> int:
-    """Return how many entries at the end are lost edits, `most` at most."""
+    """Return how many entries at the end are lost edits, at most `most`."""
     return next(
         (n for n, entry in enumerate(entries[::-1][:most]) if isinstance(entry, JournalRecord)),
         min(most, len(entries)),
@@ -273,7 +274,7 @@ def _is_number(value: object) -> bool:
 
 
 def journal_owner(head: Data) -> Owner | None:
-    """Return whose journal it is, by what it begins with; None where that does not tell."""
+    """Return whose journal it is, from its beginning; None if that does not say it."""
     try:
         return msgspec.convert(head.get("owner"), Owner)
     except msgspec.ValidationError:
@@ -294,25 +295,25 @@ def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
 
 
 def find_left_journals(saved: Path) -> list[Path]:
-    """Return the journals of a project file whose sittings are over, the latest last; those that were put
-    aside at first, when the file had changed, among them.
+    """Return the journals of a project file whose sittings are over, the latest last, including those that
+    were put aside when the file had changed.
     """
     return find_journals_in(saved.parent, rf"{re.escape(f'.{saved.name}')}(\.[0-9a-f]+)?\.(journal|old)")
 
 
 def find_journals_in(folder: Path, names: str) -> list[Path]:
-    """Return the journals in a folder whose names a regular expression matches and whose sittings are over,
-    the latest last.
+    """Return the journals in a folder whose names match a regular expression and whose sittings are over, the
+    latest last.
     """
     wanted = re.compile(names)
     found: list[Path] = []
-    with suppress(OSError):  # what cannot be listed offers nothing
+    with suppress(OSError):  # a folder that cannot be listed has none
         found = [path for path in folder.iterdir() if wanted.fullmatch(path.name) and is_file(path)]
     return order_journals(path for path in found if is_left(path))
 
 
 def order_journals(journals: Iterable[Path]) -> list[Path]:
-    """Return journals, each once whatever it is called, the latest last."""
+    """Return journals, each once whatever its names, the latest last."""
     found: dict[Identity, tuple[float, Path]] = {}
     for path in journals:
         with suppress(OSError):
@@ -322,15 +323,15 @@ def order_journals(journals: Iterable[Path]) -> list[Path]:
 
 
 def is_left(journal: Path) -> bool:
-    """Return whether nobody writes to a journal any more; one that does not say whose it is was written
-    before they did.
+    """Return whether no process writes to a journal any more. Journals without an owner are older than the
+    owner field.
     """
     owner = journal_owner(read_journal_head(journal))
     return owner is None or is_gone(owner, journal)
 
 
 def retire(journal: Path) -> None:
-    """Remove a journal that was taken over or declined; a damaged one is kept under another name. Raises
+    """Remove a journal that was recovered or declined; a damaged one is kept under another name. Raises
     OSError.
     """
     if not is_damaged(journal):
@@ -349,7 +350,7 @@ def is_damaged(journal: Path) -> bool:
 
 
 def read_journal_head(journal: Path) -> Data:
-    """Return what a journal begins with, nothing where that cannot be read."""
+    """Return what a journal begins with; empty if it cannot be read."""
     with suppress(OSError), journal.open("rb") as file:
         records = read_records(file.readline(1 << 28))
         if records.whole:

@@ -1,6 +1,7 @@
-"""Project files: YAML, one line a clip, stance or action, in a stable order; written whole or not at all.
+"""Read and write project files: YAML, one line for each clip, stance or action, in a stable order; written
+whole or not at all.
 
-Clip paths are relative to the project file and carry the file's SHA-256, so a moved or renamed file is found
+Clip paths are relative to the project file and have the file's SHA-256, so a moved or renamed file is found
 again.
 """
 
@@ -49,11 +50,11 @@ from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import RetargetError
 
 SUFFIX = ".metagraph.yaml"
-SEARCHED = 20_000  # files looked at when a clip has moved
+SEARCHED = 20_000  # files looked at when clips have moved
 _CONFLICT = re.compile(r"^<{7} ", re.MULTILINE)
-COMPARED = 2 << 30  # bytes of them that are compared by content
+COMPARED = 2 << 30  # bytes of those files that are compared by content
 
-# Upgrades of the plain data, from the version they are listed under to the next.
+# Upgrades of the plain data, from the version under which they are listed to the next.
 UPGRADES: dict[int, Callable[[Data], Data]] = {
     1: lambda data: {key: value for key, value in data.items() if key != "next_id"},
 }
@@ -61,8 +62,9 @@ UPGRADES: dict[int, Callable[[Data], Data]] = {
 
 @dataclass(frozen=True)
 class Opened:
-    """A project read from a file. notes: what was repaired or is worth knowing, in words. digest: of the
-    file, SHA-256 in hex.
+    """A project read from a file.
+
+    `notes` say in words what was repaired or is worth knowing. `digest` is the file's SHA-256 in hex.
     """
 
     project: Project
@@ -77,7 +79,7 @@ def parse_project(text: str, path: Path, notes: list[str] | None = None) -> Proj
     """Return the project written in a file's text, its clips without motion. Raises FileError with the line
     and the field.
 
-    notes: see `data.from_data`.
+    `notes` is as in `data.from_data`.
     """
     try:
         data, lines = read_text_data(text)
@@ -127,10 +129,10 @@ def _upgraded(data: Any, path: Path) -> Any:
 
 
 def _line_of(lines: Callable[[], Mapping[str, int]], where: str) -> str:
-    """Return "line n" of a field, or of what it is in."""
+    """Return "line n" of a field, or of what contains it."""
     try:
         found = lines()
-    except TextError as error:  # a key that is longer than YAML's may be
+    except TextError as error:  # a key that is longer than YAML allows
         return f"line {error.line}" if error.line else where
     while where not in found and where:
         where = where[: max(where.rfind("."), where.rfind("["), 0)]
@@ -143,10 +145,10 @@ def _line_of(lines: Callable[[], Mapping[str, int]], where: str) -> str:
 def save_project(
     project: Project, path: str | Path, was_at: Path | None = None, like: Access | None = None
 ) -> Project:
-    """Save; return the project as it was saved. Raises FileError.
+    """Save a project; return it as it was saved. Raises FileError.
 
-    was_at: the project file its paths are relative to, when that is another one; they are then made relative
-    to `path`. like: who may read it where there is no file yet.
+    `was_at` is the project file that its paths are relative to, if that is another one; they are then made
+    relative to `path`. `like` says who may read the file if it does not exist yet.
     """
     path = Path(path)
     if was_at is not None:
@@ -156,7 +158,9 @@ def save_project(
 
 
 def encode_project(project: Project, path: Path) -> bytes:
-    """Return what a project's file at `path` holds; it has been read back. Raises FileError."""
+    """Return the content of a project's file at `path`, after reading it back as a check. Raises
+    FileError.
+    """
     try:
         text = to_text(with_clip_identity(to_data(project)))
     except DataError as error:
@@ -193,11 +197,11 @@ def _parsed(text: str, path: Path) -> Data:
 
 
 def writable(project: Project) -> Project:
-    """Return the project with texts that can all be written, whatever it is written to; itself, mostly."""
+    """Return the project with only texts that can be written to any file; usually the project itself."""
     try:
         data = to_data(project)
     except DataError:
-        return project  # whoever writes it says what is wrong
+        return project  # the code that writes it reports what is wrong
     if as_text(data) is data:
         return project
     clean = from_data(data)
@@ -209,8 +213,8 @@ def writable(project: Project) -> Project:
 
 
 def file_digest(path: Path | None) -> str | None:
-    """Return the SHA-256 of a project file, hex, by which it is known to have changed; None where there is no
-    file. Raises FileError.
+    """Return the SHA-256 of a project file in hex, to detect changes; None if there is no file. Raises
+    FileError.
     """
     if path is None or not is_file(path):
         return None
@@ -235,12 +239,12 @@ def move_project(project: Project, old: Path | None, new: Path) -> Project:
 
 
 def _with_paths(project: Project, make: Callable[[str], str]) -> Project:
-    """Return the project with every path to a file beside it made anew; those that are closed stay so."""
+    """Return the project with every path to another file remade by `make`. Closed paths stay closed."""
     return _each_path(project, lambda name: name if is_closed(name) else make(name))
 
 
 def _closed_below(project: Project, folder: Path) -> Project:
-    """Return the project with each path closed that leads from its folder to other computers."""
+    """Return the project with every path closed that leads from its folder to other computers."""
     if is_allowed():
         return project
     away, found = make_escape_check(folder), False
@@ -281,8 +285,8 @@ def files_of(project: Project, folder: Path) -> tuple[Path, ...]:
 
 
 def _conversations(project: Project, renew: Callable[[str], str]) -> Mapping[str, Conversation]:
-    """Return the project's conversations with other paths to their sounds, their characters and the projects
-    that move them.
+    """Return the project's conversations with renewed paths to their sounds, their characters and the
+    projects that move them.
     """
 
     def moved(side: Side) -> Side:
@@ -296,7 +300,7 @@ def _conversations(project: Project, renew: Callable[[str], str]) -> Mapping[str
 
 
 def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
-    """Return the project's lines with other paths to their sounds and phones."""
+    """Return the project's lines with renewed paths to their sounds and phones."""
     found = project.lines.items()
     return {
         i: msgspec.structs.replace(x, audio=x.audio and renew(x.audio), phones=x.phones and renew(x.phones))
@@ -305,11 +309,11 @@ def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
 
 
 def absolute(project: Project, folder: Path) -> Project:
-    """Return the project with its paths, relative to `folder`, made absolute: for a project without a
-    file.
+    """Return the project with its paths, relative to `folder`, made absolute, for a project without
+    a file.
     """
 
-    folders: dict[Path, Path] = {}  # many clips lie in one: each is looked for once
+    folders: dict[Path, Path] = {}  # many clips are in one folder, which is resolved once
 
     def renew(text: str) -> str:
         place = folder / text
@@ -323,8 +327,8 @@ def absolute(project: Project, folder: Path) -> Project:
 
 
 def path_for_project(path: Path, folder: Path | None) -> str:
-    """Return a file's path as a project in `folder` keeps it; absolute where there is no folder. Raises
-    FileError for one that is no text: it could not be written down.
+    """Return a file's path as a project in `folder` keeps it; absolute if `folder` is None. Raises FileError
+    for a name that is not text, because it could not be written.
     """
     whole = path.parent.resolve() / path.name  # a linked file keeps its name
     name = relative(path, folder) if folder is not None else whole.as_posix()
@@ -334,10 +338,10 @@ def path_for_project(path: Path, folder: Path | None) -> str:
 
 
 def relative(path: Path, folder: Path) -> str:
-    """Return `path` relative to `folder` with `/` between parts; absolute where there is no way (another
+    """Return `path` relative to `folder` with `/` between parts; absolute if that is impossible (another
     drive).
 
-    Links among the folders are followed first, since `..` out of a linked folder leads elsewhere; a linked
+    Links among the folders are followed first, because `..` out of a linked folder leads elsewhere. A linked
     file keeps its name.
     """
     path = path.parent.resolve() / path.name
@@ -348,7 +352,7 @@ def relative(path: Path, folder: Path) -> str:
 
 
 def read_project(path: str | Path, notes: list[str] | None = None) -> Project:
-    """Read a project file without loading its clips. notes: see `data.from_data`. Raises FileError."""
+    """Read a project file without loading its clips. `notes` is as in `data.from_data`. Raises FileError."""
     path = Path(path)
     return _decoded(_content(path), path, notes)
 
@@ -370,30 +374,28 @@ def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Proj
 
 
 def read_with_digest(path: Path, notes: list[str] | None = None) -> tuple[Project, str]:
-    """Read a project file without loading its clips; return with it the digest of just what was read. Raises
-    FileError.
+    """Read a project file without loading its clips; return the project and the digest of exactly what was
+    read. Raises FileError.
     """
     content = _content(path)
     return _decoded(content, path, notes), content_digest(content)
 
 
 def open_project(path: str | Path, progress: Callable[[int, int], None] | None = None) -> Opened:
-    """Read a project file and load its clips; missing or broken clip files leave their clips without motion,
-    with a note.
+    """Read a project file and load its clips. Clips with missing or broken files have no motion, and a note
+    says so.
     """
     path = Path(path)
     notes: list[str] = []
     project, found = read_with_digest(path, notes)
-    opened = load_motions(project, path.resolve().parent, progress)  # a link names files from where it leads
+    opened = load_motions(project, path.resolve().parent, progress)  # relative paths start at a link's target
     if names := list_closed_paths(opened.project):
         notes.append(describe_closed_paths(names))
     return replace(opened, notes=(*notes, *opened.notes), digest=found)
 
 
 def list_closed_paths(project: Project) -> tuple[str, ...]:
-    """Return the files that a project names and that were not opened, as its file has them: those on other
-    computers, and devices.
-    """
+    """Return the paths in a project's file that were not opened: those on other computers, and devices."""
     found: dict[str, None] = {}
 
     def see(name: str) -> str:
@@ -406,12 +408,12 @@ def list_closed_paths(project: Project) -> tuple[str, ...]:
 
 
 def reopen_paths(project: Project) -> Project:
-    """Return a project whose closed paths are as its file has them, to be opened."""
+    """Return a project whose closed paths are as in its file, to be opened."""
     return _each_path(project, original_path)
 
 
 def describe_closed_paths(names: Sequence[str]) -> str:
-    """Say which files were not opened, and how they can be."""
+    """Say which files were not opened, and how to open them."""
     return phrase(
         "{count} of the files that it names were not opened, such as '{name}': "
         "{why}. If you trust the source of the project, add --network to the "
@@ -425,13 +427,13 @@ def describe_closed_paths(names: Sequence[str]) -> str:
 def load_motions(
     project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None
 ) -> Opened:
-    """Load the motion of every clip that has none. folder: what paths are relative to, None when all are
+    """Load the motion of every clip that has none. Paths are relative to `folder`; None if all are
     absolute.
     """
     if folder is not None and folder.parent == folder:
-        folder = None  # the root of all files is nobody's project: nothing is searched there
+        folder = None  # the root folder is never a project's folder; nothing is searched there
     if folder is not None:
-        project = _closed_below(project, folder)  # a journal's, for one, was read without a folder
+        project = _closed_below(project, folder)  # a journal's project was read without one
     return _load(
         project,
         folder,
@@ -443,10 +445,10 @@ def load_motions(
 def relocate(
     project: Project, folder: Path | None, where: Path, progress: Callable[[int, int], None] | None = None
 ) -> Project:
-    """Return the project with missing clips loaded from anywhere below `where`, their paths corrected.
+    """Return the project with missing clips loaded from anywhere below `where`, and their paths corrected.
 
-    They are found by content, or by name where the content has changed; those that are at their places again
-    are read there.
+    They are found by content, or by name if the content has changed. Those that are back in their places are
+    read there.
     """
     return _load(
         project, folder, find_moved_files(missing_clips(project, folder), where, by_name=True), progress
@@ -456,14 +458,14 @@ def relocate(
 def load_returned(
     project: Project, folder: Path | None, progress: Callable[[int, int], None] | None = None
 ) -> Opened:
-    """Load the motion of the clips that have none and whose files are at their places; nothing is
-    searched.
-    """
+    """Load the motion of clips without one whose files are in their places. Nothing is searched."""
     return _load(project, folder, {}, progress)
 
 
 def clip_place(entry: ClipEntry, folder: Path | None) -> Path:
-    """Return where a clip's file should be. Paths written on Windows by hand are understood, too."""
+    """Return where a clip's file should be. Backslashes, as in paths written by hand on Windows, are
+    understood, too.
+    """
     place = (folder or Path()) / entry.path
     return (
         place
@@ -488,7 +490,7 @@ def _load(
     found: Mapping[str, Path],
     progress: Callable[[int, int], None] | None,
 ) -> Opened:
-    """Load the clips without motion, from `found` those that are elsewhere."""
+    """Load the clips without motion; `found` says where moved files are now."""
     by_path: dict[str, list[ClipEntry]] = {}
     for entry in project.clips.values():
         if entry.motion is None:
@@ -502,8 +504,10 @@ def _load(
 
 
 class _Loading:
-    """Clips while their files are read. found: files elsewhere than their path says. strangers: ids of clips
-    that do not fit the skeleton.
+    """Clips while their files are read.
+
+    `found` has the files that are elsewhere than their path says. `strangers` has the ids of clips that do
+    not fit the skeleton.
     """
 
     def __init__(self, project: Project, folder: Path | None, found: Mapping[str, Path]) -> None:
@@ -514,20 +518,20 @@ class _Loading:
         self.strangers: list[str] = []
 
     def opened(self) -> Opened:
-        """Return the project with what was read, and what there is to say of it."""
+        """Return the project with what was read, and the notes."""
         project = replace(self.project, clips=self.clips, skeleton=self.skeleton)
         if self.strangers:
             project = _brought(project, self.strangers, self.notes)
         return Opened(project, tuple(dict.fromkeys(self.notes)))
 
     def load(self, name: str, entries: Sequence[ClipEntry]) -> None:
-        """Read the file of some clips. name: its path in the project."""
+        """Read the file of some clips. `name` is its path in the project."""
         place = self.found.get(name) or clip_place(entries[0], self.folder)
         path = self._path(name, place)
         if name in self.found:
             self.notes.append(f"'{original_path(name)}' has moved to '{path}'")
         if is_closed(name) and name not in self.found:
-            return  # said once, for all of them
+            return  # one note says so for all of them
         if not is_file(place):
             self.notes.append(f"'{clean_text(name)}' is missing")
             return
@@ -548,7 +552,7 @@ class _Loading:
                 self.notes.append(f"'{path}' no longer has take {entry.take + 1} ('{entry.name}')")
 
     def _path(self, name: str, place: Path) -> str:
-        """Return the path that a project with this file has from now on."""
+        """Return the path by which the project names this file from now on."""
         if name not in self.found and "\\" not in name:
             return name
         if self.folder is None or Path(name).is_absolute():
@@ -556,8 +560,8 @@ class _Loading:
         return relative(place, self.folder)
 
     def _fitted(self, entry: ClipEntry, motion: Clip) -> Clip:
-        """Return motion on the project's skeleton, which the first with a body gives where there is none;
-        what does not fit as it is, and is a stranger.
+        """Return motion on the project's skeleton. If the project has none, it takes that of the first clip
+        with a body. Motion that does not fit is returned as it is, and its clip becomes a stranger.
         """
         if is_face_take(motion):
             self.strangers.append(entry.id)
@@ -572,7 +576,7 @@ class _Loading:
 
 
 def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Project:
-    """Return the project with those clips retargeted for whose skeleton it has a joint map; `check` tells of
+    """Return the project with those clips retargeted for whose skeleton it has a joint map. `check` reports
     the others.
     """
     bringing = Bringing(project)
@@ -609,10 +613,10 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
 def find_moved_files(
     lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False
 ) -> dict[str, Path]:
-    """Look below a folder for files with the content of lost ones, those of the same name first.
+    """Search below a folder for files with the content of lost ones, those of the same name first.
 
-    by_name: take a file of the same name where none has the content; of several the one whose folders agree
-    longest.
+    With `by_name`, a file of the same name is taken if no file has the content; of several, the one whose
+    folders match longest.
     """
     paths: dict[str, list[str]] = {}  # by content
     names: dict[str, list[str]] = {}
@@ -658,7 +662,7 @@ def _parts(path: str) -> list[str]:
 
 
 def _alike(place: Path, path: str) -> int:
-    """Return how many names of two paths agree, counted from the end."""
+    """Return how many names at the ends of two paths match."""
     same = 0
     for a, b in zip(reversed(place.parts), reversed(_parts(path)), strict=False):
         if a.lower() != b:

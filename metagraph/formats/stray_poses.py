@@ -1,9 +1,9 @@
-"""Poses that do not belong to a take: a bind pose left at an end, a frame unlike both its neighbours.
+"""Find poses that do not belong to a take: a bind pose left at an end, a frame unlike both its neighbours.
 
-Poses are compared whole, by where their joints are: joints count as much as their bones are long, so fingers
-and helpers decide nothing. A stray pose both looks like one (the rest pose, or arms held straight out as in a
-T- or A-pose) and is left by a step unlike the take's own motion. Its looks alone are no reason; the step
-alone is one only where it is many times as large as any other of the take.
+Poses are compared as a whole, by where their joints are. Joints count as much as their bones are long, so
+fingers and helpers decide nothing. A stray pose both looks like one (the rest pose, or arms held straight out
+as in a T- or A-pose) and is left by a step unlike the take's own motion. Its looks alone are not enough; the
+step alone is, if it is many times as large as any other of the take.
 """
 
 from __future__ import annotations
@@ -24,33 +24,35 @@ from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
-# Lengths are told in the body's spread: the mean distance of its joints from their middle, about 0.5 m.
+# Lengths are relative to the body's spread: the mean distance of its joints from their centre, about 0.5 m.
 AFTER = 0.2  # seconds of motion that a step is compared with
-RAMP = 0.15  # seconds that a tool's resampling, or a first key set late, may spread the step over
+RAMP = 0.15  # seconds over which a tool's resampling, or a late first key, may spread the step
 HOLD = 0.5  # seconds that a stray pose may be held
-VISIBLE = 0.007  # of the spread: a smaller step is not seen
-# How near a pose is to the rest pose, and how many times any step after it the step from it must then be:
-# real clips, which begin or end anywhere, stay below 2.
+VISIBLE = 0.007  # of the spread: smaller steps cannot be seen
+# How near a pose is to the rest pose, and how many times larger than any step after it the step from it must
+# then be. Real clips, which begin or end anywhere, stay below 2.
 LIKENESS = ((0.05, 3.0), (0.15, 4.0))
-ARMS_OUT = 4.0  # the same for a pose that is a T- or an A-pose by its shape alone
+ARMS_OUT = 4.0  # the same for a pose that is a T- or an A-pose only by its shape
 UNLIKE = 12.0  # the same for any pose: an A-pose with bent elbows in a file whose rest pose is the idle
 ALONE = 5.0  # times the take's largest step after it that the step from such a pose must be
-CERTAIN = 12.0  # the same where the clip moves as quickly elsewhere
-OWN = 1.5  # times the clip's 95 % step that the step must be: a clip that jumps all along is no other
-LONE, LONE_BOUND = 6.0, 4.0  # how many times any step around it those to and from a lone frame are
+CERTAIN = 12.0  # the same if the clip moves as quickly elsewhere
+OWN = 1.5  # the step must be so many times the clip's 95 % step, because a clip may jump all along
+LONE, LONE_BOUND = 6.0, 4.0  # how many times any step around it the steps to and from a lone frame are
 LONE_STEP = 0.05  # of the spread
-SLOWEST = 18.0  # frames a second: with fewer a whole movement may fall on one frame
-FEWEST = 5  # frames: a shorter take is a pose with what it is told from, or too short to tell
-BROKEN = 0.75  # how much a step that breaks off counts against one that is only quick
-SOON = 0.3  # the same for one that only the next three steps fall short of
+SLOWEST = 18.0  # frames a second: with fewer, a whole movement may fall on one frame
+FEWEST = 5  # frames: a shorter take is a pose and its comparison, or too short to judge
+BROKEN = 0.75  # how much a step that breaks off counts, compared with one that is only quick
+SOON = 0.3  # the same for one that is larger only than the next three steps
 STILL = 5e-4  # of the spread: less is noise
-AT_ONCE = 1 << 20  # numbers of rotations of clips that are worked out together
+AT_ONCE = 1 << 20  # numbers in the rotations of clips that are computed together
 
 
 @dataclass(frozen=True)
 class StrayPoses:
-    """first, last: how many frames at the ends are bind poses or ways from and to them. lone: frames between
-    that are unlike both their neighbours.
+    """The stray poses of a clip.
+
+    `first` and `last` are the numbers of frames at the ends that are bind poses or lead from and to them.
+    `lone` has the frames in between that are unlike both their neighbours.
     """
 
     first: int = 0
@@ -59,12 +61,14 @@ class StrayPoses:
 
 
 class _Take:
-    """A clip's poses as places `[F, J, 3]`, of any origin."""
+    """A clip's poses as positions `[F, J, 3]`, with any origin."""
 
     def __init__(
         self, clip: Clip, bound: Sequence[Pose], weights: Array, places: Array, sizes: Array
     ) -> None:
-        """weights `[J]`: how much joints count. places: from their middle; sizes `[F]`: of the poses."""
+        """Store a clip's poses. `weights [J]` say how much joints count; `places` are relative to their
+        centre; `sizes [F]` are those of the poses.
+        """
         self.clip, self.weights, self.places, self._bound = clip, weights, places, bound
         middle = np.sort(sizes)[(len(sizes) - 1) // 2 : len(sizes) // 2 + 1]
         self.spread = max(1e-6, float(middle.sum()) / len(middle))
@@ -75,7 +79,7 @@ class _Take:
     def alike(
         cls, clips: Sequence[Clip], bound: Sequence[Pose], bones: tuple[Array, Array, Array] | None = None
     ) -> list[_Take]:
-        """Return takes of one skeleton of which the same joints are translated, worked out together."""
+        """Return takes of one skeleton with the same translated joints, computed together."""
         skeleton, moved = clips[0].skeleton, list(clips[0].translated)
         weights = _weights(skeleton, moved, bones)
         ends = np.cumsum([clip.frames for clip in clips]).tolist()
@@ -91,19 +95,19 @@ class _Take:
 
     @cached_property
     def bound(self) -> list[Array]:
-        """Places of the poses that a tool may leave; of most takes no pose is ever compared with them."""
+        """Return the positions of the poses that a tool may leave. For most takes they are never needed."""
         skeleton = self.clip.skeleton
         return [self.centred(skeleton.globals(pose)[1]) for pose in (skeleton.rest, *self._bound)]
 
     def size(self, ways: Array) -> Array:
-        """Return the weighted root mean square `[...]` of ways `[..., J, 3]`."""
+        """Return the weighted root mean square `[...]` of vectors `[..., J, 3]`."""
         return _size(ways, self.weights)
 
     def centred(self, places: Array) -> Array:
         return np.asarray(places - np.einsum("ji,j->i", places, self.weights))
 
     def factor(self, frame: int) -> float:
-        """Return how many times the motion's own the step from this pose must be."""
+        """Return how many times the motion's own steps the step from this pose must be."""
         away = min(self.apart(self.places[frame], pose) for pose in self.bound)
         for near, factor in LIKENESS:
             if away <= near:
@@ -111,13 +115,15 @@ class _Take:
         return ARMS_OUT if self.arms_out(frame) else UNLIKE
 
     def apart(self, one: Array, other: Array) -> float:
-        """Return how far two poses are apart, whichever way either faces or lies."""
+        """Return the distance of two poses, whichever way they face or lie."""
         u, _, v = np.linalg.svd(np.einsum("ja,jb,j->ab", one, other, self.weights))
         u[:, -1] *= np.sign(np.linalg.det(u @ v))
         return float(self.size(one @ (u @ v) - other)) / self.spread
 
     def arms_out(self, frame: int) -> bool:
-        """Whether a figure stands upright, both arms straight and alike out to its sides."""
+        """Return whether the figure stands upright, with both arms straight and symmetric, out to
+        its sides.
+        """
         if self.roles is None:
             self.roles = find_roles(self.clip.skeleton)
         needed = [
@@ -144,7 +150,8 @@ class _Take:
             leg = way(f"{side}_upper_leg", f"{side}_foot")
             elbow = way(f"{side}_upper_arm", f"{side}_lower_arm") @ way(f"{side}_lower_arm", f"{side}_hand")
             out = np.array([sign * (arm @ across), arm @ up, arm @ ahead])
-            # Straight to 25 degrees, up to 65 below the level, 25 ahead; a leg within 40 of the way down.
+            # Straight within 25 degrees, up to 65 below the horizontal, 25 ahead; a leg within 40 of straight
+            # down.
             if elbow < 0.906 or out[0] < 0.42 or abs(out[2]) > 0.42 or -(leg @ up) < 0.766:
                 return False
             arms.append(out)
@@ -158,9 +165,9 @@ def _size(ways: Array, weights: Array) -> Array:
 def _measured(
     skeleton: Skeleton, clips: Sequence[Clip], moved: list[int], weights: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Return of clips, one after another, where joints are from their middle `[F, J, 3]`, the sizes of that
-    `[F]` and of the ways to the next frame, and the ways of the middles; those from clip to clip mean
-    nothing. moved: the joints that are translated.
+    """Return for clips, one after another: the joints' positions relative to their centre `[F, J, 3]`, the
+    sizes of these `[F]`, the sizes of the steps to the next frame, and the steps of the centres. Steps from
+    clip to clip mean nothing. `moved` has the joints that are translated.
     """
     frames, rest = sum(clip.frames for clip in clips), skeleton.rest_translations.astype(np.float32)
     locals_ = np.empty((frames, len(skeleton), 3), np.float32)
@@ -176,12 +183,12 @@ def _measured(
 def _weights(
     skeleton: Skeleton, moved: Sequence[int], bones: tuple[Array, Array, Array] | None = None
 ) -> Array:
-    """Return how much joints count `[J]` in clips in which some are translated. bones: the skeleton's, where
-    they are known.
+    """Return how much joints count `[J]` in clips in which some are translated. `bones` are the skeleton's,
+    if known.
     """
     own, inner, above = bones or _bones(skeleton)
     lengths = own.copy()
-    # the way from a root on the ground to the hips is no part of the body
+    # the bone from a root on the ground to the hips is no part of the body
     lengths[moved] *= skeleton.below[moved] <= len(skeleton) / 2
     np.add.at(lengths, above, lengths[inner])
     total = float(lengths.sum())
@@ -189,7 +196,9 @@ def _weights(
 
 
 def _bones(skeleton: Skeleton) -> tuple[Array, Array, Array]:
-    """Return how far joints are from their parents `[J]`, which have one, and that."""
+    """Return the joints' distances from their parents `[J]`, the joints that have a parent, and these
+    parents.
+    """
     lengths = np.linalg.norm(skeleton.rest_translations, axis=-1)
     inner = np.flatnonzero(skeleton.parents >= 0)
     lengths[skeleton.parents < 0] = 0
@@ -197,8 +206,8 @@ def _bones(skeleton: Skeleton) -> tuple[Array, Array, Array]:
 
 
 def stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[StrayPoses]:
-    """Return which of each clip's frames do not belong to it. bound: poses besides the rest pose that a tool
-    may have left there.
+    """Return the frames of each clip that do not belong to it. `bound` are other poses besides the rest pose
+    that a tool may have left there.
     """
     out = [StrayPoses()] * len(clips)
     bones: dict[int, tuple[Array, Array, Array]] = {}
@@ -213,8 +222,8 @@ def stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[Stray
 
 
 def _alike(clips: Sequence[Clip]) -> Iterator[list[int]]:
-    """Yield the numbers of clips that can be worked out together, those too short for stray poses left
-    out.
+    """Yield the numbers of clips that can be computed together. Clips too short for stray poses are
+    left out.
     """
     groups: dict[tuple[int, tuple[int, ...]], list[int]] = {}
     for number, clip in enumerate(clips):
@@ -242,19 +251,19 @@ def _stray(take: _Take) -> StrayPoses:
 
 
 def is_bind_pose(clip: Clip) -> bool:
-    """Whether a clip's first frame is the rest pose, a T- or an A-pose."""
+    """Return whether a clip's first frame is the rest pose, a T- or an A-pose."""
     return _Take.alike([clip], ())[0].factor(0) < UNLIKE
 
 
 def _leading(take: _Take, backwards: bool) -> int:
-    """Return how many frames of a take's beginning, or its end, belong to a stray pose."""
+    """Return how many frames at a take's beginning, or its end, belong to a stray pose."""
     way = slice(None, None, -1 if backwards else 1)
     fps, frames = take.clip.fps, take.clip.frames
     return max(_run(take, steps[way], way, fps, frames) for steps in take.steps)
 
 
 def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
-    count, numbers = len(steps), steps.tolist()  # of a few numbers Python finds the largest sooner
+    count, numbers = len(steps), steps.tolist()  # for a few numbers, Python finds the largest faster
     held = 0  # steps of a pose that is held
     most = min(round(HOLD * fps), frames // 4)
     while (
@@ -275,7 +284,7 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
             after = max(STILL, *following)
             if peak < OWN * after:
                 continue
-            # Either much quicker than what follows, or broken off as nothing after it is.
+            # Either much quicker than what follows, or it breaks off like nothing after it.
             smooth = max((STILL, *(abs(b - a) for a, b in pairwise(following))))
             next_ones = max(STILL, *following[:3])
             odds = max(peak / after, BROKEN * (peak - numbers[end]) / smooth, SOON * peak / next_ones)
@@ -284,7 +293,7 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
             own = _usual(numbers[end:]) if odds < CERTAIN and count - end > 8 else 0.0
             if odds < CERTAIN and peak <= OWN * own:
                 continue
-            # A ramp runs at one speed from its first frame on and stops short; its last step may be a part.
+            # A ramp has one speed from its first frame on and stops abruptly; its last step may be shorter.
             if (
                 numbers[end - 1] < max(min(2.5 * after, 0.7 * peak), 0.03 * peak)
                 or numbers[start] < 0.7 * peak
@@ -295,7 +304,7 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
             inner = steps[end : count - longest]
             beside = np.maximum(inner[2:], inner[:-2]) if len(inner) > 2 else np.zeros(0)
             if (inner[1:-1] > np.maximum(0.5 * peak, LIKENESS[-1][1] * beside)).any():
-                continue  # a take that jumps elsewhere, too, is made of poses
+                continue  # a take that also jumps elsewhere is made of poses
             first = range(frames)[way][start]
             factor = take.factor(first)
             if odds < factor or (factor == UNLIKE and peak < ALONE * max(numbers[end:])):
@@ -306,7 +315,7 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
 
 
 def _usual(steps: list[float]) -> float:
-    """Return the step that one in twenty is above, as `numpy.quantile` has it."""
+    """Return the step that one in twenty exceeds, as `numpy.quantile` does."""
     place = 0.95 * (len(steps) - 1)
     low = int(place)
     part, some = place - low, sorted(steps)
@@ -315,7 +324,9 @@ def _usual(steps: list[float]) -> float:
 
 
 def _straight(clip: Clip, frames: Array) -> bool:
-    """Whether the poses between the first and the last frame lie on the straight way between those."""
+    """Return whether the poses between the first and the last frame lie on the straight line
+    between those.
+    """
     turns = clip.rotations[frames].astype(float)
     far = rotation.angle_between(turns[-1], turns[0])
     moving = far > np.radians(5)
@@ -333,7 +344,7 @@ def _straight(clip: Clip, frames: Array) -> bool:
 
 
 def _lone(take: _Take, first: int, stop: int) -> tuple[int, ...]:
-    """Return frames inside `first + 1 .. stop - 2` whose neighbours follow each other as if they were not
+    """Return frames in `first + 1 .. stop - 2` whose neighbours follow each other as if the frames were not
     there.
     """
     steps = take.steps[0]
@@ -354,7 +365,7 @@ def _lone(take: _Take, first: int, stop: int) -> tuple[int, ...]:
         usual = max(across, float(around.max(initial=STILL)))
         if step < LONE_BOUND * usual:
             continue
-        # A blow of one arm may be as quick; of a stray pose most of the body has gone elsewhere.
+        # A blow of one arm may be as quick; in a stray pose most of the body moves.
         away = np.linalg.norm(take.places[frame] - take.places[[frame - 1, frame + 1]].mean(0), axis=-1)
         share = float(take.weights[away > 0.05 * take.spread].sum())
         if share > 0.5 and (step >= LONE * usual or step >= take.factor(frame) * usual):

@@ -1,4 +1,6 @@
-"""What every reader does to a take: its name, its frame rate, and poses that do not belong to it."""
+"""Do what every reader does to a take: find its name and frame rate, and remove poses that do not belong to
+it.
+"""
 
 from __future__ import annotations
 
@@ -17,12 +19,12 @@ from metagraph.motion.skeleton import Pose
 
 Array = NDArray[Any]
 
-# What readers put right on their own and leave as it is when they are told to.
+# What readers repair by default, and leave as it is if asked to.
 BIND_POSE, UNIT, UP, NAME, ONE_FRAME = "bind_pose", "unit", "up_axis", "name", "one_frame"
 LONE_FRAME, FROM_OFFSET, FRAME_TIME = "lone_frame", "from_offset", "frame_time"
 REPAIRS = (BIND_POSE, UNIT, UP, NAME, ONE_FRAME, LONE_FRAME, FROM_OFFSET, FRAME_TIME)
 
-# Names that tools give on their own; the file's name says more.
+# Default names of tools; the file's name says more.
 _GENERIC = re.compile(
     r"(?i)(take|untitled|animation|anim|action|default|scene|clip|unreal "
     r"take|mixamo\.com|bindpose|animstack)[ _.:]*\d*"
@@ -46,7 +48,7 @@ _RATES = (
 
 
 def take_name(raw: str, stem: str) -> str:
-    """Return a take's name, or the file's stem where the take has none or a tool's default ("Take 001")."""
+    """Return a take's name, or the file's stem if the take has no name or a tool's default ("Take 001")."""
     parts = [part.strip() for part in raw.split("|") if part.strip()]
     parts = [
         part
@@ -59,8 +61,8 @@ def take_name(raw: str, stem: str) -> str:
 
 
 def take_repair(raw: str, name: str, stem: str, as_is: Collection[str]) -> tuple[str, Repair | None]:
-    """Return what a take called `raw` in its file is called, `name` being what `take_name` makes of it, and
-    the repair that is.
+    """Return the name of a take called `raw` in its file, and the repair that this name is, if any. `name` is
+    the result of `take_name`.
     """
     raw = raw.strip()
     if not raw or raw == name:
@@ -75,7 +77,7 @@ def take_repair(raw: str, name: str, stem: str, as_is: Collection[str]) -> tuple
 
 
 def note_repair(clip: Clip, repair: Repair | None) -> Clip:
-    """Return the clip saying that a repair was made, or was not."""
+    """Return the clip with a note that a repair was made, or was not."""
     if repair is None:
         return clip
     return replace(clip, notes=(*clip.notes, repair_note(repair)), repairs=(*clip.repairs, repair))
@@ -87,10 +89,10 @@ def repair_note(repair: Repair) -> str:
 
 
 def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
-    """Return the frames per second on which key times (seconds, each array ascending) lie; 30 when any would
-    do.
+    """Return the frames per second on which key times (seconds, each array ascending) lie; 30 if any rate
+    fits.
 
-    wanted: a rate to prefer when the keys lie on it.
+    `wanted` is a rate to prefer if the keys lie on it.
     """
     start = min((float(k[0]) for k in keys if len(k)), default=0.0)
     every = np.concatenate([np.asarray(k, float) for k in keys] or [np.zeros(1)])
@@ -116,10 +118,10 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
 def drop_stray_poses(
     clips: Sequence[Clip], as_is: Collection[str] = (), bound: Sequence[Pose] = ()
 ) -> list[Clip]:
-    """Drop bind poses that a tool left at the clips' ends, mend frames unlike both their neighbours, and say
-    so; only say so where `as_is` names it.
+    """Drop bind poses that a tool left at the clips' ends, mend frames unlike both their neighbours, and note
+    it. Repairs named in `as_is` are only noted.
 
-    bound: poses besides the rest pose that a tool may have left there.
+    `bound` are other poses besides the rest pose that a tool may have left there.
     """
     found = stray_poses(clips, bound)
     return [_without(clip, some, as_is) for clip, some in zip(clips, found, strict=True)]
@@ -164,7 +166,7 @@ def _mended(clip: Clip, frames: Sequence[int]) -> Clip:
 
 
 def unique_takes(clips: Sequence[Clip]) -> list[Clip]:
-    """Give takes of one file that share a name numbers: walk, walk_2."""
+    """Number takes of one file that share a name: walk, walk_2."""
     seen: dict[str, int] = {}
     taken = {clip.name for clip in clips}
     out = []

@@ -1,5 +1,5 @@
-"""Problems of a project: where they are, what they are, what to do about them. `check` never changes
-anything.
+"""Find the problems of a project: where they are, what they are, what to do about them. The project does not
+change.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def check_project(project: Project) -> list[Problem]:
 
 
 def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
-    """Return the problems for which a command line says that a project is not in order: errors, and stances
-    that nobody will ever see; warnings, too, where they count.
+    """Return the problems for which a command fails: errors and unreachable stances; also warnings if
+    `strict`.
     """
     return [
         p
@@ -55,7 +55,7 @@ def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
 
 
 def _why_missing(entry: ClipEntry) -> tuple[str, str]:
-    """Return why a clip has no motion, and what to do about it."""
+    """Return the reason why a clip has no motion, and the remedy."""
     path = original_path(entry.path)
     if path != entry.path:
         return (
@@ -181,7 +181,7 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
 
 
 class _ActionCheck:
-    """What is wrong with one action."""
+    """Finds what is wrong with one action."""
 
     def __init__(self, project: Project, graph: MetaGraph, action: Action) -> None:
         self.project, self.graph, self.action = project, graph, action
@@ -193,7 +193,7 @@ class _ActionCheck:
         return Problem(severity, code, words, remedy, self.graph.layer, action.stance, action.id, action.clip)
 
     def problems(self) -> Iterator[Problem]:
-        """Yield them all; without its clip nothing is said of its times."""
+        """Yield all problems. Without its clip, its times are not checked."""
         yield from self.places()
         yield from self.choice()
         entry = self.project.clips.get(self.action.clip)
@@ -226,7 +226,7 @@ class _ActionCheck:
         yield from self.ends()
 
     def places(self) -> Iterator[Problem]:
-        """Yield what is wrong with the stances it leaves and enters."""
+        """Yield what is wrong with the stances that it leaves and enters."""
         action, graph = self.action, self.graph
         if action.stance not in graph.stances:
             yield self.at(
@@ -260,7 +260,7 @@ class _ActionCheck:
             )
 
     def choice(self) -> Iterator[Problem]:
-        """Yield what is wrong with how likely it is, and with the joints it moves."""
+        """Yield what is wrong with its likelihood and with the joints it moves."""
         action = self.action
         if not (isfinite(action.likelihood) and action.likelihood > 0):
             yield self.at(
@@ -283,7 +283,7 @@ class _ActionCheck:
         tolerance = 0.5 / entry.fps
         latest = entry.duration + tolerance
         blends = timing.blend_in + timing.blend_out
-        if not (0 <= timing.start <= latest and end <= latest):  # also where one of them is not a number
+        if not (0 <= timing.start <= latest and end <= latest):  # also true if one of them is NaN
             yield self.at(
                 "error",
                 "trim",
@@ -319,7 +319,7 @@ class _ActionCheck:
             )
 
     def blends(self) -> Iterator[Problem]:
-        """Yield which of its blends has no sensible length."""
+        """Yield a problem for each blend with an impossible length."""
         blend_in, blend_out = self.timing.blend_in, self.timing.blend_out
         if not _sound(blend_in):
             yield self.at(
@@ -337,7 +337,7 @@ class _ActionCheck:
             )
 
     def exit(self, end: float) -> Iterator[Problem]:
-        """Yield whether it may be left at a time that is not played."""
+        """Yield a problem if it may be left at a time that does not play."""
         earliest = self.timing.earliest_exit
         if earliest is not None and not self.timing.start <= earliest <= end:
             yield self.at(
@@ -351,7 +351,9 @@ class _ActionCheck:
             )
 
     def ends(self) -> Iterator[Problem]:
-        """Compare its clip's ends with the stances it leaves and enters, on the joints its layer moves."""
+        """Compare its clip's ends with the stances that it leaves and enters, on the joints its
+        layer moves.
+        """
         project, graph, action = self.project, self.graph, self.action
         if action.kind == "stance":
             gap = end_gaps.measure_seam(project, graph, action)
@@ -381,4 +383,4 @@ def _sound(seconds: float) -> bool:
 
 
 def _severity(blend: float) -> Severity:
-    return "warning" if isfinite(blend) else "error"  # a negative one plays as none
+    return "warning" if isfinite(blend) else "error"  # a negative blend plays as none

@@ -1,8 +1,6 @@
-"""Edits: pure functions `Project -> Project`. Every way of changing a project, from a drop to a script, ends
-here.
+"""Edit projects with pure functions, `Project -> Project`. Every change, from a drop to a script, ends here.
 
-An edit that cannot be done raises EditError, whose words are meant for the user; the project is then
-unchanged.
+An edit that cannot be done raises EditError, whose message is for the user. The project is then unchanged.
 """
 
 from __future__ import annotations
@@ -36,7 +34,7 @@ from metagraph.graph.model import (
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import loop_error
 
-SEAM = 0.01  # metres a loop may be open before its seam gets blended
+SEAM = 0.01  # metres a loop may be open before its seam is blended
 _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
     ("both", r"(?:bt|both|lr|2h|twohands?)"),
     ("left", r"(?:lf|lt|left|l)"),
@@ -45,8 +43,8 @@ _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
 
 
 def guess_limb(name: str) -> Limb:
-    """Guess the limb from a clip's name: `_lf`, `_rt`, `_bt`, `Left`, `Right` and their like; both when it
-    does not say.
+    """Guess the limb from a clip's name: `_lf`, `_rt`, `_bt`, `Left`, `Right` and similar. Return "both" if
+    the name does not say.
     """
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
     for limb, pattern in _LIMB_WORDS:
@@ -59,10 +57,10 @@ def guess_limb(name: str) -> Limb:
 
 
 def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) -> Project:
-    """Add clips given as (path, take, digest, clip); one that is already there (same path and take) is
-    refreshed in place.
+    """Add clips given as (path, take, digest, clip). A clip that the project has already (same path and take)
+    is refreshed in place.
 
-    The first clip's skeleton becomes the project's.
+    If the project has no skeleton yet, it takes that of the first clip.
     """
     clips = dict(project.clips)
     known: dict[tuple[str, int], list[str]] = {}
@@ -83,7 +81,7 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
 
 
 def with_motions(project: Project, motions: Mapping[str, Clip]) -> Project:
-    """Return the project with loaded motion filled in for clip ids; what is saved does not change."""
+    """Return the project with the motions of clips filled in, by clip id. What is saved does not change."""
     clips = {
         i: replace(with_source(e, motions[i]), frames=e.frames, fps=e.fps) if i in motions else e
         for i, e in project.clips.items()
@@ -98,8 +96,8 @@ def rename_clip(project: Project, clip: str, name: str) -> Project:
 
 
 def remove_clips(project: Project, clips: Collection[str]) -> Project:
-    """Remove clips and the actions and states that use them; a base pose taken from one falls back to the
-    rest pose.
+    """Remove clips and the actions and states that use them. A base pose taken from one becomes the rest
+    pose.
     """
     gone = [a.id for clip in clips for a in project.uses.get(clip, ())]
     project = remove_actions(project, gone)
@@ -115,7 +113,7 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
 
 
 def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] = ()) -> Project:
-    """Make a stance, with `clips` as its loops. The first stance of a layer is where a performance starts."""
+    """Make a stance with `clips` as its loops. Performances start in the first stance of a layer."""
     graph = project.graphs[layer]
     name = find_free_name(_clean(name), {s.name for s in graph.stances.values()})
     stance = Stance(ids.new_id(project, "s", layer, name), layer, name)
@@ -142,7 +140,7 @@ def remove_stance(project: Project, stance: str) -> Project:
 
 
 def set_start_stance(project: Project, stance: str) -> Project:
-    """Let performances begin in this stance."""
+    """Make performances begin in this stance."""
     found = _stance(project, stance)
     return project.with_graph(project.graphs[found.layer].but(start=stance))
 
@@ -158,8 +156,8 @@ def find_placing_refusal(
     stance: str | None,
     end: str | None = None,
 ) -> str | None:
-    """Return in words why clips cannot be placed so, or None when they can. `stance` None asks for a new
-    stance.
+    """Return the reason why clips cannot be placed like this, or None if they can. A `stance` of None makes a
+    new stance.
     """
     if not clips:
         return phrase("nothing to place")
@@ -197,10 +195,11 @@ def place_clips(
     stance: str | None,
     end_stance: str | None = None,
 ) -> Project:
-    """Drop clips on a meta node. Dropped on "stance" with no stance given, the first clip makes a new one.
+    """Place clips on a meta node. On "stance" with no stance given, the first clip makes a new one.
 
-    The first loop of the whole project also gives the base pose, unless one was chosen: offsets taken against
-    an arms-out rest pose are what twists a character. Raises EditError with the words of `refusal`.
+    The first loop of the whole project also gives the base pose, unless one was chosen, because offsets
+    relative to a rest pose with stretched arms twist the character. Raises EditError with the reason that
+    `find_placing_refusal` returns.
     """
     why = find_placing_refusal(project, clips, layer, kind, stance, end_stance)
     if why is not None:
@@ -240,8 +239,8 @@ def find_added_actions(before: Project, after: Project) -> tuple[str, ...]:
 
 
 def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
-    """Return the timing a clip gets when it is dropped: blends of at most a quarter of it, a blended seam
-    where a loop is open.
+    """Return the timing of a newly placed clip: blends of at most a quarter of its length, and a blended seam
+    if a loop is open.
     """
     quarter = round(entry.duration / 4, 3)
     if kind == "stance":
@@ -251,15 +250,15 @@ def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
 
 
 def update_actions(project: Project, actions: Collection[str], **changes: Any) -> Project:
-    """Set fields of actions; `timing` takes a mapping of the Timing fields to change, or a whole Timing.
+    """Set fields of actions. `timing` is a mapping of the Timing fields to change, or a whole Timing.
 
-    Returns the same project when nothing differs.
+    Return the same project if nothing differs.
     """
     return update_each(project, dict.fromkeys(actions, changes))
 
 
 def update_each(project: Project, changes: Mapping[str, Mapping[str, Any]]) -> Project:
-    """Set other fields for each action, by id; otherwise as `update_actions`."""
+    """Set different fields for each action, by id, as `update_actions` does."""
     graphs = dict(project.graphs)
     for layer, graph in project.graphs.items():
         edits: dict[str, Action | None] = {}
@@ -268,7 +267,7 @@ def update_each(project: Project, changes: Mapping[str, Mapping[str, Any]]) -> P
             if action is None:
                 continue
             fields = dict(wanted)
-            if "clip" in fields:  # a person has chosen it
+            if "clip" in fields:  # a person chose this clip
                 fields |= {"clip_name": "", "clip_sha256": ""}
             if isinstance(fields.get("timing"), Mapping):
                 fields["timing"] = replace(action.timing, **fields["timing"])
@@ -307,7 +306,9 @@ def move_actions(
 
 
 def to_stance(project: Project, actions: Collection[str], stance: str) -> Project:
-    """Move actions to another stance, each keeping its kind and transitions their ends. Raises EditError."""
+    """Move actions to another stance. Each keeps its kind, and transitions keep their ends. Raises
+    EditError.
+    """
     groups: dict[tuple[Kind, str | None], list[str]] = {}
     for ident in actions:
         action = project.action(ident)
@@ -319,8 +320,8 @@ def to_stance(project: Project, actions: Collection[str], stance: str) -> Projec
 
 
 def set_ends(project: Project, actions: Collection[str], end_stance: str) -> Project:
-    """Let transitions end in a stance; other kinds stay as they are. Raises EditError when one would end
-    where it starts.
+    """Make transitions end in a stance. Other kinds stay as they are. Raises EditError if one would end where
+    it starts.
     """
     groups: dict[str, list[str]] = {}
     for ident in actions:
@@ -333,7 +334,7 @@ def set_ends(project: Project, actions: Collection[str], end_stance: str) -> Pro
 
 
 def remove_actions(project: Project, actions: Collection[str]) -> Project:
-    """Take actions out of the graph; their clips stay in the library."""
+    """Remove actions from the graph. Their clips stay in the library."""
     graphs = dict(project.graphs)
     for layer, graph in project.graphs.items():
         gone = dict.fromkeys(i for i in actions if i in graph.actions)
@@ -346,7 +347,9 @@ def remove_actions(project: Project, actions: Collection[str]) -> Project:
 
 
 def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:
-    """Take the base pose from a frame of a clip, or from the skeleton's rest pose."""
+    """Set the base pose to a frame of a clip, or to the skeleton's rest pose if `clip` is None. Raises
+    EditError.
+    """
     if clip is not None:
         entry = project.clips.get(clip)
         if entry is None:
@@ -356,7 +359,7 @@ def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:
 
 
 def set_weight(project: Project, layer: Layer, part: Part, weight: float) -> Project:
-    """Set how strongly a layer moves a body part, 0..2."""
+    """Set how strongly a layer moves a body part, 0 to 2. Raises EditError for an unknown part."""
     if part not in PARTS:
         raise EditError(
             phrase(
@@ -370,13 +373,13 @@ def set_weight(project: Project, layer: Layer, part: Part, weight: float) -> Pro
 
 
 def set_role(project: Project, role: str, joint: str | None) -> Project:
-    """Correct which joint plays a role; None goes back to what was found."""
+    """Set which joint has a role. None restores what was found."""
     roles = {r: j for r, j in project.roles.items() if r != role}
     return replace(project, roles=roles if joint is None else {**roles, role: joint})
 
 
 def set_part(project: Project, joints: Collection[str], part: Part | None) -> Project:
-    """Correct which body part joints belong to; None goes back to what was found."""
+    """Set which body part joints belong to. None restores what was found."""
     parts = {j: p for j, p in project.parts.items() if j not in joints}
     return replace(project, parts=parts if part is None else {**parts, **dict.fromkeys(joints, part)})
 
@@ -391,17 +394,17 @@ def set_markov(project: Project, model: Markov) -> Project:
 
 
 def reset_markov(project: Project, layer: Layer) -> Project:
-    """Go back to the default model of a layer."""
+    """Restore the default model of a layer."""
     return replace(project, markov={k: m for k, m in project.markov.items() if k != layer})
 
 
 def set_character(project: Project, path: str | None) -> Project:
-    """Draw another character, or None for a stick figure; what was hidden of the one before is forgotten."""
+    """Draw another character, or a stick figure for None. Meshes hidden on the previous one are forgotten."""
     return replace(project, character=path, hidden=()) if path != project.character else project
 
 
 def hide_meshes(project: Project, meshes: Iterable[str]) -> Project:
-    """Draw the character without the meshes of these names, and with all others."""
+    """Hide the character's meshes of these names, and show all others."""
     return replace(project, hidden=tuple(dict.fromkeys(meshes)))
 
 

@@ -1,6 +1,6 @@
-"""The values a project is made of. All are frozen; mappings in them are never changed in place.
+"""Define the values that a project is made of. All are frozen, and their mappings never change in place.
 
-Ids are made once from the project's counter and never change; names are free text for people.
+Ids are made once from the content they are for and never change. Names are free text for people.
 """
 
 from __future__ import annotations
@@ -67,13 +67,14 @@ REACH: Mapping[Layer, Mapping[Part, float]] = {
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """When an action plays within its clip; seconds of the clip.
+    """When an action plays within its clip. All times are seconds of the clip.
 
-    start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending
-    from and to the stance, within start..end (for a looping stance, blend_in is the overlap at the loop's
-    seam). loop: repeats. earliest_exit: from here on the action may be left, or None to play it through.
-    stroke: its most telling moment. ready, stroke_end, relax: where a gesture's preparation, stroke and hold
-    end (its retraction ends with it); None as found from the motion (`playback.timing.phases`).
+    `start` and `end` bound the part that plays; an `end` of None is the clip's end. `blend_in` and
+    `blend_out` are the seconds of blending from and to the stance, inside that part. For a looping stance,
+    `blend_in` is the overlap at the loop's seam. `loop` repeats the part. From `earliest_exit` on the action
+    may be left; None plays it through. `stroke` is its most telling moment. `ready`, `stroke_end` and `relax`
+    are the ends of a gesture's preparation, stroke and hold; its retraction ends with the action. None takes
+    the times found from the motion (`playback.timing.phases`).
     """
 
     start: float = 0.0
@@ -92,14 +93,15 @@ class Timing:
 class Action:
     """One use of a clip in the graph.
 
-    stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only
-    for transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints
-    it moves; empty means all. joint_weights: how far those move that move in part, (name, above 0 and below
-    1); the rest of the way they keep to the stance. tags: free words, "positive" and "negative" among them.
-    likelihood: relative, > 0. cooldown: seconds after it has ended in which it is not drawn again. spacing:
-    how many other actions of its kind and stance are drawn before it may be drawn again; None as the
-    settings' never_twice says. contacts: where its hands stay on the body. clip_name, clip_sha256: which
-    clip it was made of, where that is not the one it has; "" otherwise (see `formats.clip_identity`).
+    `stance` is the id of the stance it starts from; for kind "stance", of the stance whose loop it is. Only
+    transitions have an `end_stance`. `limb` is the arm it needs; the other arm stays in the stance. `joints`
+    names the only joints it moves; empty means all. `joint_weights` has pairs of a name and a weight, above 0
+    and below 1, for joints that it moves in part; the rest of their motion is the stance's. `tags` are free
+    words, "positive" and "negative" among them. `likelihood` is relative, above 0. `cooldown` is the number
+    of seconds after its end in which it is not drawn again. `spacing` is the number of other actions of its
+    kind and stance that are drawn before it may be drawn again; None follows the setting `never_twice`.
+    `contacts` are the times when its hands stay on the body. `clip_name` and `clip_sha256` say which clip it
+    was made of if that is not the clip it has now, else "" (see `formats.clip_identity`).
     """
 
     id: str
@@ -134,8 +136,9 @@ Index = Mapping[tuple[str, Kind], tuple[Action, ...]]
 
 @dataclass(frozen=True)
 class MetaGraph:
-    """One layer: its stances and actions. start: the stance a performance begins in. weights: part ->
-    0..2.
+    """One layer: its stances and actions.
+
+    A performance begins in the stance `start`. `weights` gives a factor, 0 to 2, for each body part.
     """
 
     layer: Layer
@@ -145,12 +148,12 @@ class MetaGraph:
     weights: Mapping[Part, float] = field(default_factory=dict)
 
     def weight(self, part: Part) -> float:
-        """How strongly this layer moves a body part."""
+        """Return how strongly this layer moves a body part, 0 to 2."""
         return self.weights.get(part, REACH[self.layer][part])
 
     @cached_property
     def index(self) -> Index:
-        """The multi-index of this layer: (stance, kind) -> actions, in the order they were placed."""
+        """Return the multi-index of this layer: (stance, kind) -> actions, in the order they were placed."""
         return _grouped(self.actions.values(), _node)
 
     def of(self, stance: str, kind: Kind) -> tuple[Action, ...]:
@@ -159,23 +162,23 @@ class MetaGraph:
 
     @cached_property
     def uses(self) -> Mapping[str, tuple[Action, ...]]:
-        """Clip id -> the actions of this layer that use it, in the order they were placed."""
+        """Return the actions of this layer that use each clip, by clip id, in the order they were placed."""
         return _grouped(self.actions.values(), _clip)
 
     @cached_property
     def into(self) -> Mapping[str, tuple[Action, ...]]:
-        """Transitions by the stance they end in, in the order they were placed."""
+        """Return the transitions by the stance they end in, in the order they were placed."""
         arriving = (a for a in self.actions.values() if a.kind == "transition" and a.end_stance is not None)
         return _grouped(arriving, lambda a: a.end_stance)
 
     @cached_property
     def touched(self) -> Mapping[str, int]:
-        """Joint -> how many contacts of actions are with it."""
+        """Return for each joint how many contacts of actions are with it."""
         return Counter(span.to for action in self.actions.values() for span in action.contacts)
 
     def but(self, **changes: Any) -> MetaGraph:
-        """Return the graph with fields other than its actions replaced, keeping what was derived from the
-        actions.
+        """Return the graph with other fields than its actions replaced. What was derived from the actions is
+        kept.
         """
         out = replace(self, **changes)
         derived = ("index", "uses", "into", "touched")
@@ -185,8 +188,8 @@ class MetaGraph:
     def with_actions(self, changes: Mapping[str, Action | None]) -> MetaGraph:
         """Return the graph with actions added, replaced (in place) or, for None, removed.
 
-        Index, uses and touched are patched rather than rebuilt, so that an edit costs the same in a graph of
-        ten thousand.
+        The index, `uses` and `touched` are patched, not rebuilt, so an edit takes no longer in a graph of ten
+        thousand actions.
         """
         actions = dict(self.actions)
         for ident, action in changes.items():
@@ -214,7 +217,7 @@ def _clip(action: Action) -> str:
 def _touched(
     counts: Mapping[str, int], before: Mapping[str, Action], changes: Mapping[str, Action | None]
 ) -> Mapping[str, int]:
-    """Return how many contacts are with each joint after changes."""
+    """Return how many contacts are with each joint after the changes."""
     out = Counter(counts)
     for ident, new in changes.items():
         old = before.get(ident)
@@ -237,7 +240,7 @@ def _patched(
     changes: Mapping[str, Action | None],
     key: Callable[[Action], Any],
 ) -> Mapping[Any, tuple[Action, ...]]:
-    """Return the groups after changes, in the order in which `after` has the actions."""
+    """Return the groups after the changes, in the order in which `after` has the actions."""
     touched: dict[Any, dict[str, Action]] = {}
     moved: set[Any] = set()
 
@@ -254,7 +257,7 @@ def _patched(
         if new is not None:
             bucket(new)[ident] = new
             if old is not None and key(new) != key(old):
-                moved.add(key(new))  # an action that moves in keeps its place among all
+                moved.add(key(new))  # an action that moves in keeps its place in the order of all
     out = dict(groups)
     for k, kept in touched.items():
         if kept:
@@ -265,7 +268,7 @@ def _patched(
 
 
 class Uses(Mapping[str, tuple[Action, ...]]):
-    """Clip id -> the actions of any layer that use it: a view of the graphs' own."""
+    """A view of several graphs: the actions of any layer that use a clip, by clip id."""
 
     def __init__(self, graphs: Iterable[MetaGraph]) -> None:
         self._graphs = tuple(graph.uses for graph in graphs)
@@ -277,7 +280,7 @@ class Uses(Mapping[str, tuple[Action, ...]]):
         return found
 
     def __contains__(self, clip: object) -> bool:
-        for uses in self._graphs:  # noqa: SIM110 - `any` takes thrice as long, and clips are asked by the thousand
+        for uses in self._graphs:  # noqa: SIM110 - `any` takes 3 times as long, and is called for each clip
             if clip in uses:
                 return True
         return False
@@ -291,15 +294,15 @@ class Uses(Mapping[str, tuple[Action, ...]]):
 
 @dataclass(frozen=True)
 class ClipEntry:
-    """A clip the project knows. path: relative to the project file, `/` between folders. take: which
-    animation in the file.
+    """A clip of the project.
 
-    digest: SHA-256 of the file, hex. frames, fps: as it plays. as_is: names of repairs that are not made
-    when it is read (`formats.takes.REPAIRS`). brought_from: fingerprint of the skeleton it is retargeted
-    from, "" where the file has the project's own. made_by, made_seed: the learned model that made it, and
-    with what chance; "" for clips that were not generated. retime: how it is played faster, slower and held.
-    motion: the loaded clip as it plays, None while the file is missing. source: as it was read, where that is
-    another (see `graph.editing.retiming`).
+    `path` is relative to the project file, with `/` between folders. `take` is the number of the animation in
+    the file. `digest` is the file's SHA-256 in hex. `frames` and `fps` are those of the clip as it plays.
+    `as_is` names repairs that are not made on reading (`formats.takes.REPAIRS`). `brought_from` is the
+    fingerprint of the skeleton it is retargeted from, "" if the file has the project's own. `made_by` and
+    `made_seed` are the learned model that generated it and the seed; `made_by` is "" for other clips.
+    `retime` says how it is played faster, slower or held. `motion` is the loaded clip as it plays, None while
+    the file is missing. `source` is the clip as it was read, if that differs (see `graph.editing.retiming`).
     """
 
     id: str
@@ -319,13 +322,13 @@ class ClipEntry:
 
     @property
     def duration(self) -> float:
-        """Seconds from the first frame to the last."""
+        """Return the seconds from the first frame to the last."""
         return (self.frames - 1) / self.fps if self.frames > 1 else 0.0
 
 
 @dataclass(frozen=True)
 class BasePose:
-    """The pose all offsets are taken against: a frame of a clip, or the skeleton's rest pose when clip is
+    """The pose that all offsets are relative to: a frame of a clip, or the skeleton's rest pose if `clip` is
     None.
     """
 
@@ -335,15 +338,16 @@ class BasePose:
 
 @dataclass(frozen=True)
 class Markov:
-    """A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al.,
-    7.3).
+    """A first-order model over (limb, kind) that writes meta actions when there are no requests (Borer et
+    al., 7.3).
 
-    matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive,
-    negative: share of gestures asked for with that tag, where tags are not part of the states. tags: one text
-    a state, the tags (blanks between them) it asks for; empty when tags are not part of the states. lengths:
-    (mean, standard deviation) seconds of each state's actions; empty where that is not known. modes: what is
-    performed of what it writes while one is said to idle, to listen and to talk, a row each: shares of
-    gestures, fidgets and transitions, 0..1; empty where the mode makes no difference.
+    `matrix` has rows of probabilities, each of which sums to 1. `gap` is the mean rest between two actions,
+    in seconds. `positive` and `negative` are the shares of gestures that ask for that tag, if tags are not
+    part of the states. `tags` has one text for each state, the tags it asks for with blanks between them; it
+    is empty if tags are not part of the states. `lengths` has the mean and standard deviation of each state's
+    actions, in seconds; it is empty if they are unknown. `modes` has one row each for idling, listening and
+    talking: the shares, 0 to 1, of the written gestures, fidgets and transitions that are performed in that
+    mode. It is empty if the mode makes no difference.
     """
 
     layer: Layer
@@ -357,19 +361,20 @@ class Markov:
     modes: tuple[tuple[float, ...], ...] = ()
 
     def tag(self, state: int) -> str:
-        """Return the tags a state asks for, "" for none."""
+        """Return the tags that a state asks for, "" for none."""
         return self.tags[state] if self.tags else ""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Planner constants. alpha: how quickly a used action becomes unlikely (4 in the paper). seed: 32-bit.
+    """The planner's constants.
 
-    never_twice: an action is not played twice in a row where there is another. shortest: seconds below which
-    the remainder of a cut meta action is not worth keeping. wait: how late, in seconds, a request may start.
-    memory: seconds after which a use no longer counts, 0 for never (as in the paper). rest: least seconds in
-    the stance between two actions of a layer. lookahead: seconds ahead of now in which a running plan is not
-    changed any more.
+    `alpha` says how quickly a used action becomes unlikely (4 in the paper). `seed` has 32 bits. With
+    `never_twice`, an action is not played twice in a row if there is another. `shortest` is the least number
+    of seconds for which the remainder of a cut meta action is kept. `wait` is how many seconds late a request
+    may start. `memory` is the number of seconds after which a use no longer counts, 0 for never (as in the
+    paper). `rest` is the least number of seconds in the stance between two actions of a layer. A running plan
+    is not changed for the next `lookahead` seconds.
     """
 
     alpha: float = 4.0
@@ -388,19 +393,19 @@ def _empty_graphs() -> dict[Layer, MetaGraph]:
 
 @dataclass(frozen=True)
 class Project:
-    """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name ->
-    body part.
+    """Everything that a project file holds.
 
-    character: path of the GLB to draw, relative to the project file, or None for a stick figure. hidden:
-    names of its meshes that are not drawn. points:
-    named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
-    those kept, by id. timelines: what is noted on theirs, by their id. tiers: annotation tier -> what it was
-    last read as. notes: to read, by the id of the action they are on, "" for the project's own. marks: what
-    clips are found again by, by their ids. joint_maps: how clips of other
-    skeletons are retargeted, by `joint_map.fingerprint` of theirs. language: what conversations are read in,
-    a code ("de"), or "auto" for what their words tell. manual: state machines drawn by hand, of
-    the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
-    read; never saved. touch: whether contacts hold and hands are kept out of the body.
+    `roles` (role -> joint name) and `parts` (joint name -> body part) are corrections. `character` is the
+    path of the GLB to draw, relative to the project file, or None for a stick figure; `hidden` names its
+    meshes that are not drawn. `points` are named places to look at, in metres. `lines` is the dialogue that
+    an agent calls by id. `performances` and `conversations` are kept by id, and `timelines` holds their
+    markers and other notes by the same ids. `tiers` says for each annotation tier what it was last read as.
+    `notes` are texts by the id of their action, "" for the project's own. `marks` identify clips so that they
+    are found again, by clip id. `joint_maps` say how clips of other skeletons are retargeted, by the
+    `joint_map.fingerprint` of those. `language` is the code of the language that conversations are read in
+    ("de"), or "auto" to detect it from their words. `manual` has the state machines drawn by hand, by layer.
+    `voices` has the analysed sound of each line (`playback.life.voice.Voice`) that was read so far; it is
+    never saved. `touch` says whether contacts hold and hands stay outside the body.
     """
 
     name: str = "untitled"
@@ -432,12 +437,12 @@ class Project:
     touch: Touch = field(default_factory=Touch)
 
     def actions(self) -> Iterable[Action]:
-        """Every action of every layer."""
+        """Yield every action of every layer."""
         for layer in LAYERS:
             yield from self.graphs[layer].actions.values()
 
     def action(self, ident: str) -> Action | None:
-        """Return the action of that id, whatever its layer."""
+        """Return the action with an id in any layer, or None."""
         for layer in LAYERS:
             found = self.graphs[layer].actions.get(ident)
             if found is not None:
@@ -446,12 +451,12 @@ class Project:
 
     @property
     def size(self) -> int:
-        """How many clips, actions and states it holds."""
+        """Return how many clips, actions and states the project has."""
         actions = sum(len(graph.actions) for graph in self.graphs.values())
         return len(self.clips) + actions + sum(len(machine.states) for machine in self.manual.values())
 
     def has(self, ident: str) -> bool:
-        """Return whether anything in the project has that id."""
+        """Return whether anything in the project has this id."""
         graphs, machines = self.graphs.values(), self.manual.values()
         return (
             ident in self.clips
@@ -463,21 +468,21 @@ class Project:
         )
 
     def stance(self, ident: str | None) -> Stance | None:
-        """Return the stance of that id, whatever its layer."""
+        """Return the stance with an id in any layer, or None."""
         for layer in LAYERS:
             if ident is not None and ident in self.graphs[layer].stances:
                 return self.graphs[layer].stances[ident]
         return None
 
     def span(self, action: Action) -> tuple[float, float]:
-        """Return start and end of the part that plays, seconds of its clip; the end is never before the
+        """Return start and end of the part that plays, in seconds of its clip. The end is never before the
         start.
         """
         entry = self.clips.get(action.clip)
         length = entry.duration if entry is not None else 0.0
         timing = action.timing
         start, end = timing.start, timing.end
-        if not start > 0.0:  # as with most; what is no number is 0, too
+        if not start > 0.0:  # most actions start at 0; NaN becomes 0, too
             start = 0.0
         elif start > length:
             start = length
@@ -487,16 +492,16 @@ class Project:
 
     @cached_property
     def uses(self) -> Mapping[str, tuple[Action, ...]]:
-        """Clip id -> the actions that use it."""
+        """Return the actions that use each clip, by clip id."""
         return Uses(self.graphs[layer] for layer in LAYERS)
 
     @cached_property
     def touched(self) -> frozenset[str]:
-        """The names of the joints that contacts of actions are with."""
+        """Return the names of the joints that have contacts of actions."""
         return frozenset(joint for layer in LAYERS for joint in self.graphs[layer].touched)
 
     def state(self, ident: str | None) -> State | None:
-        """Return the state of a manual machine of that id, whatever its layer."""
+        """Return the state of a manual machine with an id in any layer, or None."""
         return (
             next((m.states[ident] for m in self.manual.values() if ident in m.states), None)
             if ident is not None
@@ -504,7 +509,7 @@ class Project:
         )
 
     def alias(self, ident: str | None) -> Alias | None:
-        """Return the alias of a manual machine of that id, whatever its layer."""
+        """Return the alias of a manual machine with an id in any layer, or None."""
         return (
             next((m.aliases[ident] for m in self.manual.values() if ident in m.aliases), None)
             if ident is not None
@@ -512,7 +517,7 @@ class Project:
         )
 
     def link(self, ident: str | None) -> Link | None:
-        """Return the link of a manual machine of that id, whatever its layer."""
+        """Return the link of a manual machine with an id in any layer, or None."""
         return (
             next((m.links[ident] for m in self.manual.values() if ident in m.links), None)
             if ident is not None
@@ -525,7 +530,7 @@ class Project:
 
     @cached_property
     def drawn(self) -> frozenset[str]:
-        """The clips that states of manual machines use."""
+        """Return the clips that states of manual machines use."""
         return frozenset(s.clip for m in self.manual.values() for s in m.states.values())
 
     def with_graph(self, graph: MetaGraph, **more: Any) -> Project:

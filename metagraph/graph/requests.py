@@ -1,10 +1,10 @@
-"""What can be asked of a character, at any level of abstraction, and what is made of it: lines and
-performances.
+"""Define what can be requested of a character at any level of abstraction, and lines and performances, which
+hold requests.
 
-An ask is what an agent sends, what a performance saves and what the timeline edits; the same fields
-everywhere. In JSON `do` says which it is: {"do": "gesture", "layer": "arms", "tags": ["positive"], "at": 2.1,
-"priority": 3}. Times are seconds of the performance, lengths seconds, points metres in the character's space
-(Y up, the character looks along +Z).
+Agents send requests, performances save them and the timeline edits them, with the same fields everywhere. In
+JSON, `do` names the kind: {"do": "gesture", "layer": "arms", "tags": ["positive"], "at": 2.1, "priority": 3}.
+Times are seconds of the performance, lengths are seconds, points are metres in the character's space (Y up,
+the character looks along +Z).
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from msgspec import Meta, Struct
 from metagraph.graph.words import Feeling, Layer, Limb, Mode
 
 LONGEST_NAME = 200  # letters of a performance's name
-LONGEST_PERFORMANCE = 36000  # seconds; whole, since schemas show it
+LONGEST_PERFORMANCE = 36000  # seconds; an integer, because schemas show it
 Id = Annotated[str, Meta(min_length=1, max_length=200)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6, description="seconds")]
-# Of any length by type, since msgspec mistakes a text of limited length beside a tuple of fixed length, and
+# The type allows any length: msgspec mistakes a text of limited length beside a tuple of fixed length, and
 # crashes.
 Point = Annotated[
     tuple[Annotated[float, Meta(ge=-1e6, le=1e6)], ...],
     Meta(min_length=3, max_length=3, description="x, y, z; metres"),
 ]
-Timed = tuple[Any, ...] | dict[str, Any]  # read where lines are understood: synthesisers have many ways
+Timed = tuple[Any, ...] | dict[str, Any]  # checked where lines are read; synthesisers differ
 Late = Annotated[float, Meta(ge=0, le=600, description="seconds")] | None
 # A named mood, or valence and arousal, -1..1.
 MoodPoint = (
@@ -44,10 +44,10 @@ Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
 class Request(
     Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True, tag_field="do"
 ):
-    """What all asks have. id: made up where it is empty; the same id again replaces what was asked before.
-    at: when it should begin, null for as soon as can be. told: when it became known, null for from the start;
-    a planner that acts before then has not heard of it. priority: higher wins over lower; what a model writes
-    gives way to all.
+    """What all requests have in common. id: made up if empty; the same id again replaces the earlier request.
+    at: when it should begin, null for as soon as possible. told: when it became known, null for from the
+    start; a planner that acts before then does not know of it. priority: a higher number wins over a lower
+    one; what a model writes gives way to every request.
     """
 
     id: Annotated[str, Meta(max_length=200)] = ""
@@ -57,13 +57,13 @@ class Request(
 
 
 class Gesture(Request, frozen=True, tag="gesture"):
-    """A gesture of the stance the layer is in. tags: all of them must fit. limb: a wish; another
-    plays where the stance has none such, and the report tells. duration: how long the activity is
-    wanted. stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should
-    last. prepare: whether the preparation plays. resume: whether its rest goes on after something more
-    important has cut it. late: by how much its stroke, or where none is asked for its start, may come late:
-    0 for on time or not at all, null for as late as the planner's settings allow. mood, intensity: in which
-    it is played, null for as the character is then.
+    """A gesture of the stance that the layer is in. tags: all of them must fit. limb: a wish; if the stance
+    has no such gesture, another one plays and the report says so. duration: how long the activity should
+    last. stroke: when its most telling moment should come, instead of `at`. hold: seconds that its hold
+    should last. prepare: whether the preparation plays. resume: whether the rest of it continues after
+    something more important has cut it. late: by how much its stroke may come late, or its start if no stroke
+    is given: 0 for on time or not at all, null for as late as the planner's settings allow. mood, intensity:
+    how it is played, null for as the character is then.
     """
 
     layer: Layer = "arms"
@@ -80,7 +80,7 @@ class Gesture(Request, frozen=True, tag="gesture"):
 
 
 class Fidget(Request, frozen=True, tag="fidget"):
-    """A fidget of the stance the layer is in. late, mood, intensity: as for a gesture."""
+    """A fidget of the stance that the layer is in. late, mood, intensity: as for a gesture."""
 
     layer: Layer = "arms"
     tags: Tags = ()
@@ -109,8 +109,7 @@ class Play(Request, frozen=True, tag="action"):
 
 class Go(Request, frozen=True, tag="stance"):
     """Go to a stance, by id or name, by the shortest chain of transitions. stay: the models do not leave it
-    of their own accord, until another stance is asked for or this is taken back. late: by how much it may
-    set off late.
+    until another stance is requested or this request is withdrawn. late: by how much it may set off late.
     """
 
     stance: Id
@@ -120,9 +119,9 @@ class Go(Request, frozen=True, tag="stance"):
 
 
 class Change(Request, frozen=True, tag="change"):
-    """Change to another stance, whichever: a transition drawn among those of the stance the layer is in.
-    limb, duration: which arm was seen to move, and for how long; any transition will do, and takes its own
-    time. late: as for a stance.
+    """Change to any other stance: a transition is drawn from those of the stance that the layer is in. limb,
+    duration: which arm was seen to move, and for how long; any transition may be drawn, with its own length.
+    late: as for a stance.
     """
 
     layer: Layer = "arms"
@@ -132,7 +131,7 @@ class Change(Request, frozen=True, tag="change"):
 
 
 class Nod(Request, frozen=True, tag="nod"):
-    """Nod: a gesture of the head that is tagged or called so. late, mood, intensity: as for a gesture."""
+    """Nod: a gesture of the head with this tag or name. late, mood, intensity: as for a gesture."""
 
     tags: Tags = ()
     late: Late = None
@@ -151,7 +150,7 @@ class Shake(Request, frozen=True, tag="shake"):
 
 class Look(Request, frozen=True, tag="look"):
     """Look at a point, a named point ("user", another character), or "ahead". duration: null until the next
-    look. amount: 0 turns nothing, 1 all the way. strict: without averting the gaze meanwhile.
+    look. amount: 0 turns nothing, 1 all the way. strict: the gaze is never averted while it lasts.
     """
 
     to: Annotated[str, Meta(min_length=1, max_length=200)] | Point = "user"
@@ -165,15 +164,15 @@ class Blink(Request, frozen=True, tag="blink"):
 
 
 class Say(Request, frozen=True, tag="say"):
-    """Say a line of the project's list, its audio, its lip sync and its own asks with it; or other words with
-    `text`, whose length is guessed from them, or `duration`. gestures: whether the line's own asks are made.
-    words: [word, start, end], seconds from the line's start, as a synthesiser tells them: the lips follow
-    them and are shut between; the text may be left out then. visemes: [seconds, name], with how fully it is
-    made, 0..1, where that is told; each lasts until the next. Both may be objects, as Amazon Polly's speech
-    marks and Azure's events are. set: of the visemes' names; null for what they tell. While a line is said, a
-    later ask of its id adds to it what comes after now. audio: of a live session alone, the next samples of
-    the line's sound, 16-bit little-endian numbers in base64, one channel, `rate` a second: lips are as loud
-    where neither words nor visemes are told. mood, intensity: while it is said, null for the line's own, else
+    """Say a line of the project with its audio, lip sync and requests, or say other words with `text`, whose
+    length is `duration` or guessed from the words. gestures: whether the line's own requests are made. words:
+    [word, start, end], seconds from the line's start, as a synthesiser gives them: the lips follow them and
+    are shut between them; `text` may then be left out. visemes: [seconds, name] and, if known, how fully it
+    is made, 0..1; each lasts until the next. Both may be objects, as in Amazon Polly's speech marks and
+    Azure's events. set: the naming of the visemes; null to detect it. While a line is said, a later request
+    with its id adds to it what comes after now. audio: only in a live session, the next samples of the line's
+    sound, 16-bit little-endian numbers in base64, one channel, `rate` a second: the lips follow its loudness
+    if there are neither words nor visemes. mood, intensity: while it is said, null for the line's own, else
     as the character is then.
     """
 
@@ -191,18 +190,16 @@ class Say(Request, frozen=True, tag="say"):
 
 
 class Behave(Request, frozen=True, tag="mode"):
-    """Idle, listen or talk from now on; null goes back to talking while something is said and idling
-    otherwise.
-    """
+    """Idle, listen or talk from now on; null talks while something is said and idles otherwise."""
 
     mode: Mode | None = None
 
 
 class Feel(Request, frozen=True, tag="mood"):
-    """Be in a mood from now on: which actions are likely, how large and fast they are played, breath, blinks,
-    gaze, posture and face. mood: a name, or valence and arousal; null leaves it. intensity: how large
-    gestures are played and how much posture and face show; null leaves it. duration: null until the next;
-    what was asked for before comes back then.
+    """Be in a mood from now on: it decides which actions are likely, how large and fast they are played,
+    breath, blinks, gaze, posture and face. mood: a name, or valence and arousal; null leaves it. intensity:
+    how large gestures are played and how much posture and face show; null leaves it. duration: null until the
+    next; afterwards the earlier mood comes back.
     """
 
     mood: MoodPoint = None
@@ -211,20 +208,20 @@ class Feel(Request, frozen=True, tag="mood"):
 
 
 class Place(Request, frozen=True, tag="place"):
-    """Put a named point somewhere, so that it can be looked at; the gaze follows it."""
+    """Put a named point somewhere, so that the character can look at it; the gaze follows it."""
 
     name: Id
     point: Point
 
 
 class Withdraw(Request, frozen=True, tag="withdraw"):
-    """Take back what was asked for with an id; all of it where `what` is empty. What has begun plays on."""
+    """Withdraw the request with an id, or all requests if `what` is empty. What has begun plays on."""
 
     what: Annotated[str, Meta(max_length=200)] = ""
 
 
 class Bml(Request, frozen=True, tag="bml"):
-    """A block of Behaviour Markup Language; what of it is understood becomes asks."""
+    """A block of Behaviour Markup Language; the parts that are understood become requests."""
 
     bml: Annotated[str, Meta(max_length=200000)]
 
@@ -235,9 +232,9 @@ AnyRequest = Union[  # noqa: UP007 - msgspec reads it at run time
 
 
 class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """A line of dialogue, which an agent calls by its id. audio, phones: paths relative to the project file
-    of a sound file and of a Praat TextGrid with phones or words. channel: which of the sound's channels is
-    the line's, from 0; null for all mixed. duration: seconds, where there is no audio. asks: times from the
+    """A line of dialogue, which an agent calls by its id. audio, phones: paths, relative to the project file,
+    of a sound file and of a Praat TextGrid with phones or words. channel: the line's channel in the sound,
+    from 0; null for all mixed. duration: seconds, if there is no audio. asks: requests, with times from the
     line's start. mood, intensity: in which it is said, null for as the character is then.
     """
 
@@ -252,9 +249,9 @@ class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
 
 class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """A performance that is kept: what was asked for and what chance it was played with. seed: null for the
-    project's. length: seconds. idle: whether the models fill the time nobody asks for. stances: layer -> the
-    stance it begins in. mood, intensity: that of all of it, null for the character's own.
+    """A kept performance: its requests and the seed it was played with. seed: null for the project's. length:
+    seconds. idle: whether the models fill the time without requests. stances: layer -> the stance it begins
+    in. mood, intensity: for all of it, null for the character's own.
     """
 
     name: Annotated[str, Meta(max_length=LONGEST_NAME)]
@@ -268,14 +265,16 @@ class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_
 
 
 class RequestError(ValueError):
-    """An ask that cannot be read or understood; the message says what is wrong and what would be right."""
+    """Raised for a request that cannot be read or understood; the message says what is wrong and what is
+    allowed.
+    """
 
 
 _decoder: msgspec.json.Decoder[AnyRequest] = msgspec.json.Decoder(AnyRequest)
 
 
 def read_request(text: bytes | str) -> AnyRequest:
-    """Return the ask a JSON text says. Raises RequestError naming the field."""
+    """Read a request from JSON text. Raises RequestError naming the field."""
     try:
         return _decoder.decode(text)
     except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -283,7 +282,7 @@ def read_request(text: bytes | str) -> AnyRequest:
 
 
 def request_from(data: Any) -> AnyRequest:
-    """Return the ask that plain data says. Raises RequestError naming the field."""
+    """Make a request from plain data. Raises RequestError naming the field."""
     try:
         out: AnyRequest = msgspec.convert(data, AnyRequest)
         return out
@@ -292,7 +291,7 @@ def request_from(data: Any) -> AnyRequest:
 
 
 def explain_invalid_ask(error: Exception) -> str:
-    """Return a reader's complaint for people: the field, then what is wrong."""
+    """Return the error of a reader as text for people: the field, then what is wrong."""
     text = str(error)
     if isinstance(error, msgspec.ValidationError):
         message, _, where = text.partition(" - at ")
@@ -307,7 +306,7 @@ WORDS: tuple[str, ...] = tuple(str(kind.__struct_config__.tag) for kind in get_a
 
 
 def ask_schema() -> dict[str, Any]:
-    """Return the JSON Schema (draft 2020-12) of an ask."""
+    """Return the JSON Schema (draft 2020-12) of a request."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Metagraph request",

@@ -1,4 +1,4 @@
-"""What is noted on a project's timelines, asked and changed."""
+"""Read and change the markers, cuts and other notes on a project's timelines."""
 
 from __future__ import annotations
 
@@ -17,12 +17,14 @@ from metagraph.graph.words import LAYERS
 
 
 def timeline_of(project: Project, key: str) -> Timeline:
-    """Return what is noted of a performance or conversation, by its id."""
+    """Return the timeline of a performance or conversation, by its id; an empty one if nothing is noted."""
     return project.timelines.get(key) or Timeline()
 
 
 def change_timeline(project: Project, key: str, **changes: Any) -> Project:
-    """Set what is noted; nothing but defaults is not kept. Raises EditError for values out of range."""
+    """Set fields of a timeline. One that has only defaults is removed. Raises EditError for values out of
+    range.
+    """
     before = timeline_of(project, key)
     if "markers" in changes:
         changes["markers"] = tuple(sorted(changes["markers"], key=lambda m: m.at))
@@ -30,7 +32,7 @@ def change_timeline(project: Project, key: str, **changes: Any) -> Project:
         changes["cuts"] = tuple(sorted(changes["cuts"], key=lambda c: c.at))
     try:
         after = msgspec.convert(msgspec.to_builtins(msgspec.structs.replace(before, **changes)), Timeline)
-    except (ValueError, TypeError) as error:  # msgspec's are ValueErrors
+    except (ValueError, TypeError) as error:  # msgspec raises ValueErrors
         raise EditError(str(error)) from None
     if after == before:
         return project
@@ -41,7 +43,9 @@ def change_timeline(project: Project, key: str, **changes: Any) -> Project:
 
 
 def add_marker(project: Project, key: str, at: float, name: str = "") -> tuple[Project, str]:
-    """Put a marker at a time; return the project and the marker's id. One that is there already is it."""
+    """Add a marker at a time, in seconds; return the project and the marker's id. A marker that is less than
+    5 ms away is returned instead.
+    """
     before = timeline_of(project, key).markers
     there = next((m for m in before if abs(m.at - at) < 0.005), None)
     if there is not None:
@@ -66,14 +70,14 @@ def remove_markers(project: Project, key: str, idents: Collection[str]) -> Proje
 
 
 def remove_timeline(project: Project, key: str) -> Project:
-    """Forget what is noted of something that goes."""
+    """Remove the timeline of something that is removed."""
     if key not in project.timelines:
         return project
     return replace(project, timelines={k: t for k, t in project.timelines.items() if k != key})
 
 
 def differs_only_in_timeline(before: Project, after: Project) -> bool:
-    """Return whether two states of a project are apart in nothing but what is noted on timelines."""
+    """Return whether two states of a project differ, and only in their timelines."""
     same = (f.name for f in fields(before) if f.name != "timelines")
     return before.timelines is not after.timelines and all(
         getattr(before, n) is getattr(after, n) for n in same
@@ -81,7 +85,7 @@ def differs_only_in_timeline(before: Project, after: Project) -> bool:
 
 
 def lane_of(ask: a.AnyRequest, project: Project) -> Lane:
-    """Return the lane an ask stands in: its layer, or the stage."""
+    """Return the lane that a request is in: its layer, or the stage."""
     match ask:
         case a.Gesture() | a.Fidget() | a.Change():
             return ask.layer

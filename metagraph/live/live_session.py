@@ -1,9 +1,9 @@
-"""The live session: requests come in between two ticks, are worked into the plan at once, and each is told
-what becomes of it.
+"""Run a live session: requests arrive between two ticks, are planned at once, and each is answered with what
+becomes of it.
 
-No threads and no clock: time is passed in, seconds since the session began. The plan of a session is the plan
-of a performance (`playback.planning.extend_performance`): what was asked, with when it became known, is kept
-and performs again as it was played.
+There are no threads and no clock: time is passed in, in seconds since the session began. A session's plan is
+that of a performance (`playback.planning.extend_performance`). The requests are kept with the time at which
+they became known, so a performance of them plays the session again.
 """
 
 from __future__ import annotations
@@ -73,14 +73,16 @@ from metagraph.playback.posing.weight import LOOKS_BACK
 from metagraph.playback.timing.phases import phases
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
-TIDY = 0.25  # seconds between two looks at what is over
-KEPT = 10.0  # seconds for which what was told and asked of the plan is kept when it is over
-TOLD = 100  # of what was told to others than those who ask, the last are kept
+TIDY = 0.25  # seconds between two clean-ups of what is over
+KEPT = 10.0  # seconds for which reports and requests of the plan are kept after they are over
+TOLD = 100  # latest reports that are kept in any case
 
 
 class LiveSession:
-    """One character, played live. Arguments as for `perform`; history: seconds of past that are kept; ahead:
-    of plan. models, graphs: those that may be asked to generate motion, by name.
+    """One character, played live.
+
+    The arguments are as for `perform`. `history` is the number of seconds of past that are kept, `ahead` of
+    plan. `models` and `graphs` are those that clients may ask to generate motion, by name.
     """
 
     def __init__(
@@ -114,12 +116,12 @@ class LiveSession:
 
     @property
     def plan(self) -> Plan:
-        """The plan as it is now."""
+        """Return the current plan."""
         return self.running.plan
 
     @property
     def evaluator(self) -> Evaluator | None:
-        """What has the poses of the plan as it is now; None for a project without a skeleton."""
+        """Return the evaluator of the current plan; None for a project without a skeleton."""
         if self.project.skeleton is None:
             return None
         known = self._evaluator
@@ -131,15 +133,15 @@ class LiveSession:
     # --- clients
 
     def join(self, client: int) -> None:
-        """Let a client in; numbers are the caller's and not used twice."""
+        """Add a client. Its number is the caller's and must not be used twice."""
         self.clients[client] = Client(client)
 
     def leave(self, client: int) -> None:
-        """Let a client go. What it asked for is played all the same."""
+        """Remove a client. Its requests are still played."""
         self.clients.pop(client, None)
 
     def receive(self, client: int, data: bytes | str) -> None:
-        """Take a message in, to be answered at the next tick: one reply to each request in it."""
+        """Take a message, to be answered at the next tick, with one reply to each request in it."""
         try:
             requests, _ = split_message(data)
         except a.RequestError as error:
@@ -148,15 +150,15 @@ class LiveSession:
         self._queue += [(client, read_live_request(request)) for request in requests]
 
     def warm(self, most: int | None = None) -> None:
-        """Work out beforehand what requests with a stroke or a hold need to know of gestures, a millisecond
-        each; most: how many now, all where None. Ticks do one each.
+        """Prepare what requests with a stroke or a hold need to know of gestures, a millisecond each. `most`
+        limits how many; None prepares all. Each tick prepares one.
         """
         while self._cold and most != 0:
             phases(self.project, self._cold.pop())
             most = None if most is None else most - 1
 
     def change(self, project: Project) -> None:
-        """Go on with an edited project; what has not begun is planned anew at the next tick."""
+        """Continue with an edited project. What has not begun is planned again at the next tick."""
         self.project = self.running.project = project
         self._words, self._edited = RequestWords(project), True
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
@@ -170,7 +172,7 @@ class LiveSession:
     # --- ticks
 
     def tick(self, now: float, heard: Iterable[tuple[int, HeardMessage | Reply]] = ()) -> Out:
-        """Answer what was received, then `heard`, and move on to `now`, seconds that never decrease."""
+        """Answer what was received, then `heard`, and advance to `now`, in seconds that never decrease."""
         before, self.now = self.now, max(now, self.now)
         queue, self._queue = [*self._queue, *heard], []
         self.ledger.limits.tick(self.now)
@@ -204,7 +206,7 @@ class LiveSession:
         return out
 
     def _take(self, client: Client, heard: HeardMessage, work: TickWork, place: int) -> Reply | bytes | None:
-        """Return the reply to a request; None for what has to be planned first."""
+        """Return the reply to a request; None if it has to be planned first."""
         message = heard.message
         if isinstance(message, Keypoints):
             return self._keypoints(client, message, work, place)
@@ -246,7 +248,7 @@ class LiveSession:
         return self._take(client, HeardMessage(feel), work, place)
 
     def _own(self, client: Client, message: Hello | Status | Describe) -> Reply | bytes:
-        """Answer what is asked of the session itself."""
+        """Answer requests about the session itself."""
         if isinstance(message, Status):
             if "status" not in self._told:
                 self._told["status"] = describe.status(self)
@@ -275,7 +277,7 @@ class LiveSession:
     # --- what becomes of a request
 
     def _admit(self, client: Client, ident: str, key: str, ask: Any, work: TickWork) -> str:
-        """Take an ask on; return why not, if it is not."""
+        """Accept a request; return the reason if it is refused."""
         wait = self.project.settings.wait
         why = beyond(ask, self.now)
         if why:
@@ -314,8 +316,8 @@ class LiveSession:
         return ""
 
     def _said(self, key: str, ask: a.Say, goes_on: bool) -> a.Say:
-        """Return a line with the sound that is streamed for it. Raises RequestError for one that is not heard
-        or too long.
+        """Return a line with the sound that streams in for it. Raises RequestError for sound that cannot be
+        read, or text that is too long.
         """
         if ask.audio is not None:
             begun = self._speech(key)
@@ -326,7 +328,7 @@ class LiveSession:
         return ask
 
     def _without_name(self, ask: Any) -> str:
-        """Note the name an ask gives a point; say where there are too many."""
+        """Note the name that a request gives a point; return the reason if there are too many."""
         if isinstance(ask, a.Place) and ask.name not in self._names:
             if len(self._names) >= NAMES:
                 return f"{NAMES} points have names already; use one of them again"
@@ -334,7 +336,7 @@ class LiveSession:
         return ""
 
     def _without_room(self, client: Client, key: str) -> str:
-        """Say where so many requests wait that a client has had its share of them."""
+        """Return the reason if so many requests wait that a client has used up its share."""
         ledger = self.ledger
         if key not in ledger.known and len(ledger.known) >= PENDING and ledger.pending(self.now) >= PENDING:
             own = sum(1 for _ in ledger.of(client.number))
@@ -343,22 +345,22 @@ class LiveSession:
         return ""
 
     def _speech(self, key: str) -> Speech | None:
-        """Return what is said under a key, with its words' or shapes' times."""
+        """Return the speech under a key, with the times of its words or shapes."""
         return next(
             (s for s in reversed(self.plan.track.speeches) if s.id == key and s.timing is not None), None
         )
 
     def _goes_on(self, key: str, work: TickWork) -> bool:
-        """Return whether what is said under a key is added to a line."""
+        """Return whether speech under a key is added to a line."""
         return self._speech(key) is not None or isinstance(work.asks.get(key), a.Say)
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: TickWork) -> Reply:
-        """Take back what a client asked for itself; what has begun plays on."""
+        """Withdraw what a client itself requested; what has begun plays on."""
         if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now, client.number):
             return Reply(id=ident, state="refused", why=BUSY)
         target, mine = plan_key(client.number, ask.what), plan_key(client.number, "")
         keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
-        # What has begun and lasts is not in the ledger any more, but can still be ended.
+        # What has begun and lasts is no longer in the ledger, but can still be ended.
         lasting = [
             x.id
             for x in self.plan.track.items
@@ -381,7 +383,7 @@ class LiveSession:
             work.asks[key] = a.Withdraw(id=key, what=key, told=self.now)
 
     def _block(self, client: Client, open_: Open, ask: a.Bml, work: TickWork) -> Reply | None:
-        """Take a block's behaviours on, each for itself."""
+        """Accept the behaviours of a block, each separately."""
         limits = self.ledger.limits
         cost = len(ask.bml) + TAG * ask.bml.count("<")
         if limits.characters + cost > BML_PER_TICK and limits.characters > 0:
@@ -409,8 +411,8 @@ class LiveSession:
     def _parts(
         self, client: Client, open_: Open, block: BmlBlock, at: float | None, work: TickWork
     ) -> list[tuple[str, str, str, str]]:
-        """Take on what a block asks for; return of each its key, what it is called, the ask, and why it was
-        refused already.
+        """Accept what a block asks for; return for each its key, its name, the kind of request, and why it
+        was refused already.
         """
         out = []
         for n, ask in enumerate(block.asks):
@@ -427,7 +429,7 @@ class LiveSession:
         return out
 
     def _keypoints(self, client: Client, message: Keypoints, work: TickWork, place: int) -> Reply | None:
-        """Look at whoever is before a client's camera; take on what is asked for because of them."""
+        """Look at the person before a client's camera; accept the requests that follow from it."""
         ident = message.id or None
         if self.ledger.limits.refusal("keypoints", self.now, 0.0, 0, self.now, client.number):
             return Reply(id=ident, state="refused", why=BUSY)
@@ -448,9 +450,7 @@ class LiveSession:
     # --- the plan
 
     def _plan(self, work: TickWork, out: Out) -> None:
-        """Work a tick's asks in, answer them, and tell of others that are planned otherwise because of
-        them.
-        """
+        """Plan a tick's requests, answer them, and report others that changed because of them."""
         now, ledger = self.now, self.ledger
         self.running.reach(now, self._edited)
         if work.asks:
@@ -474,7 +474,7 @@ class LiveSession:
                 out.replies[open_.place] = self._settle_block(open_, found)
 
     def _settle(self, key: str, found: FoundAnswer) -> Reply:
-        """Return the reply to an ask that was planned, or was not."""
+        """Return the reply to a request that was planned, or was not."""
         ask = self.ledger.known[key]
         if found.state in ("refused", "done"):
             full = ask.lane in LAYERS and any(r.outcome in ("covered", "no-room") for r in found.reports)
@@ -496,7 +496,7 @@ class LiveSession:
         )
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:
-        """Return the reply to a block of BML: of each behaviour, and of all of them."""
+        """Return the reply to a block of BML: for each behaviour, and for all of them."""
         parts: list[Part] = []
         for key, called, word, why in open_.parts or ():
             if why or key not in self.ledger.known:
@@ -531,7 +531,7 @@ class LiveSession:
         )
 
     def _tell_changed(self, key: str, ask: OpenAsk, found: FoundAnswer, out: Out) -> None:
-        """Tell who asked that what was answered holds no longer."""
+        """Report to the client that an earlier answer to its request has changed."""
         if found.state in ("refused", "done"):
             self.ledger.drop(key)
         else:
@@ -554,7 +554,7 @@ class LiveSession:
     # --- the past
 
     def _tidy(self) -> None:
-        """Forget what is over, so that a session may last for days."""
+        """Forget what is over, so that a session can last for days."""
         if self.now < self._tidied + TIDY:
             return
         now = self._tidied = self.now
@@ -576,18 +576,18 @@ class LiveSession:
         self.running.plan = replace(plan, reports=reports, requests=requests, track=thin_track(plan, now))
 
     def overlay(self, seconds: float) -> Overlay | None:
-        """Return what generated motion lays over the plan at a time about now, None for nothing."""
+        """Return the generated motion over the plan at a time near now, None if there is none."""
         return self.generating.overlay(self.plan, self.project, seconds)
 
     def pose(self, seconds: float) -> Pose:
-        """Return the pose at a time about now, generated motion and all."""
+        """Return the pose at a time near now, with generated motion."""
         if self.evaluator is None:
             raise ValueError("a project without clips cannot be posed")
         return self.evaluator.at(seconds, overlay=self.overlay(seconds))
 
     def plan_at(self, seconds: float) -> Plan:
-        """Return the plan that knows what was shown at a time: the running one, or for the past one of
-        before.
+        """Return the plan that knows what was shown at a time: the running plan, or an earlier one for the
+        past.
         """
         whole = seconds - LOOKS_BACK  # the body still answers what the arms did then
         if whole >= self._begin or not self._past:
@@ -595,8 +595,8 @@ class LiveSession:
         return next((plan for begin, plan in reversed(self._past) if begin <= whole), self._past[0][1])
 
     def performance(self, name: str) -> a.Performance:
-        """Return the session so far, to be kept: `perform` plays it as it was played. It ends before now
-        when that is more than is kept (`kept_words`).
+        """Return the session so far as a performance to keep, which `perform` plays in the same way. It ends
+        before now if the session is longer than what is kept (`kept_words`).
         """
         length = max(0.1, min(self.now, self.tape.until, a.LONGEST_PERFORMANCE))
         asks = tuple(ask for ask in self.tape.asks() if (ask.told or 0.0) <= length)
@@ -610,7 +610,7 @@ class LiveSession:
         )
 
     def kept_words(self) -> str:
-        """Return what a performance of the session lacks, "" when it has all."""
+        """Return what a performance of the session lacks, "" if it is complete."""
         if self.now <= min(self.tape.until, a.LONGEST_PERFORMANCE):
             return ""
         if self.tape.until < a.LONGEST_PERFORMANCE:

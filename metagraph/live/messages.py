@@ -1,8 +1,8 @@
-"""What a client may send and what it gets back: JSON objects, one or a list of them to a message.
+"""Define what a client may send and what it gets: JSON objects, one or a list of them in a message.
 
-A request is an ask (`metagraph.graph.requests`), which may say `in` seconds from now instead of `at`; or one
-of the session's own: hello, status, describe. Every request gets exactly one reply; what happens later is
-told as events to those who want them.
+A request is one for the character (`metagraph.graph.requests`), which may say `in` seconds from now instead
+of `at`, or one for the session itself, such as hello, status and describe. Every request gets exactly one
+reply; what happens later is sent as events to clients that want them.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from metagraph.graph import requests as a
 from metagraph.graph.words import LAYERS, Layer
 
 LONGEST = 64 * 1024  # bytes of one request
-LONGEST_BML = 256 * 1024  # bytes of one that holds a block of BML
+LONGEST_BML = 256 * 1024  # bytes of a request with a block of BML
 LONGEST_MESSAGE = 1024 * 1024  # bytes of one message, a list of requests
-MOST = 1000  # requests of one list
+MOST = 1000  # requests in one list
 FASTEST = 120.0  # poses a second, at most
 
 Space = Literal["local", "model"]
 
 
 class Poses(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """How poses are streamed. rate: frames a second. format: "osc" for clients that speak it. joints: which,
-    in which order; all where it is null. space: rotations to the parent joint, or positions and rotations in
-    the character's space. translations: of all joints, not the root's alone.
+    """How poses are streamed. rate: frames a second. format: "osc" for clients that speak it. joints: their
+    names, in order; all if null. space: rotations relative to the parent joint, or positions and rotations in
+    the character's space. translations: of all joints, not only the root's.
     """
 
     rate: Annotated[float, Meta(gt=0, le=FASTEST)] = 30.0
@@ -42,9 +42,9 @@ class _Own(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
 
 class Hello(_Own, frozen=True, tag="hello"):
-    """Says who one is and what one wants to be told; may be sent again to change that. token: where the
-    server asks for one. poses: null for none. events: whether to be told when what one asked for changes,
-    starts and ends; "all" for what plays of itself and what others asked for, too.
+    """Says who the client is and what it wants to receive; may be sent again to change that. token: if the
+    server asks for one. poses: null for none. events: whether to report when this client's requests change,
+    start and end; "all" also reports what plays on its own and what others requested.
     """
 
     name: Annotated[str, Meta(max_length=200)] = ""
@@ -58,7 +58,7 @@ class Status(_Own, frozen=True, tag="status"):
 
 
 class Describe(_Own, frozen=True, tag="describe"):
-    """What may be asked of this character: its joints, stances, actions, tags, lines and points."""
+    """What can be requested of this character: its joints, stances, actions, tags, lines and points."""
 
 
 Place = Annotated[tuple[Annotated[float, Meta(ge=-1e7, le=1e7)], ...], Meta(min_length=2, max_length=3)]
@@ -66,11 +66,11 @@ Share = Annotated[float, Meta(ge=0, le=1)]
 
 
 class Keypoints(_Own, frozen=True, tag="keypoints"):
-    """Somebody before a camera at this moment, who is mimicked. points: `[x, y]` of a picture or `[x, y, z]`
-    of space, 17 (COCO), 18, 25 (OpenPose) or 33 (MediaPipe) of them, y downwards, z away from the camera.
-    confidence: of each point; 0 for what was not found. mirror: the character moves its right where the
-    person moves the left. gaze: it looks where the head is turned, too. layers: which mimic. priority: of
-    what is asked for because of it.
+    """A person before a camera at this moment, whom the character mimics. points: `[x, y]` of a picture or
+    `[x, y, z]` of space, 17 (COCO), 18, 25 (OpenPose) or 33 (MediaPipe) of them, y downwards, z away from the
+    camera. confidence: of each point; 0 if it was not found. mirror: the character moves its right if the
+    person moves the left. gaze: it looks where the head is turned, too. layers: those that mimic. priority:
+    of the requests that follow.
     """
 
     points: Annotated[tuple[Place, ...], Meta(min_length=17, max_length=33)]
@@ -85,11 +85,11 @@ Sound = Annotated[bytes, Meta(max_length=48 * 1024)]
 
 
 class Generate(_Own, frozen=True, tag="generate"):
-    """Motion made live by a learned model or a motion graph, of what is heard, in the place of the arms' and
-    the head's layers; what is asked of these by name comes first. model: its name, as describe lists models
-    and graphs; null ends it. side: whether the character listens to whom is heard, or speaks itself. seed:
-    other numbers move otherwise. temperature, ahead, of models alone: how much happens by chance, and seconds
-    by which it may lag behind the sound, to know what comes.
+    """Motion generated live by a learned model or a motion graph from what is heard; it replaces the layers
+    of the arms and the head, except where a client requests something of these by name. model: its name, as
+    describe lists models and graphs; null ends it. side: whether the character listens to the voice, or
+    speaks with it. seed: another seed gives other motion. temperature, ahead, only for models: how much is
+    random, and by how many seconds it may lag behind the sound, to know what follows.
     """
 
     model: Annotated[str, Meta(max_length=200)] | None
@@ -100,9 +100,9 @@ class Generate(_Own, frozen=True, tag="generate"):
 
 
 class Comes(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """What is going to be said, as a motion graph moves with it. kind: a clause or a response of the
-    character, a hesitation of its partner. at: seconds of the session; in: seconds from now, instead.
-    duration: seconds. stress: seconds from its beginning to its stress; null where nobody knows.
+    """What is going to be said, for a motion graph. kind: a clause or a response of the character, a
+    hesitation of its partner. at: seconds of the session; in: seconds from now, instead. duration: seconds.
+    stress: seconds from its beginning to its stress; null if unknown.
     """
 
     kind: Literal["clause", "response", "hesitation"] = "clause"
@@ -113,11 +113,11 @@ class Comes(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknow
 
 
 class Hear(_Own, frozen=True, tag="hear"):
-    """What is heard from now on, for motion that is generated. audio: the next samples of the partner of a
-    listener, of a speaker itself; other: of the other one at the same time, silence without. 16-bit
+    """What is heard from now on, for motion that is generated. audio: the next samples of a listener's
+    partner, or of the speaker itself; other: those of the other one at the same time, silence without. 16-bit
     little-endian numbers, 16,000 a second, one channel, in base64. speaks: who speaks from now on, as the
-    character sees it; "sound" lets loudness tell, as at first; nothing said leaves it. comes: what is going
-    to be said, for motion graphs; "partner" and "none" take it back.
+    character sees it; "sound" decides by loudness, as at first; null changes nothing. comes: what is going to
+    be said, for motion graphs; "partner" and "none" take it back.
     """
 
     audio: Sound = b""
@@ -127,10 +127,10 @@ class Hear(_Own, frozen=True, tag="hear"):
 
 
 class Partner(_Own, frozen=True, tag="partner"):
-    """How who talks with the character feels, from now on: its face and posture take that up weakly and a
-    moment later, until told otherwise; null, or a neutral mood, brings its own back. laughs: it laughs now,
-    for so many seconds, which the character may join instead. share: how far, or how often; null for 0.35 of
-    a mood and 0.6 of the laughs.
+    """How the partner in the talk feels from now on: the character's face and posture take that up weakly and
+    a moment later, until the next message; null, or a neutral mood, restores its own. laughs: the partner
+    laughs now, for so many seconds, and the character may join in. share: how far, or how often; null for
+    0.35 of a mood and 0.6 of the laughs.
     """
 
     mood: a.MoodPoint = None
@@ -144,9 +144,7 @@ WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind i
 
 
 class HeardMessage(Struct, frozen=True, array_like=True):
-    """A request as it was understood. after: seconds from now at which it should begin, where it said
-    `in`.
-    """
+    """A request as it was understood. after: seconds from now at which it should begin, if it said `in`."""
 
     message: Message
     after: float | None = None
@@ -156,7 +154,7 @@ State = Literal["planned", "late", "refused", "done"]
 
 
 class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What became of one behaviour of a block of BML. do: the ask it was understood as."""
+    """What became of one behaviour of a block of BML. do: the kind of request it became."""
 
     id: str
     do: str
@@ -169,8 +167,8 @@ class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """What becomes of a request. at, until: seconds of the session at which it plays. actions: what plays.
-    notes: what was left out of it. seen: of keypoints, layer -> the stance somebody is in. error: what is
-    wrong with it, where it could not be understood; then nothing else is said.
+    notes: what was left out of it. seen: for keypoints, layer -> the stance the person is in. error: what is
+    wrong with it if it could not be understood; then there is nothing else.
     """
 
     id: str | None = None
@@ -187,8 +185,8 @@ class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Event(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """Something that happened. changed: what was planned is planned otherwise, state and times as in a reply.
-    started, ended: an action, or speech, with the words said.
+    """Something that happened. changed: the plan for a request changed; state and times are as in a reply.
+    started, ended: an action, or speech, with its words.
     """
 
     event: Literal["changed", "started", "ended", "closed"]
@@ -216,13 +214,13 @@ def round_seconds(seconds: float) -> float: ...
 @overload
 def round_seconds(seconds: None) -> None: ...
 def round_seconds(seconds: float | None) -> float | None:
-    """Return seconds as they are told, to a tenth of a millisecond."""
+    """Return seconds as they are sent, rounded to a tenth of a millisecond."""
     return None if seconds is None else round(seconds, 4)
 
 
 def split_message(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
-    """Return the requests of a message, and whether it was a list. Raises RequestError for one that is too
-    long or no list.
+    """Return the requests in a message, and whether it was a list. Raises RequestError for one that is too
+    long or not a list.
     """
     if len(data) > LONGEST_MESSAGE:
         raise a.RequestError(
@@ -260,7 +258,7 @@ def _holds_bml(data: bytes | str | msgspec.Raw) -> bool:
 
 
 def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) -> HeardMessage | Reply:
-    """Read a request that is no ask as it stands: one that says `in`, or one that is wrong."""
+    """Read a request that is not valid as it is: one that says `in`, or one with an error."""
     try:
         fields = _seconds.decode(data)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as broken:

@@ -1,6 +1,4 @@
-"""The published JSON Schemas of what can be asked: `python -m metagraph.live.schemas` writes them anew after
-a change.
-"""
+"""Publish the JSON Schemas of requests. `python -m metagraph.live.schemas` writes them after a change."""
 
 from __future__ import annotations
 
@@ -19,8 +17,8 @@ GRAPH, LIVE = (
 
 
 def schema_texts() -> dict[Path, bytes]:
-    """Return the files: one ask as performances, lines and agents have it; all that a live session says and
-    hears.
+    """Return the files: one request as in performances, lines and agents' messages; all messages of a live
+    session.
     """
     return {GRAPH: _text(requests.ask_schema()), LIVE: _text(messages.live_schema())}
 

@@ -1,4 +1,4 @@
-"""The clip: one piece of motion, the same value whatever file it came from."""
+"""Define the clip: one piece of motion, the same value for every file format."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ Array = NDArray[Any]
 
 
 class ClipError(ValueError):
-    """A clip's numbers do not fit together."""
+    """Raised if a clip's numbers do not fit together."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """Something of a file that was put right on reading it, and can be left as it is.
+    """A repair that was made when a file was read, and that can be left out.
 
-    name: which repair. words: what was done. made: whether it was, or was left out because somebody said so.
-    take: the number of the take it left out, None where it changed the clip itself.
+    `name` says which repair, `words` what was done. `made` is False if somebody chose to leave the file as it
+    is. `take` is the number of the take that it left out, None if it changed the clip itself.
     """
 
     name: str
@@ -36,11 +36,12 @@ class Repair:
 class Clip:
     """Motion on a skeleton at a constant frame rate.
 
-    rotations: `[F, J, 4]` float32, local, xyzw, neighbours on the same side. translations: `[F, T, 3]`
-    float32, metres, local, for the joints listed in `translated` (ascending, always with joint 0 first); all
-    other joints keep their rest translation. weights: `[F, K]` morph target weights for `morphs`. notes: what
-    the reader changed or dropped, in words, for the user. repairs: those of the changes that can be left out.
-    brought_from: fingerprint of the skeleton it was retargeted from, "" where it never was.
+    `rotations` `[F, J, 4]` float32 are local, xyzw, with neighbouring frames on the same side. `translations`
+    `[F, T, 3]` float32 are local, in metres, for the joints listed in `translated` (ascending, always with
+    joint 0 first); all other joints keep their rest translation. `weights` `[F, K]` are morph target weights
+    for `morphs`. `notes` tell the user what the reader changed or dropped. `repairs` are those of the changes
+    that can be left out. `brought_from` is the fingerprint of the skeleton it was retargeted from, "" if it
+    was not.
     """
 
     name: str
@@ -98,12 +99,12 @@ class Clip:
 
     @property
     def duration(self) -> float:
-        """Seconds from the first frame to the last."""
+        """Return the seconds from the first frame to the last."""
         return (self.frames - 1) / self.fps
 
     @property
     def root(self) -> Array:
-        """Translation of joint 0, `[F, 3]`, metres."""
+        """Return the translation of joint 0, `[F, 3]`, in metres."""
         return np.asarray(self.translations[:, 0])
 
     def poses(self) -> Pose:
@@ -115,7 +116,9 @@ class Clip:
         return Pose(self.rotations, full)
 
     def pose_at(self, seconds: ArrayLike) -> Pose:
-        """Sample at `seconds [...]`, clamped to the clip: linear on translations, nlerp on rotations."""
+        """Sample the clip at `seconds [...]`, clamped to its length: linear for translations, nlerp for
+        rotations.
+        """
         low, high, part = self.locate(seconds)
         rotations = rotation.nlerp(
             self.rotations[low],
@@ -133,8 +136,8 @@ class Clip:
         return Pose(rotations, full)
 
     def morphs_at(self, seconds: float) -> dict[str, float]:
-        """Return the morph target weights at one time, by name; linear between frames, clamped to the
-        clip.
+        """Return the morph target weights at one time, by name; linear between frames, clamped to
+        the clip.
         """
         if self.weights is None or not self.morphs:
             return {}
@@ -143,8 +146,8 @@ class Clip:
         return dict(zip(self.morphs, map(float, values), strict=True))
 
     def locate(self, seconds: ArrayLike) -> tuple[Array, Array, Array]:
-        """Return the frames before and after `seconds [...]` and the part of the way between them (float32,
-        0..1).
+        """Return the frames before and after `seconds [...]`, and how far between them it is
+        (float32, 0..1).
         """
         at = np.clip(np.asarray(seconds, np.float64) * self.fps, 0, self.frames - 1)
         low = np.minimum(at.astype(np.int64), max(0, self.frames - 2))
@@ -152,7 +155,7 @@ class Clip:
         return low, high, (at - low).astype(np.float32)
 
     def trimmed(self, first: int, last: int | None = None) -> Clip:
-        """Return frames `first` to `last` (excluded). Raises ClipError when none are left."""
+        """Return the frames `first` to `last` (excluded). Raises ClipError if none are left."""
         return replace(
             self,
             rotations=self.rotations[first:last],

@@ -1,5 +1,5 @@
-"""Which joint of one skeleton is which of another: by roles, by names taken apart, by hand; each pair with
-how sure it is.
+"""Map the joints of one skeleton to those of another: by roles, by parsed names, by hand; each pair has a
+certainty.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Array = NDArray[Any]
 
 SIDES = ("left", "right")
 FINGERS = ("thumb", "index", "middle", "ring", "little")
-# The words for them, of which the first that fits counts: "RingPinky" is a little finger.
+# Words for each finger. The first finger that fits counts: "RingPinky" is a little finger.
 _MARKS = {
     "thumb": ("thumb",),
     "index": ("index",),
@@ -30,7 +30,7 @@ _MARKS = {
 }
 ARM, LEG = ("upper_arm", "lower_arm", "hand"), ("upper_leg", "lower_leg", "foot")
 TRUNK = ("hips", "spine", "chest", "upper_chest", "neck", "head")
-# Without these nothing sensible can be carried over.
+# Without these, nothing sensible can be carried over.
 NEEDED = ("hips", "head", *(f"{side}_{part}" for side in SIDES for part in (*ARM, *LEG)))
 _PLAIN = (
     *TRUNK,
@@ -40,14 +40,14 @@ _PLAIN = (
 
 
 class RetargetError(ValueError):
-    """The clip cannot be brought onto that skeleton; the message says why."""
+    """Raised if a clip cannot be retargeted to a skeleton; the message says why."""
 
 
 def fingerprint(skeleton: Skeleton) -> str:
-    """Return what stays the same for a rig in every file and of every size: a short text, to remember maps
-    by.
+    """Return a short text that identifies a rig in every file and size, to remember maps by.
 
-    It is of the joints' names and parents, in any order: a map says nothing of lengths or rest poses.
+    It is made of the joints' names and parents, in any order, because a map does not depend on lengths or
+    rest poses.
     """
     above = (skeleton.names[p] if p >= 0 else "" for p in skeleton.parents)
     rows = sorted(f"{name}\t{parent}" for name, parent in zip(skeleton.names, above, strict=True))
@@ -56,10 +56,10 @@ def fingerprint(skeleton: Skeleton) -> str:
 
 @dataclass(frozen=True, slots=True)
 class JointPair:
-    """role: what both do, as in `roles.ROLES`, `left_index_1`, `left_lower_arm_twist_1`, `root`, or "" for a
-    pair by its name.
+    """A joint of the source and the joint of the target that follows it.
 
-    sure: 0..1. why: in words.
+    `role` is what both do, as in `roles.ROLES`, `left_index_1`, `left_lower_arm_twist_1`, `root`, or "" for a
+    pair by name. `sure` is the certainty, 0..1, and `why` the reason in words.
     """
 
     source: str
@@ -71,8 +71,10 @@ class JointPair:
 
 @dataclass(frozen=True)
 class JointMap:
-    """Joints of one skeleton and those of another that follow them. source, target: the skeletons'
-    fingerprints. contacts: whether hands that touch their own body touch it at the same place.
+    """Joints of one skeleton and those of another that follow them.
+
+    `source` and `target` are the skeletons' fingerprints. With `contacts`, hands that touch their own body
+    touch it at the same place.
     """
 
     source: str
@@ -84,8 +86,8 @@ class JointMap:
         return next((p for p in self.pairs if p.source == source), None)
 
     def with_pair(self, source: str, target: str, role: str | None = None) -> JointMap:
-        """Return the map with `target` following `source`. Without a role it is that of the pair this one
-        takes the place of.
+        """Return the map with `target` following `source`. Without a role, the pair keeps that of the pair it
+        replaces.
         """
         before = [p for p in self.pairs if p.source == source or p.target == target]
         if role is None:
@@ -95,7 +97,7 @@ class JointMap:
         return replace(self, pairs=(*kept, JointPair(source, target, role)))
 
     def without(self, joint: str) -> JointMap:
-        """Return the map without the pairs of that joint of either skeleton."""
+        """Return the map without the pairs of a joint of either skeleton."""
         return replace(self, pairs=tuple(p for p in self.pairs if joint not in (p.source, p.target)))
 
     @property
@@ -105,7 +107,9 @@ class JointMap:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """What must be mapped and is not, in words; a clip can be retargeted when this is empty."""
+        """Return the roles that must be mapped and are not, in words. A clip can be retargeted if there are
+        none.
+        """
         roles = {p.role for p in self.pairs}
         return tuple(f"no {role.replace('_', ' ')} in both" for role in NEEDED if role not in roles)
 
@@ -119,7 +123,7 @@ class JointMap:
 
     @staticmethod
     def from_json(data: Mapping[str, Any]) -> JointMap:
-        """Raises RetargetError when the data is no joint map."""
+        """Read a joint map. Raises RetargetError if the data is not one."""
         try:
             pairs = tuple(
                 JointPair(
@@ -142,7 +146,7 @@ def propose_joint_map(
     source_roles: Mapping[str, int] | None = None,
     target_roles: Mapping[str, int] | None = None,
 ) -> JointMap:
-    """Propose which joint of `target` follows which of `source`: by roles, fingers and twists, then by
+    """Propose which joint of `target` follows which joint of `source`: by roles, fingers and twists, then by
     names.
     """
     ours, theirs = find_known_roles(source, source_roles), find_known_roles(target, target_roles)
@@ -192,7 +196,7 @@ def propose_joint_map(
 
 
 def find_known_roles(skeleton: Skeleton, roles: Mapping[str, int] | None) -> dict[str, int]:
-    """Return roles with those of fingers and twist joints, as far as they can be told apart."""
+    """Return roles, including those of fingers and twist joints that can be recognised."""
     roles = find_roles(skeleton) if roles is None else roles
     out = {role: roles[role] for role in _PLAIN if role in roles}
     for side in SIDES:
@@ -223,7 +227,9 @@ def _fingers(skeleton: Skeleton, roles: Mapping[str, int], side: str) -> dict[st
 
 
 def _twists(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
-    """Return the joints that turn with a bone, not bend it: helpers hung on it, numbered from its root."""
+    """Return the joints that turn with a bone but do not bend it: helpers attached to it, numbered from its
+    root.
+    """
     out: dict[str, int] = {}
     taken = set(roles.values())
     for role in [f"{side}_{part}" for side in SIDES for part in (*ARM[:2], *LEG[:2])]:
@@ -239,7 +245,7 @@ def _twists(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
 
 
 def _unnamed(name: str, role: str) -> int:
-    """Whether the name alone does not say the role."""
+    """Return 1 if the name alone does not say the role, else 0."""
     words = split_joint_name(name)
     bare = role.removeprefix("left_").removeprefix("right_")
     return int(joint_kind(words) != bare and bare.replace("_", "") not in words.joined)

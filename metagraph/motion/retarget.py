@@ -1,10 +1,10 @@
-"""Bring a clip onto a different character: turns carried over, hands and feet kept on height.
+"""Retarget a clip onto a different character: turns are carried over, hands and feet stay at their height.
 
-Turns are taken relative to a standing pose of either figure, mostly the rest pose. Where these differ (arms
-out, arms down) the bones' directions reconcile them; the roll about a bone is the one the shortest way
+Turns are relative to a standing pose of either figure, usually the rest pose. Where these poses differ (arms
+out, arms down), the bones' directions align them; the roll about a bone is the one that the shortest rotation
 between them leaves, and hands with fingers have their own. Then two-bone limbs are solved, so that wrists and
-ankles come to the source's places, scaled. All is reckoned in the character's axes: +X to its left, +Y up, +Z
-ahead.
+ankles reach the source's positions, scaled. All computation is in the character's axes: +X to its left, +Y
+up, +Z ahead.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ Array = NDArray[Any]
 
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 LOWEST = 0.25  # of the leg: how far hips may be lowered so that legs of other proportions reach
-BACKWARDS = np.array([0, 0, -1.0])  # where straight arms bend to
+BACKWARDS = np.array([0, 0, -1.0])  # the direction in which straight arms bend
 
 
 def retarget(
@@ -50,11 +50,13 @@ def retarget(
     source_pose: Pose | None = None,
     target_pose: Pose | None = None,
 ) -> Clip:
-    """Return the clip on `target`. Joints that nothing maps to keep their rest pose and follow their parents.
+    """Return the clip on `target`. Joints that nothing is mapped to keep their rest pose and follow their
+    parents.
 
-    source_pose, target_pose: standing poses to take turns from, by default the rest poses (for a source whose
-    rest pose does not stand, the frame that does). Hips and feet are scaled by the legs' length, so planted
-    feet stay planted; wrists by the arms'. Raises RetargetError when too little is mapped.
+    `source_pose` and `target_pose` are standing poses that turns are relative to, by default the rest poses;
+    for a source whose rest pose does not stand, the frame that does. Hips and feet are scaled by the legs'
+    length, so planted feet stay planted; wrists by the arms' length. Raises RetargetError if too little is
+    mapped.
     """
     roles = _checked(clip, target, joint_map)
     ours = {role: clip.skeleton.index(pair.source) for role, pair in roles.items()}
@@ -98,8 +100,8 @@ def _checked(clip: Clip, target: Skeleton, joint_map: JointMap) -> dict[str, Joi
 
 
 class _Work(LimbGoals):
-    """One clip on its way: `turns [F, J, 4]` and `places [F, J, 3]` of the target's joints in the character's
-    axes.
+    """A clip that is being retargeted: `turns [F, J, 4]` and `places [F, J, 3]` of the target's joints in the
+    character's axes.
     """
 
     def __init__(
@@ -126,8 +128,8 @@ class _Work(LimbGoals):
         self.places = np.empty((clip.frames, len(above), 3), np.float32)
 
     def _parents(self) -> Array:
-        """Return the target's parents, with limbs that its file keeps apart (IK feet, several roots) hung on
-        the body.
+        """Return the target's parents, with limbs that are separate in its file (IK feet, several roots)
+        attached to the body.
         """
         skeleton, roles = self.target.skeleton, self.target.roles
         parents = np.array(skeleton.parents)
@@ -144,7 +146,7 @@ class _Work(LimbGoals):
             )
             for role, over in (*chains, *arms):
                 joint, wanted = roles[role], roles[over]
-                # Legs that hang on the spine, as bipeds of 3ds Max do, follow the hips all the same.
+                # Legs below the spine, as in bipeds of 3ds Max, follow the hips, too.
                 lumbar = role.endswith("upper_leg") and roles.get("spine") in skeleton.chain(joint)
                 if lumbar or (wanted not in skeleton.chain(joint) and joint not in skeleton.chain(wanted)):
                     parents[joint] = (
@@ -155,8 +157,8 @@ class _Work(LimbGoals):
         return parents
 
     def turn_joints(self) -> None:
-        """Carry the turns of mapped joints over, spread them on joints between those of the trunk, let the
-        others follow.
+        """Carry over the turns of mapped joints and spread them on joints between those of the trunk. The
+        other joints follow.
         """
         source, target = self.source.skeleton, self.target.skeleton
         a = np.array([source.index(p.source) for p in self.map.pairs])
@@ -191,7 +193,7 @@ class _Work(LimbGoals):
         self.walk()
 
     def shift_named(self) -> None:
-        """Carry over what joints paired by name are shifted by, as faces are, scaled by the characters'
+        """Carry over the shifts of joints that are paired by name, as in faces, scaled by the characters'
         heights.
         """
         moved = {self.clip.skeleton.names[j]: j for j in self.clip.translated}
@@ -214,7 +216,7 @@ class _Work(LimbGoals):
             self.local_t[:, b] += scale * rotation.rotate_vectors(turn.astype(np.float32), shift)
 
     def walk(self) -> None:
-        """Forward kinematics: the turns of joints that are not given, and all places."""
+        """Compute forward kinematics: the turns of joints that are not given, and all positions."""
         for depth, joints in enumerate(self.levels):
             if depth == 0:
                 free = joints[~self.given[joints]]
@@ -258,8 +260,8 @@ class _Work(LimbGoals):
         self.walk()
 
     def reach(self, names: Sequence[str], goal: Array, side: Array) -> tuple[Array, Array]:
-        """Turn the two bones of a limb so that its end comes to `goal [F, 3]`, bending as the source's does,
-        or towards `side` when straight. Return where middle and end come to, each `[F, 3]`.
+        """Turn the two bones of a limb so that its end reaches `goal [F, 3]`. The limb bends as the source's
+        does, or towards `side` if it is straight. Return where middle and end arrive, `[F, 3]` each.
         """
         upper, lower, end = (self.target.roles[name] for name in names)
         above = tuple(self.from_places[:, self.source.roles[name]] for name in names)
@@ -277,7 +279,9 @@ class _Work(LimbGoals):
         return root + new, root + goal
 
     def meet(self) -> None:
-        """Bring hands that touch their own body to where they touch it; all else stays to the bit."""
+        """Bring hands that touch their own body to the place they touch. Everything else stays the same to
+        the bit.
+        """
         contact = OwnContact(self.source, self.target, self.from_turns, self.from_places)
         if not any(contact.places.values()):
             return

@@ -1,4 +1,5 @@
-"""Rotations as quaternions: `xyzw`, float, unit length, arrays with free leading dimensions `[..., 4]`.
+"""Compute with rotations as quaternions: `xyzw`, float, unit length, arrays with free leading dimensions
+`[..., 4]`.
 
 `multiply(a, b)` applies `b` first, then `a`, as matrices do. Angles are radians.
 """
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
-Numbers = Any  # whatever numpy.asarray takes: arrays, nested sequences, numbers
+Numbers = Any  # anything that numpy.asarray takes: arrays, nested sequences, numbers
 
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -74,8 +75,8 @@ def from_axis_angle(axis: Numbers, angle: Numbers) -> Array:
 
 
 def from_euler(angles: Numbers, order: str) -> Array:
-    """Return rotations `[..., 4]` from intrinsic Euler `angles [..., 3]` (radians); `order` like "ZXY", first
-    applied outermost.
+    """Return rotations `[..., 4]` from intrinsic Euler `angles [..., 3]` (radians). In an `order` like "ZXY",
+    the first axis is the outermost rotation.
     """
     angles = np.asarray(angles)
     half = angles * 0.5
@@ -127,7 +128,7 @@ def from_matrix(m: Numbers) -> Array:
     """Return quaternions `[..., 4]` of proper rotation matrices `[..., 3, 3]`, with `w >= 0`."""
     m = np.asarray(m, float)
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
-    rows = np.empty((*m.shape[:-2], 4, 4))  # four times the products of the quaternion's numbers
+    rows = np.empty((*m.shape[:-2], 4, 4))  # four times the products of the quaternion's components
     rows[..., 0, 0], rows[..., 1, 1] = 1 + xx - yy - zz, 1 - xx + yy - zz
     rows[..., 2, 2], rows[..., 3, 3] = 1 - xx - yy + zz, 1 + xx + yy + zz
     for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
@@ -158,7 +159,7 @@ def exp(v: Numbers) -> Array:
 
 
 def scale_rotation(q: Numbers, weight: Numbers) -> Array:
-    """Return `q [..., 4]` turned by `weight [...]` times its angle, the short way; 0 gives the identity, 1
+    """Return `q [..., 4]` with its angle multiplied by `weight [...]`, the short way; 0 gives the identity, 1
     gives `q`.
     """
     return exp(log(q) * np.asarray(weight)[..., None])
@@ -200,12 +201,12 @@ def continuous(q: Numbers) -> Array:
 
 
 def rotation_between(a: Numbers, b: Numbers) -> Array:
-    """Return the shortest rotation `[..., 4]` taking direction `a [..., 3]` to direction `b [..., 3]`."""
+    """Return the shortest rotation `[..., 4]` from direction `a [..., 3]` to direction `b [..., 3]`."""
     a, b = np.asarray(a, float), np.asarray(b, float)
     a = a / np.maximum(np.linalg.norm(a, axis=-1, keepdims=True), 1e-12)
     b = b / np.maximum(np.linalg.norm(b, axis=-1, keepdims=True), 1e-12)
     dot = np.einsum("...i,...i->...", a, b)[..., None]
-    # Opposite directions: half a turn about any perpendicular axis.
+    # Opposite directions: rotate by half a turn about any perpendicular axis.
     side = np.where(np.abs(a[..., :1]) < 0.9, np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
     axis = np.where(dot < -1 + 1e-9, np.cross(a, side), np.cross(a, b))
     return normalize(np.concatenate([axis, np.where(dot < -1 + 1e-9, 0.0, 1 + dot)], -1))

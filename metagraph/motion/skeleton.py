@@ -1,5 +1,5 @@
-"""The skeleton: joints with names, parents and a rest pose; forward kinematics over any number of poses at
-once.
+"""Define the skeleton: joints with names, parents and a rest pose, and forward kinematics over any number of
+poses at once.
 """
 
 from __future__ import annotations
@@ -21,12 +21,11 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Joints in an order where every parent comes before its children.
+    """Joints in an order in which every parent comes before its children.
 
-    names: unique joint names. parents: `[J]` int, -1 for a root; joint 0 is a root.
-    rest_rotations: `[J, 4]` local, xyzw. rest_translations: `[J, 3]` local, metres, Y up.
-    Any scale found in a file has been folded into the translations. Two skeletons are equal when their
-    `fingerprint`s are.
+    `names` are unique. `parents` is `[J]` int, -1 for a root; joint 0 is a root. `rest_rotations` is `[J, 4]`
+    local, xyzw. `rest_translations` is `[J, 3]` local, in metres, Y up. Scale found in a file is applied to
+    the translations. Two skeletons are equal if their `fingerprint`s are.
     """
 
     names: tuple[str, ...]
@@ -41,7 +40,7 @@ class Skeleton:
         if rotations.shape == (count, 4):
             unit = (
                 np.abs(np.einsum("ji,ji->j", rotations, rotations) - 1) <= 1e-12
-            )  # these stay as they are, to the bit
+            )  # unit quaternions stay the same to the bit
             rotations[~unit] = rotation.normalize(rotations[~unit])
         translations = np.asarray(self.rest_translations, np.float64)
         if count == 0:
@@ -73,7 +72,7 @@ class Skeleton:
         return hash(self.fingerprint)
 
     def index(self, name: str) -> int:
-        """Return the joint's place. Raises KeyError when there is no joint of that name."""
+        """Return the joint's index. Raises KeyError if no joint has this name."""
         return self._places[name]
 
     def __contains__(self, name: object) -> bool:
@@ -85,8 +84,8 @@ class Skeleton:
 
     @cached_property
     def fingerprint(self) -> str:
-        """Hex digest of names, parents and rest translations rounded to 0.1 mm; what makes two skeletons the
-        same.
+        """Return the hex digest of names, parents, rest translations rounded to 0.1 mm and rest rotations
+        rounded to 0.001. Skeletons with equal fingerprints are the same.
         """
         digest = hashlib.sha256("\n".join(self.names).encode())
         digest.update(self.parents.astype("<i4").tobytes())
@@ -101,7 +100,7 @@ class Skeleton:
 
     @cached_property
     def levels(self) -> tuple[Array, ...]:
-        """Joints grouped by depth, roots first: what forward kinematics walks."""
+        """Return the joints grouped by depth, roots first, for forward kinematics."""
         depth = np.zeros(len(self), int)
         for i in range(1, len(self)):
             depth[i] = depth[self.parents[i]] + 1 if self.parents[i] >= 0 else 0
@@ -113,7 +112,7 @@ class Skeleton:
 
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
-        """For each joint, its children's places."""
+        """Return the indices of each joint's children."""
         out: list[list[int]] = [[] for _ in self.names]
         for i, parent in enumerate(self.parents):
             if parent >= 0:
@@ -122,14 +121,14 @@ class Skeleton:
 
     @cached_property
     def below(self) -> Array:
-        """`[J]` how many joints hang on each, it among them."""
+        """Return `[J]` the number of joints in the subtree of each joint, itself included."""
         out = np.ones(len(self))
         for joint in reversed(np.flatnonzero(self.parents >= 0).tolist()):
             out[self.parents[joint]] += out[joint]
         return out
 
     def descendants(self, joint: int) -> tuple[int, ...]:
-        """Return `joint` and everything below it."""
+        """Return `joint` and all joints below it."""
         out = [joint]
         for one in out:
             out.extend(self.children[one])
@@ -144,12 +143,12 @@ class Skeleton:
 
     @cached_property
     def rest(self) -> Pose:
-        """The rest pose."""
+        """Return the rest pose."""
         return Pose(self.rest_rotations, self.rest_translations)
 
     @cached_property
     def height(self) -> float:
-        """Extent of the rest pose's joints along its longest axis, metres; at least 1 mm."""
+        """Return the extent of the rest pose's joints along its longest axis, in metres; at least 1 mm."""
         _, positions = self.globals(self.rest)
         return max(1e-3, float(np.ptp(positions, axis=0).max()))
 
@@ -168,17 +167,17 @@ class Pose:
     translations: Array
 
     def __getitem__(self, key: Any) -> Pose:
-        """Pick along the leading dimensions."""
+        """Index the leading dimensions."""
         return Pose(self.rotations[key], self.translations[key])
 
     @property
     def root(self) -> Array:
-        """Translation of joint 0, `[..., 3]`."""
+        """Return the translation of joint 0, `[..., 3]`."""
         return np.asarray(self.translations[..., 0, :])
 
 
 def unique_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Return the names with `_2`, `_3` ... appended where one repeats, and empty ones called `joint`."""
+    """Return the names with `_2`, `_3` ... appended to repeated ones. Empty names become `joint`."""
     seen: set[str] = set()
     last: dict[str, int] = {}
     out = []

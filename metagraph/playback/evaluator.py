@@ -1,7 +1,7 @@
-"""The one evaluator: what a plan looks like at a time, or at many times at once.
+"""Evaluate a plan: what it looks like at a time, or at many times at once.
 
-Preview, video, export and tests all come here, so scrubbing, live play and a baked file agree. A pose goes
-through the stages in turn: layers, weight and feet, life, contacts.
+Preview, video, export and tests all use this evaluator, so scrubbing, live play and a baked file agree. A
+pose goes through the stages in this order: layers, weight and feet, life, contacts.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Array = NDArray[Any]
 
 
 class Poses(Protocol):
-    """Whatever has a pose and a face at each time."""
+    """Anything that has a pose and a face at each time."""
 
     def at(self, seconds: Any, /) -> Pose: ...
     def morphs_at(self, seconds: float, /) -> dict[str, float]: ...
@@ -35,14 +35,16 @@ class Poses(Protocol):
 
 
 class Evaluator:
-    """A plan as poses and weights of face shapes. Made once per plan; it owns what it works out.
+    """Turns a plan into poses and morph target weights. There is one for each plan; it owns what it computes.
 
-    Times before 0 and after the plan's end rest in the first and last stance. Actions whose clip is missing
-    show their stance.
+    Before 0 and after the plan's end, the character rests in the first and last stance. An action whose clip
+    is missing shows its stance.
     """
 
     def __init__(self, plan: Plan, project: Project, rigs: Rigs | None = None) -> None:
-        """rigs: the project's, where they are known. Raises ValueError for a project without a skeleton."""
+        """Make the evaluator. `rigs` are the project's, if they are known. Raises ValueError for a project
+        without a skeleton.
+        """
         self.plan, self.project = plan, project
         self.rigs = rigs if rigs is not None else rigs_of(project)
         self._lives = project.life.on and plan.life.end > 0
@@ -50,14 +52,14 @@ class Evaluator:
         self._weight = WeightStage(plan, project, self.rigs.weight)
         self._life = LifeStage(project, plan.life, plan.track, self.rigs.body)
         self._contacts = ContactStage(plan, project, self.rigs.contacts)
-        self._last: tuple[float, Pose] | None = None  # the latest pose at one time that life was added to
+        self._last: tuple[float, Pose] | None = None  # the latest pose at one time with life added
 
     def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
         """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`,
         translations `[..., J, 3]`.
 
-        alive: with life, as far as the project has it on. overlay: motion of as many times that takes the
-        place of the arms' and the head's layers.
+        With `alive`, life is added as the project has it set. `overlay` is motion for the same times, which
+        replaces the layers of the arms and the head.
         """
         at = np.asarray(seconds, np.float64)
         times = at.reshape(-1)
@@ -65,7 +67,7 @@ class Evaluator:
         shown = None if overlay is None else 1 - overlay.weight * (1 - overlay.arms)
         if alive and self._lives:
             pose = self._weight.run(pose, times, shown)
-            if len(times) == 1 and overlay is None:  # its face is mostly asked for next
+            if len(times) == 1 and overlay is None:  # its face is usually needed next
                 self._last = float(times[0]), _first(pose)
             pose = self._life.run(pose, times)
         pose = self._contacts.run(pose, times, shown)
@@ -73,33 +75,37 @@ class Evaluator:
         return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
     def follow(self, plan: Plan, project: Project) -> Evaluator:
-        """Return the evaluator of a plan: this one for the same plan, else a new one."""
+        """Return the evaluator of a plan: this one for the same plan and project, else a new one."""
         if plan is self.plan and project is self.project:
             return self
         return Evaluator(plan, project, self.rigs if project is self.project else None)
 
     def layered(self, times: Array) -> Pose:
-        """Return what the layers alone compose at `times [N]`."""
+        """Return what only the layers compose at `times [N]`."""
         return self._layers.run(times)
 
     def before_life(self, times: Array) -> Pose:
-        """Return the poses at `times [N]` that life is added to."""
+        """Return the poses at `times [N]` before life is added."""
         return self._weight.run(self._layers.run(times), times)
 
     def morphs_at(self, seconds: float, alive: bool = True, composed: Pose | None = None) -> dict[str, float]:
-        """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` life's on top.
-        composed: the pose `[J]` before life, where it is not the plan's alone.
+        """Return morph target weights, 0..1, at one time: the sums of the layers and, with `alive`, life's on
+        top.
+
+        `composed` is the pose `[J]` before life, if it differs from the plan's.
         """
         out: dict[str, float] = {}
         playing = self._play_morphs(seconds, out)
         if alive and self._lives:
-            if self.rigs.body.face.morphs and composed is None:  # what the eyes hold against
+            if self.rigs.body.face.morphs and composed is None:  # the eyes hold their gaze against this pose
                 composed = self._before_life_at(seconds)
             add_life(out, self._life.morphs(seconds, composed, playing))
         return {name: min(1.0, max(0.0, value)) for name, value in out.items()}
 
     def faces_at(self, times: Array) -> list[dict[str, float]]:
-        """Return morph target weights, 0..1, at each of `times [N]`: to the bit what `morphs_at` gives."""
+        """Return morph target weights, 0..1, at each of `times [N]`, equal to the bit to those of
+        `morphs_at`.
+        """
         times = np.asarray(times, np.float64)
         pose = self.before_life(times)
         return [
@@ -118,7 +124,7 @@ class Evaluator:
         return _first(self.before_life(np.array([float(seconds)])))
 
     def _play_morphs(self, seconds: float, out: dict[str, float]) -> list[Playing]:
-        """Add what clips show of morph targets at a time; return what plays."""
+        """Add the morph target weights of clips at a time to `out`; return what plays."""
         playing: list[Playing] = []
         for layer in LAYERS:
             of = self.plan.layers[layer]
@@ -145,13 +151,13 @@ class Evaluator:
 
 
 def _first(pose: Pose) -> Pose:
-    """Return the only pose of several, in memory of its own."""
+    """Return the first pose of an array of poses as a copy."""
     return Pose(pose.rotations[0].copy(), pose.translations[0].copy())
 
 
 def add_life(out: dict[str, float], found: Mapping[str, float]) -> None:
-    """Add the life layers' morph target weights to what clips show: as far as that leaves them room, so that
-    a face that was made for a moment stays as it was made.
+    """Add the life layers' morph target weights to those of clips, as far as these leave room, so that a face
+    made for a moment stays as it was made.
     """
     for name, value in found.items():
         played = out.get(name, 0.0)

@@ -1,4 +1,4 @@
-"""The planner: requests at any level in, a plan of specific actions out.
+"""Make a plan of specific actions from requests at any level.
 
 Meta actions -> temporal replanning -> sampling, layer by layer (Borer et al., section 6). Planning from
 nothing and extending a running plan are the same function; `make_plan` extends an empty plan at time 0.
@@ -23,9 +23,10 @@ from metagraph.playback.planning.strand import join_sequence
 
 @dataclass(frozen=True)
 class Revision:
-    """What else becomes of a plan that is extended. withdrawn: ids of requests that are taken back. leave:
-    layers that are planned to the end already and that nothing new concerns; planning them again would change
-    nothing.
+    """Other changes to a plan that is extended.
+
+    `withdrawn` has the ids of requests that are withdrawn. `leave` has the layers that are planned to the end
+    already and that no new request concerns; planning them again would change nothing.
     """
 
     withdrawn: frozenset[str] = frozenset()
@@ -45,9 +46,9 @@ def make_plan(
 ) -> Plan:
     """Plan from 0 to `end` seconds.
 
-    seed: 32-bit, the project's when None. stances: where layers begin, each layer's start stance when not
-    given. idle: let the Markov model fill the time nobody asks for. A layer without a stance that has a loop
-    stays still.
+    `seed` has 32 bits; None takes the project's. `stances` says where layers begin; others begin in their
+    start stance. With `idle`, the Markov model fills the time without requests. A layer whose stances have no
+    loop stays still.
     """
     empty = Plan(project.settings.seed if seed is None else seed, 0.0)
     return extend_plan(project, empty, 0.0, requests, end, stances, idle)
@@ -63,13 +64,13 @@ def extend_plan(
     idle: bool = True,
     revision: Revision = NOTHING_ELSE,
 ) -> Plan:
-    """Return the plan with new requests worked in, others withdrawn, and the horizon moved to `end`.
+    """Return the plan with new requests added, others withdrawn, and the horizon moved to `end`.
 
     What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta
-    actions, merged with the new ones and planned again. An extension in many steps gives what one in a single
-    step does.
+    actions, merged with the new ones and planned again. Many small extensions give the same plan as a single
+    one.
     """
-    fresh = tuple({r.id: r for r in requests}.values())  # of two with one id the later counts
+    fresh = tuple({r.id: r for r in requests}.values())  # of two requests with one id, the later one counts
     again = {r.id for r in fresh} | revision.withdrawn
     layers: dict[Layer, LayerPlan] = {}
     reports: list[Report] = []
@@ -106,8 +107,8 @@ def extend_plan(
 
 
 def _performed(chain: Markov, plan: Plan, layer: Layer, meta: MetaAction, moods: Moods) -> bool:
-    """Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay
-    in, and as often as its mode and mood say.
+    """Return whether an action that a model wrote is performed: not if it would leave a stance that a request
+    holds, and as often as its mode and mood say.
     """
     if not stirs(mood_at(moods, meta.start), plan.seed, meta.request.id):
         return False

@@ -1,4 +1,6 @@
-"""Poses of a plan by one call, for scripts. Who asks for many plans keeps an evaluator of each."""
+"""Return poses of a plan with one call, for scripts. Code that uses many plans keeps an evaluator
+for each.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,14 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
 
-_latest: list[Evaluator] = []  # of the plan that was asked for last: mostly it is asked for again
+_latest: list[Evaluator] = []  # of the latest plan, which is usually the next one, too
 
 
 def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
     """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]` xyzw,
-    translations `[..., J, 3]` metres. alive: with life, as far as the project has it on. Raises ValueError
-    when the project has no skeleton.
+    translations `[..., J, 3]` metres.
+
+    With `alive`, life is added as the project has it set. Raises ValueError if the project has no skeleton.
     """
     return _evaluator(plan, project).at(seconds, alive)
 
@@ -26,15 +29,17 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
 def morphs_at(
     plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
 ) -> dict[str, float]:
-    """Return morph target weights, 0..1, at one time. composed: the pose `[J]` before life, where it is not
-    the plan's alone. Raises ValueError as `pose_at`.
+    """Return morph target weights, 0..1, at one time.
+
+    `composed` is the pose `[J]` before life, if it differs from the plan's. Raises ValueError as `pose_at`
+    does.
     """
     return _evaluator(plan, project).morphs_at(seconds, alive, composed)
 
 
 def compose_layers(plan: Plan, project: Project, times: NDArray[Any]) -> Pose:
-    """Return what the layers alone compose at `times [N]`, without life, weight and contacts. Raises
-    ValueError as `pose_at`.
+    """Return what only the layers compose at `times [N]`, without life, weight and contacts. Raises
+    ValueError as `pose_at` does.
     """
     return _evaluator(plan, project).layered(np.asarray(times, np.float64))
 

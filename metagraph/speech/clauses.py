@@ -1,17 +1,17 @@
-"""What one side of a conversation says, in segments: phonemic clauses, listener responses and its own
+"""Divide what one side of a conversation says into segments: phonemic clauses, listener responses and its own
 hesitation pauses.
 
-A phonemic clause is a group of words round one that is strongly stressed (Boomer and Dittmann 1962; Yang et
-al. 2020, section 4.2). Words are parted at pauses and hesitations; what is longer is parted so that each part
-has one word that stands out by pitch, loudness and length, with breaks rather before small words, at commas
-and where one speaks on a little later; parts of about four words are preferred.
+A phonemic clause is a group of words around one that is strongly stressed (Boomer and Dittmann 1962; Yang et
+al. 2020, section 4.2). Words are divided at pauses and hesitations. Longer runs are divided so that each part
+has one word that stands out by pitch, loudness and length, with breaks preferably before small words, at
+commas and where the speaker continues a little later; parts of about four words are preferred.
 
-A response is a turn, pauses around it, that is made of response words alone: a "yes" within a sentence is
-part of the sentence. Hesitation words are hesitations wherever they stand; those that also mean something
-("well", "like", "you know") only where they stand alone, next to another hesitation, or before a pause after
-which the same speaker goes on. What is both ("mh", 嗯) hesitates where the same speaker soon goes on.
+A response is a turn, with pauses around it, that has only response words: a "yes" within a sentence is part
+of the sentence. Hesitation words are hesitations everywhere; those that also have a meaning ("well", "like",
+"you know") only if they are alone, next to another hesitation, or before a pause after which the same speaker
+continues. Words that can be both ("mh", 嗯) are hesitations if the same speaker soon continues.
 
-Which words these are, a language pack says (`language_packs`); where the language is not known, sound tells.
+A language pack says which words these are (`language_packs`); if the language is unknown, the sound decides.
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ from metagraph.speech.stress import CLOSED, rate_stresses, split_into_clauses
 
 Array = NDArray[Any]
 
-HOLDS = 1.5  # seconds within which one who hesitates goes on
-SOON = 0.8  # seconds within which what one says goes on as if without a pause
-LONGEST_RESPONSE = 2.5  # seconds a response lasts at most
-BURST = 0.6  # seconds: a sound so short while the partner talks is a response, where there are no words
-AROUND = 0.5  # seconds of one's own silence before and behind it
-LONGEST_CLAUSE = 3.5  # seconds: where there are no words, longer ones are parted at their softest
+HOLDS = 1.5  # seconds within which a hesitating speaker continues
+SOON = 0.8  # seconds within which a speaker continues as if without a pause
+LONGEST_RESPONSE = 2.5  # seconds that a response lasts at most
+BURST = 0.6  # seconds: without words, a sound this short while the partner talks is a response
+AROUND = 0.5  # seconds of the speaker's own silence before and after it
+LONGEST_CLAUSE = 3.5  # seconds: without words, longer clauses are divided where they are softest
 _ASKED = (".", "?", "!", "。", "？", "！", "।", "؟", "．")
 
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """Words that are one segment: from the first to behind the last."""
+    """Words that are one segment, from `first` up to, but not including, `last`."""
 
     kind: Spoken
     first: int
@@ -64,9 +64,9 @@ def segments(
 ) -> tuple[Segment, ...]:
     """Return one side's clauses, responses and hesitations, by start, never overlapping.
 
-    words: as transcribed, by start. pitch, heard: of the side's own channel. partner: of the other's, where
-    that is another. responses, hesitations: instead of the language's own lists. language: None for English.
-    Without words, `segment_by_sound` tells.
+    `words` are as transcribed, by start. `pitch` and `heard` are those of the side's own channel, `partner`
+    that of the other side, if that is another channel. `responses` and `hesitations` replace the language's
+    own lists. `language` is None for English. Without words, `segment_by_sound` is used.
     """
     words = order_words(words, heard.duration)
     if not words:
@@ -86,11 +86,11 @@ def segments(
 def segment_by_sound(
     words: Sequence[Word], pitch: Pitch, heard: HeardSound, partner: HeardSound | None
 ) -> tuple[Segment, ...]:
-    """Return one side's clauses and responses without understanding a word: there are none, or nobody knows
-    their language. Hesitations are not found then.
+    """Return one side's clauses and responses without understanding words, because there are none or their
+    language is unknown. Hesitations are not found.
 
-    What is loud tells (`activity.activity`): what pauses part is a clause, a short sound while the partner
-    talks a response. Where a channel is shared or nothing stands out of it, words tell when is spoken.
+    Loudness decides (`activity.activity`): a sound between pauses is a clause, a short sound while the
+    partner talks a response. If a channel is shared or nothing stands out from it, the times of words decide.
     """
     words, tones = order_words(words, heard.duration), smooth(pitch)
     found = _by_loudness(pitch, tones, heard, partner) if partner is not None or not words else ()
@@ -114,7 +114,7 @@ def _segments(
     heard: HeardSound,
     language: LanguagePack | None,
 ) -> tuple[Segment, ...]:
-    """Return parts as segments, clauses parted further by stress."""
+    """Return parts as segments, with clauses divided further by stress."""
     stress = rate_stresses(words, said, tones, heard, language)
     out: list[Segment] = []
     for part in parts:
@@ -127,8 +127,8 @@ def _segments(
 
 
 def order_words(words: Sequence[Word], length: float) -> list[Word]:
-    """Return the words by start, none longer than to the next one's start, none past the length (seconds);
-    those left too short go.
+    """Return the words by start, none longer than to the next one's start, none past the length (seconds).
+    Words that become too short are removed.
     """
     ordered = sorted(words, key=lambda w: (w.start, w.end))
     out: list[Word] = []
@@ -158,8 +158,8 @@ def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, he
 
 
 def find_stress_time(pitch: Pitch, tones: Array, heard: HeardSound, start: float, end: float) -> float:
-    """Return where the stress between two times is, seconds: F0's most prominent peak, or, of a voiceless
-    one, the loudest moment. tones: `pitch.smooth(pitch)`.
+    """Return the time of the stress between two times, in seconds: F0's most prominent peak or, without a
+    voice, the loudest moment. `tones` is `pitch.smooth(pitch)`.
     """
     found = peaks(pitch, start, end, tones)
     if found:
@@ -184,7 +184,7 @@ def _parts(
     both: Vocabulary,
     lexical: Vocabulary,
 ) -> list[_Part]:
-    """Return the words in responses, hesitations and runs between pauses that clauses are made of, in
+    """Divide the words into responses, hesitations and runs between pauses, of which clauses are made, in
     order.
     """
     out: list[_Part] = []
@@ -202,7 +202,9 @@ def _parts(
 
 
 def _goes_on(words: Sequence[Word], first: int, last: int) -> bool:
-    """Whether the same speaker goes on at once after words, or after a while having spoken just before."""
+    """Return whether the same speaker continues at once after words, or after a while having spoken just
+    before.
+    """
     after = words[last].start - words[last - 1].end if last < len(words) else np.inf
     before = words[first].start - words[first - 1].end if first else np.inf
     return bool(after <= SOON or max(before, after) <= HOLDS)
@@ -223,20 +225,21 @@ def _hesitating(
     hesitations: Vocabulary,
     lexical: Vocabulary,
 ) -> list[_Part]:
-    """Return a turn in hesitations and what is between them; what is between, if it is response words alone,
-    is a response.
+    """Divide a turn into hesitations and what is between them; what is between is a response if it has only
+    response words.
     """
-    marks = [0] * (last - first)  # how many words a hesitation that begins here has
+    marks = [0] * (last - first)  # the number of words in a hesitation that begins here
     n = first
     while n < last:
         size = hesitations.at(said[:last], n)
-        if size and responses.at(said[:last], n) > size:  # "uh-huh" is no "uh"
+        if size and responses.at(said[:last], n) > size:  # "uh-huh" is not "uh"
             size = 0
             n += responses.at(said[:last], n)
             continue
         marks[n - first] = size
         n += max(size, 1)
-    # A word with a meaning counts only by what is around it; from the end, as it may lean on one behind it.
+    # A word with a meaning counts only by what is around it; go from the end, because it may depend on one
+    # after it.
     for n in reversed(range(first, last)):
         size = marks[n - first]
         if (
@@ -265,8 +268,8 @@ def _hesitating(
 
 
 def _hangs(words: Sequence[Word], n: int, size: int, first: int, last: int, marks: Sequence[int]) -> bool:
-    """Return whether words with a meaning hesitate: alone between pauses, next to another hesitation and a
-    pause, or before a pause after which the speaker goes on; not as the end of a sentence.
+    """Return whether words with a meaning are a hesitation: alone between pauses, next to another hesitation
+    and a pause, or before a pause after which the speaker continues; not at the end of a sentence.
     """
     begins, ends = n == first, n + size == last
     leans = not ends and marks[n + size - first] > 0
@@ -306,12 +309,12 @@ def _by_loudness(
 
 
 def _meanwhile(s: SpokenStretch, others: Sequence[SpokenStretch]) -> bool:
-    """Return whether the partner talks during something, or stopped or starts right beside it."""
+    """Return whether the partner talks during a stretch, or stops or starts right beside it."""
     return any(o.start < s.end + AROUND and o.end > s.start - AROUND for o in others)
 
 
 def _shorter(s: SpokenStretch, heard: HeardSound) -> list[tuple[float, float]]:
-    """Return a stretch in parts of bearable length, cut where it is softest."""
+    """Return a stretch in parts that are not too long, cut where it is softest."""
     if s.end - s.start <= LONGEST_CLAUSE:
         return [(s.start, s.end)]
     third = (s.end - s.start) / 4

@@ -1,10 +1,9 @@
-"""From a conversation's segments to what its characters are asked to do: gestures with clauses, nods with
-responses and hesitations.
+"""Make requests for the characters from a conversation's segments: gestures with clauses, nods with responses
+and hesitations.
 
-Which segments get one is drawn with the rates that were observed (Yang et al., table 1), each by a key of its
-own: changing one segment leaves the others' draws as they were. A gesture's stroke is asked for at its
-clause's F0 peak, and which gestures those are is chosen together (`gesture_choice`), so that as many are
-performed as are drawn.
+Which segments get one is drawn with observed rates (Yang et al., table 1), each by a key of its own: changing
+one segment leaves the draws of the others unchanged. A gesture's stroke is requested at its clause's F0 peak,
+and the gestures are chosen together (`gesture_choice`), so that as many are performed as are drawn.
 """
 
 from __future__ import annotations
@@ -38,17 +37,17 @@ from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import looks_of
 from metagraph.speech.peak_blinks import peak_blinks
 
-PARTNER = "partner"  # the named point where the other's head is; of several with the other's number, from 1
-TOLERANCE = 0.1  # seconds a stroke may be off its peak (section 7.2)
-ROUNDS = 12  # in which what would come too late is taken back
-CLAUSE, ANSWER, FILL = 3, 2, 1  # priorities: an own clause before an answer before what fills the time
-HEAD: Point = (0.0, 1.6, 1.3)  # metres: where a partner's head is whose height is not known
+PARTNER = "partner"  # named point of the other's head; if there are several, with a number from 1
+TOLERANCE = 0.1  # seconds by which a stroke may miss its peak (section 7.2)
+ROUNDS = 12  # rounds in which requests that would be late are removed
+CLAUSE, ANSWER, FILL = 3, 2, 1  # priorities: own clauses, then answers, then fillers
+HEAD: Point = (0.0, 1.6, 1.3)  # metres: where a partner's head is if its height is unknown
 PLAIN = ("beat", "explain", "open")  # tags of gestures that go with any words
-QUIET = 2.0  # seconds of everyone's silence after which one idles
-REST = 3.5  # seconds nobody asks anything of a character after which it may fidget
+QUIET = 2.0  # seconds of everyone's silence after which a side idles
+REST = 3.5  # seconds without requests after which a character may fidget
 FIDGETS = 0.5  # how often it does
-# how often the body changes its stance as one begins to speak, where most shifts of posture are (Cassell et
-# al. 2001)
+# how often the body changes its stance when its side begins to speak, where most shifts of posture are
+# (Cassell et al. 2001)
 SHIFTS = 0.4
 
 
@@ -60,10 +59,10 @@ def drive_side(
     heads: Sequence[Point] = (HEAD,),
     together: bool = True,
 ) -> list[AnyRequest]:
-    """Return what a side is asked to do. project: whose graph moves it. line: the project's line with its
-    voice. heads: where the others' heads are, metres, in this side's space, in the order of their numbers;
-    the last stands for any that are missing. together: gestures are chosen so that all have room; else each
-    is asked for by itself, and many come to nothing.
+    """Return the requests for a side. `project` has the graph that moves it. `line` is the project's line
+    with its voice. `heads` says where the others' heads are, in metres in this side's space, in the order of
+    their numbers; the last is used for missing ones. With `together`, gestures are chosen so that all have
+    room; otherwise each is requested on its own, and many cannot be played.
     """
     out = list(_looks(conversation, side, heads))
     if line is not None:
@@ -127,7 +126,7 @@ def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Ite
 
 
 def partner_points(plan: Plan) -> dict[int, Point]:
-    """Return where the others' heads are in a plan of one of three or more, by the others' numbers."""
+    """Return where the others' heads are in the plan of one of three or more, by the others' numbers."""
     named = ((p.name.removeprefix(f"{PARTNER} "), p.point) for p in plan.track.places)
     return {int(number) - 1: point for number, point in named if number.isdecimal()}
 
@@ -143,7 +142,7 @@ def draw_segments(conversation: Conversation, side: int) -> frozenset[str]:
 
 
 def clause_peak(segment: Segment) -> float:
-    """Return where a clause's stress is, its middle where that is not known."""
+    """Return where a clause's stress is, its middle if that is unknown."""
     return (segment.start + segment.end) / 2 if segment.peak is None else segment.peak
 
 
@@ -154,8 +153,8 @@ def _chosen(
     drawn: Collection[str],
     tags: Mapping[str, tuple[str, ...]],
 ) -> Iterator[AnyRequest]:
-    """Yield the gestures that go with a side's clauses: by what they should mean where any such has room,
-    else by name.
+    """Yield the gestures that go with a side's clauses: by what they should mean if any such gesture has
+    room, else by name.
     """
     graph = project.graphs["arms"]
     stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
@@ -179,24 +178,24 @@ def _chosen(
 
 
 def _fitting(every: Sequence[Action], tags: Collection[str]) -> Sequence[Action]:
-    """Return the gestures with a meaning; of plain ones all, whichever way they are plain."""
+    """Return the gestures with a meaning; for plain tags, all plain gestures."""
     if set(tags) <= set(PLAIN):
         return [a for a in every if set(PLAIN) & set(a.tags)] or every
     return [a for a in every if set(tags) <= set(a.tags)] or every
 
 
 def _meanings(project: Project) -> Counter[str]:
-    """Return the tags of the gestures of the stance that the arms begin in, and how many have each."""
+    """Return the tags of the gestures in the stance that the arms begin in, and how many have each."""
     graph = project.graphs["arms"]
     stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
     return Counter(tag for action in graph.of(stance, "gesture") for tag in action.tags)
 
 
 def _tags(meanings: Counter[str], text: str, drawn: float) -> tuple[str, ...]:
-    """Return what a clause's gesture is to mean: what one of its words says, else nothing in particular: a
-    beat, or what explains.
+    """Return what a clause's gesture should mean: what one of its words says, else nothing in particular: a
+    beat, or an explanation.
 
-    Gestures that mean something of their own would otherwise say what the words do not.
+    Otherwise gestures with a meaning of their own would say what the words do not.
     """
     words = [
         word
@@ -218,10 +217,10 @@ def drive(
     together: bool = True,
     more: Sequence[AnyRequest] = (),
 ) -> tuple[Performance, Plan]:
-    """Return what a side performs, and its plan: gestures whose stroke would miss its peak, since another
-    still plays, are taken back. Arguments as for `drive_side`; more: asked besides.
+    """Return what a side performs, and its plan. Gestures whose stroke would miss its peak because another
+    still plays are removed. The arguments are as for `drive_side`; `more` are additional requests.
 
-    The same asks performed again give the same plan.
+    Performing the same requests again gives the same plan.
     """
     asks = [*drive_side(conversation, side, project, line, heads, together), *more]
     plan = Plan(conversation.seed, 0.0)
@@ -238,7 +237,7 @@ def drive(
 
 
 def strokes(project: Project, plan: Plan) -> dict[str, float]:
-    """Return when the stroke of each gesture that was asked for is, seconds, by the ask's id."""
+    """Return the time of each requested gesture's stroke, in seconds, by the request's id."""
     out: dict[str, float] = {}
     for cue in plan.layers["arms"].cues:
         if cue.action.kind == "gesture":
@@ -249,8 +248,8 @@ def strokes(project: Project, plan: Plan) -> dict[str, float]:
 
 
 def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
-    """Return asks for gestures that came to nothing or miss their peak; of several in a row every other,
-    since without one the next may fit.
+    """Return requests for gestures that are not played or miss their peak; of several in a row every second
+    one, because without it the next may fit.
     """
     found = strokes(project, plan)
     out: set[str] = set()
@@ -265,8 +264,8 @@ def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
 
 
 def key_segments(segments: tuple[Segment, ...]) -> list[tuple[str, Segment]]:
-    """Return segments with a key of each that stays when others change: its kind and words, and how many such
-    came before.
+    """Return segments with a key for each that stays when others change: its kind and words, and how many
+    equal ones came before.
     """
     seen: Counter[str] = Counter()
     out = []
@@ -278,9 +277,7 @@ def key_segments(segments: tuple[Segment, ...]) -> list[tuple[str, Segment]]:
 
 
 def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]]:
-    """Yield from when on a side talks, listens or idles: who speaks, with short silences counted to whoever
-    spoke before.
-    """
+    """Yield from when on a side talks, listens or idles. Short silences count to the previous speaker."""
     own = speaking_spans(conversation.sides[side].segments)
     other = [
         span for n in others_of(conversation, side) for span in speaking_spans(conversation.sides[n].segments)
@@ -298,7 +295,7 @@ def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]
 
 
 def _gaps(busy: list[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:
-    """Yield stretches in which nothing is asked, at least REST long."""
+    """Yield stretches without requests, at least REST long."""
     at = 0.0
     for start, end in (*busy, (length, length)):
         if start - at >= REST:

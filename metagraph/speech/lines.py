@@ -1,4 +1,4 @@
-"""The lines a character says: their sound files and phones read into voices."""
+"""Read the lines that a character says: their sound files and phones become voices."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid, read_tex
 
 Array = NDArray[Any]
 
-FINE = 24000  # samples a second that a mouth is read from
+FINE = 24000  # samples a second from which the mouth is read
 _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
 
 def read_line_voice(audio: str | Path, phones: str | Path | None = None, channel: int | None = None) -> Voice:
-    """Read a line's sound and, where there are any, its phones or words from a Praat TextGrid. channel: which
-    of the sound's is the line's, from 0; None for all mixed. Raises FileError.
+    """Read a line's sound and, if there are any, its phones or words from a Praat TextGrid. `channel` is the
+    line's channel in the sound, from 0; None mixes all. Raises FileError.
     """
     return _voice(
         *read_sound(audio, channel), pieces_of(read_textgrid(phones)) if phones is not None else None
@@ -39,9 +39,7 @@ def read_line_voice(audio: str | Path, phones: str | Path | None = None, channel
 
 
 def read_spoken_voice(audio: str | Path, channel: int | None = None, words: Sequence[Word] = ()) -> Voice:
-    """Read a voice from its sound and, where there are any, the words that were transcribed. Raises
-    FileError.
-    """
+    """Read a voice from its sound and, if there are any, its transcribed words. Raises FileError."""
     samples, rate = read_sound(audio, channel, CONVERSATION_SECONDS, FINE)
     if not words:
         return _voice(samples, rate, None)
@@ -50,12 +48,12 @@ def read_spoken_voice(audio: str | Path, channel: int | None = None, words: Sequ
 
 
 def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
-    """Return the voice of a sound. told: what the mouth goes through, None to hear it."""
+    """Return the voice of a sound. `told` has the mouth's shapes; None finds them in the sound."""
     heard = analyse_sound(samples, rate)
     peaks, strengths = syllables(heard)
     pieces = guess_mouth_shapes(heard) if told is None else told
     pieces = [replace(p, end=min(p.end, heard.duration)) for p in pieces if p.start < heard.duration]
-    if told is not None:  # how open a vowel is, its loudness tells
+    if told is not None:  # a vowel's loudness shows how open it is
         loud = [float(np.interp(0.5 * (p.start + p.end), heard.times, heard.loud)) for p in pieces]
         pieces = [
             replace(p, strength=p.strength * (0.6 + 0.4 * x)) if p.viseme in _VOWELS else p
@@ -67,7 +65,7 @@ def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
 
 
 def voice_from_phones(phones: str | Path) -> Voice:
-    """Read a line that has no sound from its TextGrid alone; every vowel is a syllable. Raises FileError."""
+    """Read a line without sound from its TextGrid alone; every vowel is a syllable. Raises FileError."""
     grid = read_textgrid(phones)
     pieces = [p for p in pieces_of(grid) if p.start >= 0]
     duration = max([grid.end, *(p.end for p in pieces)])
@@ -88,12 +86,12 @@ def voice_from_phones(phones: str | Path) -> Voice:
     peaks = np.array([0.5 * (p.start + p.end) for p in vowels])
     long = np.array(
         [p.strength * min(1.0, 0.3 + 4 * (p.end - p.start)) for p in vowels]
-    )  # what is stressed is long
+    )  # stressed vowels are long
     return make_voice(pieces, duration, peaks, long)
 
 
 def read_line(line: Line, folder: Path) -> Voice | None:
-    """Return the voice of a line with sound or phones, paths relative to `folder`; None for one without.
+    """Return the voice of a line with sound or phones, with paths relative to `folder`; None for other lines.
     Raises FileError.
     """
     if line.audio:
@@ -107,8 +105,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
     """Read the sound of every line that has one; return the project with its voices, and what could not be
     read, in words.
 
-    A line whose phones are broken is read from its sound alone; one whose sound is broken speaks by its
-    letters.
+    A line with broken phones is read only from its sound; one with a broken sound speaks by its letters.
     """
     folder = Path(folder)
     voices: dict[str, Voice] = {}
@@ -122,7 +119,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
         for attempt in tries:
             try:
                 voice = read_line(attempt, folder)
-            except Exception as error:  # one bad sound never spoils a project
+            except Exception as error:  # a bad sound must not stop a project
                 why = unforeseen_error(folder / (line.audio or line.phones or ""), error)
                 note = phrase("line '{ident}': {why}", ident=ident, why=why.words)
                 if note not in notes:

@@ -1,3 +1,3 @@
-"""Proposals for labels: what a clip is, from its name, its motion, and what is labelled already; each with a
-reason in words.
+"""Propose labels for clips, from their names, their motion, and existing labels; each with a reason
+in words.
 """

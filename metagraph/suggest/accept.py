@@ -1,4 +1,4 @@
-"""Taking proposals over: the edit that places clips and makes the stances they need."""
+"""Accept proposals: the edit that places clips and makes the stances they need."""
 
 from __future__ import annotations
 
@@ -20,8 +20,10 @@ from metagraph.suggest.whole_body import CARRIER
 
 @dataclass(frozen=True)
 class AcceptedProposals:
-    """The project with proposals taken over. placed: clips by id. left: clip -> why it was not placed. held:
-    stance -> the moment of a clip it is held in, since none rests in it.
+    """The project with proposals accepted.
+
+    `placed` has the ids of placed clips. `left` says for each other clip why it was not placed. `held` has
+    the stances that are held in a moment of a clip because no clip rests in them.
     """
 
     project: Project
@@ -33,9 +35,9 @@ class AcceptedProposals:
 def accept(
     project: Project, found: Proposals, above: float = 0.0, clips: Collection[str] | None = None
 ) -> AcceptedProposals:
-    """Return the project with all proposals as sure as `above` placed, of some clips or all. Stances are made
-    of the clips that rest in them, or else held in a still moment of another; what belongs to a stance that
-    nothing shows is left, with the reason.
+    """Return the project with all proposals placed that have at least the confidence `above`, of some clips
+    or all. Stances are made of the clips that rest in them, else held in a still moment of another clip.
+    Clips of a stance that nothing shows are left out, with the reason.
     """
     wanted = [
         p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips
@@ -72,9 +74,9 @@ def accept(
 
 
 def _begun(before: Project, project: Project) -> Project:
-    """Return the project with layers that had no stance beginning in their most used one, and a base pose,
-    where none was chosen, of the arms' or else the body's: offsets are smallest against where a character
-    mostly is.
+    """Return the project with layers that had no stance beginning in their most used one and, if no base pose
+    was chosen, with that of the arms' or else the body's stance, because offsets are smallest relative to
+    where a character usually is.
     """
     for layer in LAYERS:
         graph = project.graphs[layer]
@@ -103,9 +105,9 @@ def _place(
     loops: Mapping[str, str],
     held: dict[str, RestMoment],
 ) -> Project:
-    """Place one clip. keys: place -> stance id, of those there are by now. loops: a stance's name -> a clip
-    that rests in it, on whatever layer: clips of the whole body rest on all. held: grows by stances that are
-    held in a moment of a clip. Raises EditError.
+    """Place one clip. `keys` maps places to the stance ids that exist by now. `loops` maps a stance's name to
+    a clip that rests in it, on any layer, because clips of the whole body rest on all. `held` gets the
+    stances that are held in a moment of a clip. Raises EditError.
     """
     if p.stance is None:
         raise EditError(phrase("nothing says which stance it belongs to"))

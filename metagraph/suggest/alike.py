@@ -1,10 +1,10 @@
-"""What is labelled already teaches what is like it: words of names and measures of motion, counted anew
-whenever they are asked.
+"""Learn from labelled clips what similar clips are: from words in names and measures of motion, counted again
+for every use.
 
-Words vote as in naive Bayes (each word's counts by label, one added to each), measures by their nearest
-neighbours. How sure a guess is comes from the labelled clips themselves: each is guessed from all the others,
-and of those that were guessed as firmly as this one, the share that was right is the confidence; less for a
-motion unlike any of them.
+Words vote as in naive Bayes (each word's counts by label, with one added to each), measures by their nearest
+neighbours. The confidence of a guess comes from the labelled clips themselves: each is guessed from all the
+others, and the confidence is the share of right guesses among those as definite as this one. It is lower for
+a motion unlike any of them.
 """
 
 from __future__ import annotations
@@ -24,16 +24,18 @@ from metagraph.suggest.estimate import Belief
 Array = NDArray[Any]
 
 NEIGHBOURS = 5
-LEAST = 4  # labelled clips below which nothing is said
-TRIALS = 400  # examples that are guessed from the others, to know how often that is right
-CLOSE = 0.1  # standard deviations below which a motion is like another whatever is usual
-WORDS_PART = 0.6  # how much words count beside motion, where there are both
+LEAST = 4  # labelled clips below which there is no guess
+TRIALS = 400  # examples that are guessed from the others, to measure how often that is right
+CLOSE = 0.1  # standard deviations below which a motion is similar in any case
+WORDS_PART = 0.6  # weight of words beside motion, if there are both
 
 
 @dataclass(frozen=True, eq=False)
 class LabelledExample:
-    """A labelled clip. words: of its name, small letters. measures `[d]`: of its motion, nan where one is not
-    known; may be empty. labels: field -> what it was labelled as.
+    """A labelled clip.
+
+    `words` are those of its name in lower case. `measures` `[d]` describe its motion; NaN is unknown, and
+    there may be none. `labels` maps each field to its label.
     """
 
     words: tuple[str, ...]
@@ -41,13 +43,13 @@ class LabelledExample:
     labels: Mapping[str, str]
 
     def to_data(self) -> dict[str, Any]:
-        """Return it as plain data, to be kept for later projects."""
+        """Return it as plain data, to keep it for later projects."""
         measures = [round(float(x), 6) if np.isfinite(x) else None for x in self.measures]
         return {"words": list(self.words), "measures": measures, "labels": dict(self.labels)}
 
 
 def example_from(data: Any) -> LabelledExample:
-    """Return the example plain data says. Raises ValueError naming what is wrong."""
+    """Read an example from plain data. Raises ValueError naming what is wrong."""
     if not isinstance(data, Mapping):
         raise ValueError("an example should be an object")
     words, measures, labels = data.get("words"), data.get("measures", []), data.get("labels")
@@ -69,8 +71,8 @@ def _number(x: object) -> bool:
 
 
 class Alike:
-    """A classifier of all fields that examples are labelled with. Examples whose measures have another length
-    than most are read by their words alone.
+    """Classifies all fields that examples are labelled with. For examples whose number of measures differs
+    from most, only the words count.
     """
 
     def __init__(self, examples: Sequence[LabelledExample]) -> None:
@@ -98,16 +100,16 @@ class Alike:
         for n, example in enumerate(self.examples):
             for word in set(example.words):
                 words.setdefault(word, []).append(n)
-        self._with = words  # word -> the places of the examples that have it, ascending
+        self._with = words  # word -> indices of the examples that have it, ascending
 
     @cached_property
     def fields(self) -> tuple[str, ...]:
-        """The fields examples are labelled with, in the order they are met."""
+        """Return the fields that examples are labelled with, in the order of their first use."""
         return tuple(dict.fromkeys(field for e in self.examples for field in e.labels))
 
     def guess(self, words: Sequence[str], measures: Array) -> dict[str, Belief[str]]:
-        """Return what a clip with these words and measures is taken for, by field; nothing of fields with too
-        few examples.
+        """Return a guess for a clip with these words and measures, by field. Fields with too few examples are
+        left out.
         """
         out = {}
         said, away = tuple(dict.fromkeys(words)), self._away(self._scale(measures))
@@ -125,8 +127,8 @@ class Alike:
         return out
 
     def _away(self, scaled: Array | None) -> Array | None:
-        """Return `[n]` how far each example's motion is from this one, infinite where it is not known; None
-        where this one is not.
+        """Return `[n]` the distance of each example's motion from this one, infinite if it is unknown; None
+        if this one is unknown.
         """
         if scaled is None:
             return None
@@ -155,7 +157,7 @@ class Alike:
 
 
 class _Field:
-    """One field's model: counts of words by label, and the labelled measures."""
+    """The model of one field: counts of words by label, and the labelled measures."""
 
     def __init__(self, alike: Alike, field: str, places: Sequence[int]) -> None:
         self.alike, self.places = alike, list(places)
@@ -166,7 +168,7 @@ class _Field:
         row = np.full(len(alike.examples), -1)
         row[self.places] = np.arange(len(self.places))
         self.rows: dict[str, Array] = {}  # word -> the rows of this field that have it
-        self.words: dict[str, Array] = {}  # word -> how many there are of each value
+        self.words: dict[str, Array] = {}  # word -> its count for each value
         for word, places in alike._with.items():
             mine = row[places]
             self.rows[word] = mine[mine >= 0]
@@ -175,8 +177,8 @@ class _Field:
             )
 
     def scores(self, words: Sequence[str], away: Array | None, leave: int | None) -> Array:
-        """Return the probability of each value. words: distinct. away: as `Alike._away`. leave: the row that
-        does not count.
+        """Return the probability of each value. `words` are distinct, `away` is as in `Alike._away`, and the
+        row `leave` does not count.
         """
         count = self.count.copy()
         own: set[str] = set()
@@ -219,9 +221,7 @@ class _Field:
         return np.asarray(votes / votes.sum())
 
     def best(self, scores: Array, words: Sequence[str]) -> tuple[str, float, str]:
-        """Return the likeliest value, how firmly it is held, and the example that speaks for it most, as
-        words.
-        """
+        """Return the most probable value, its share, and the words of the example that supports it most."""
         shares = scores / scores.sum()
         place = int(shares.argmax())
         shared = np.zeros(len(self.places), int)
@@ -234,8 +234,8 @@ class _Field:
         return self.values[place], float(shares[place]), named
 
     def familiar(self, away: Array | None) -> float:
-        """Return how far the examples can speak for a motion, 0..1: less, the farther the nearest is beyond
-        what is usual among them. A hundred labelled stances say nothing of the first gesture.
+        """Return how well the examples cover a motion, 0..1: less, the farther the nearest one is compared
+        with distances among them. A hundred labelled stances say nothing about the first gesture.
         """
         if away is None:
             return 1.0
@@ -244,7 +244,7 @@ class _Field:
 
     @cached_property
     def _usual(self) -> float:
-        """How far an example's nearest other is; of ten, nine are not farther."""
+        """Return the distance from an example to its nearest neighbour that nine of ten do not exceed."""
         moving = [n for n in self.places if self.alike._moving[n]]
         nearest = []
         for n in moving[:: max(1, -(-len(moving) // TRIALS))]:
@@ -257,8 +257,8 @@ class _Field:
 
     @cached_property
     def _trial(self) -> tuple[Array, Array]:
-        """Examples, all or an even choice, each guessed from all the others: how firmly `[n]`, and whether
-        rightly `[n]`.
+        """Return for examples, all or an even selection, each guessed from all the others: the share of the
+        guess `[n]`, and whether it is right `[n]`.
         """
         firm, right = [], []
         for n in range(0, len(self.places), -(-len(self.places) // TRIALS)):
@@ -271,8 +271,8 @@ class _Field:
         return np.array(firm), np.array(right)
 
     def confidence(self, firm: float) -> float:
-        """Return how often guesses held about as firmly were right; one of each outcome is added, so that few
-        examples stay unsure.
+        """Return how often guesses with about this share were right. One of each outcome is added, so few
+        examples give a low confidence.
         """
         firmness, right = self._trial
         order = np.argsort(np.abs(firmness - firm), kind="stable")[: max(8, len(firmness) // 4)]

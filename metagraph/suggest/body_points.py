@@ -1,9 +1,9 @@
-"""Where the points of a character are over time, seen from its own ground: what `traits` measures movement
-by.
+"""Compute where the points of a character are over time, relative to its own ground, for the measures of
+`traits`.
 
-Each layer's points are seen from what carries it: the arms from the chest, the head from the chest as the
-hips face, the body from between the feet. Lengths are in character heights, directions the character's own (x
-left, y up, z ahead).
+Each layer's points are relative to what carries it: the arms to the chest, the head to the chest as the hips
+face, the body to the ground between the feet. Lengths are in character heights, directions are the
+character's own (x left, y up, z ahead).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from metagraph.suggest.self_contact import SKULL
 
 Array = NDArray[Any]
 
-FINGERS = 5  # of a hand, looked at
+FINGERS = 5  # fingertips of a hand that are used
 AHEAD = 0.12  # heights from the middle of the head to its nose and its top, about
 NAMES: Mapping[Layer, tuple[str, ...]] = {
     "arms": tuple(
@@ -40,9 +40,11 @@ _LIMBS = ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
 
 @dataclass(frozen=True, eq=False)
 class PosedFigure:
-    """What of a skeleton is posed. keep: joints, every parent among them; places: role -> its place among
-    them. turned: role -> the turn that takes its axes to the character's. tips: side -> the places of the
-    fingertips, the farthest from the wrist first.
+    """The part of a skeleton that is posed.
+
+    `keep` has the joints, with every parent; `places` maps roles to indices among them. `turned` has the
+    rotation from each role's axes to the character's. `tips` has for each side the indices of the fingertips,
+    the farthest from the wrist first.
     """
 
     small: Skeleton
@@ -68,7 +70,7 @@ def pose_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Posed
                 tips[side] = sorted(
                     ends, key=lambda j: (-round(float(np.linalg.norm(at[j] - at[hand])), 5), j)
                 )[:FINGERS]
-    if len(wanted) < 3:  # no figure that we know: its joints from the root on, a handful
+    if len(wanted) < 3:  # not a known figure: use a few of its joints from the root on
         wanted |= {
             f"joint {j}": int(j)
             for j in np.unique(np.linspace(0, len(skeleton) - 1, min(len(skeleton), 12)).astype(int))
@@ -103,7 +105,7 @@ def pose_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Posed
 
 
 def _axes_at_rest(at: Mapping[str, Array]) -> Array:
-    """Return the turn whose axes are the character's left, up and ahead in its rest pose."""
+    """Return the rotation whose axes are the character's left, up and ahead in its rest pose."""
     across = leftward(at)
     top = at.get("head", at.get("upper_chest", at.get("chest")))
     up = np.array([0.0, 1.0, 0.0]) if top is None else top - at["hips"]
@@ -120,7 +122,7 @@ def _axes_at_rest(at: Mapping[str, Array]) -> Array:
 
 
 def leftward(at: Mapping[str, Array]) -> Array | None:
-    """Return from right to left, of hips and shoulders together; None without either."""
+    """Return the vector from right to left, of hips and shoulders together; None if both are missing."""
     pairs = [
         at[f"left_{part}"] - at[f"right_{part}"]
         for part in ("upper_leg", "upper_arm")
@@ -132,16 +134,18 @@ def leftward(at: Mapping[str, Array]) -> Array | None:
 def points_of(
     figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return name -> `[F, 3]` of all NAMES there are, each from its ground, and of what is in world space; in
-    heights.
+    """Return name -> `[F, 3]` of all NAMES that exist, each relative to its ground, and of the points in
+    world space; in heights.
     """
     posed = _Posed(figure, clips, frames)
     return posed.arms() | posed.head() | posed.body() | posed.fingers(), posed.world()
 
 
 class _Posed:
-    """A figure in frames of clips. places: `[F, J, 3]` of all its joints, p: `[F, 3]` of those it knows by
-    role, in heights. turns: `[F, J, 4]`. carrier: the role of what carries the arms.
+    """A figure in frames of clips.
+
+    `places` `[F, J, 3]` has all its joints, `p` those known by role `[F, 3]`, in heights. `turns` is `[F, J,
+    4]`. `carrier` is the role of the joint that carries the arms.
     """
 
     def __init__(self, figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]) -> None:
@@ -154,14 +158,14 @@ class _Posed:
         self.facing = facing_of(self.p, self.turns[:, figure.places["hips"]], figure.turned["hips"])
 
     def axis(self, role: str, direction: Sequence[float]) -> Array:
-        """Return where a direction of the character's points, as a joint has turned."""
+        """Return where one of the character's directions points after a joint has turned."""
         return rotation.rotate_vectors(
             self.turns[:, self.figure.places[role]],
             rotation.rotate_vectors(self.figure.turned[role], np.array(direction)).astype(np.float32),
         )
 
     def arms(self) -> dict[str, Array]:
-        """Return the arms' points, as what carries them sees them."""
+        """Return the arms' points, relative to the joint that carries them."""
         p, place, turned = self.p, self.figure.places[self.carrier], self.figure.turned[self.carrier]
         back = rotation.conjugate(rotation.multiply(self.turns[:, place], turned.astype(np.float32)))
         return {
@@ -171,7 +175,7 @@ class _Posed:
         }
 
     def head(self) -> dict[str, Array]:
-        """Return the head's points, over what carries it."""
+        """Return the head's points, relative to the joint that carries it."""
         if "head" not in self.p:
             return {}
         ahead, up = self.axis("head", (0, 0, 1)), self.axis("head", (0, 1, 0))
@@ -180,7 +184,7 @@ class _Posed:
         return {name: view_from(self.facing, v) for name, v in points.items()}
 
     def body(self) -> dict[str, Array]:
-        """Return the body's points, over the ground between the feet."""
+        """Return the body's points, relative to the ground between the feet."""
         p, facing = self.p, self.facing
         if "left_foot" in p and "right_foot" in p:
             ground = (p["left_foot"] + p["right_foot"]) / 2 * np.array([1, 0, 1], np.float32)
@@ -197,7 +201,7 @@ class _Posed:
         return out
 
     def fingers(self) -> dict[str, Array]:
-        """Return each hand's fingertips `[F, N, 3]`, as the hand sees them."""
+        """Return each hand's fingertips `[F, N, 3]`, relative to the hand."""
         out: dict[str, Array] = {}
         for side, some in self.figure.tips.items():
             wrist = f"{side}_hand"
@@ -208,7 +212,7 @@ class _Posed:
         return out
 
     def world(self) -> dict[str, Array]:
-        """Return what is in world space: where it faces, and hips, limbs and head."""
+        """Return what is in world space: the facing direction, and hips, limbs and head."""
         p = self.p
         limbs = {name: p[name] for name in p if name.endswith(_WORLD)}
         world = {"facing": self.facing, "hips": p["hips"], **limbs, "carrier": p[self.carrier]}
@@ -237,7 +241,7 @@ def _pose(figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]) -
 
 
 def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
-    """Return `[F, 2]` sine and cosine of where the hips and shoulders face, about y from +z."""
+    """Return `[F, 2]` sine and cosine of the direction that hips and shoulders face, about y from +z."""
     across = leftward(p)
     if across is None:
         across = rotation.rotate_vectors(
@@ -249,8 +253,8 @@ def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
 
 
 def view_from(facing: Array, v: Array) -> Array:
-    """Return vectors as seen by somebody who faces there. facing `[..., 2]`, see `facing_of`; v `[...,
-    3]`.
+    """Return vectors `v` `[..., 3]` as seen by somebody with the facing direction `[..., 2]`, see
+    `facing_of`.
     """
     s, c = facing[..., 0], facing[..., 1]
     return np.stack([c * v[..., 0] - s * v[..., 2], v[..., 1], s * v[..., 0] + c * v[..., 2]], axis=-1)

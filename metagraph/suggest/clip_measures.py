@@ -1,5 +1,5 @@
-"""Measures of a whole clip that discovering stances and guessing beside them share: how much it moves, which
-layer, how much it rests.
+"""Measure a whole clip, for discovering stances and for guessing: how much it moves, which layer, how much it
+rests.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ TYPICAL: Mapping[Layer, float] = {
     "head": 0.04,
     "body": 0.03,
 }  # heights that another stance is away, about
-HELD = 1.0  # seconds in which nothing moves, from which on that is a pose to stand in
-FLOWING = 0.2  # of its greatest speed that a clip has at its ends, from which on it is a loop that flows
-STRIDE = 0.05  # heights that each foot comes before the other in a walk, at least
-BREATHES = 0.008  # heights a second that arms move which hang on a chest that breathes, while the head moves
-SEVERAL = 8  # clips, from which on what the calmest of them have is known to be the recording's
-CALMEST = 0.05  # of the clips of a set, that move only as it trembles
-MORE = 1.5  # times what those have, up to which a short clip may tremble
-TREMBLE = 0.025  # heights a second; where the calmest clips move more, none of them rests
-# how often a guess from motion is right at most: it alone cannot tell a small gesture from a large fidget
+HELD = 1.0  # seconds without movement after which it is a pose to stand in
+FLOWING = 0.2  # of its greatest speed: a clip that is so fast at its ends is a flowing loop
+STRIDE = 0.05  # heights by which each foot passes the other in a walk, at least
+BREATHES = 0.008  # heights a second that arms on a breathing chest move while the head moves
+SEVERAL = 8  # clips from which on the movement of the calmest belongs to the recording
+CALMEST = 0.05  # share of the clips of a set that move only as it trembles
+MORE = 1.5  # times the movement of those, up to which a short clip may tremble
+TREMBLE = 0.025  # heights a second; if the calmest clips move more, none of them rests
+# how often a guess from motion is right at most: motion cannot tell a small gesture from a large fidget
 SUREST = 0.95
 
 
@@ -35,8 +35,8 @@ def energy(traits: Traits) -> float:
 
 
 def with_tremble(traits: Mapping[str, Traits]) -> dict[str, Traits]:
-    """Return traits that know what all clips of their set have: the tremble of a recording, and the breath,
-    tell nothing of one clip.
+    """Return traits with the movement that all clips of their set have: the tremble of a recording, and
+    breathing, say nothing about one clip.
     """
     moving = [t for t in traits.values() if t.face == 0 and not no_measures(t)]
     if len(moving) < SEVERAL:
@@ -49,8 +49,8 @@ def with_tremble(traits: Mapping[str, Traits]) -> dict[str, Traits]:
 
 
 def _beyond_tremble(traits: Traits) -> Mapping[str, float]:
-    """Return the energies without the set's, all of them where nothing is left: squares of speeds add up
-    where movements do not depend on each other.
+    """Return the energies without the set's tremble, or all of them if nothing is left. Squares of speeds are
+    subtracted, because those of independent movements add up.
     """
     beyond = {
         part: sqrt(max(0.0, e**2 - traits.tremble.get(part, 0.0) ** 2)) for part, e in traits.energy.items()
@@ -63,7 +63,7 @@ def no_measures(traits: Traits) -> bool:
 
 
 def resting(traits: Traits) -> float:
-    """Return how much speaks for a stance, a logit: little movement, for long, steady; ends that meet."""
+    """Return the logit of a stance: little movement, for a long time, steady, with ends that meet."""
     if traits.frames < 2 or traits.duration <= 0:
         return 3.0
     if no_measures(traits):  # held, or a clip of the face
@@ -72,8 +72,7 @@ def resting(traits: Traits) -> float:
     fastest = max(x.peak, 3 * traits.energy["fingers"], 1e-3)
     apart = max(y.loop_error / TYPICAL[layer] for layer, y in traits.layers.items())
     long = 3.0 * log(min(traits.duration / 3.5, 2.0))
-    # A short loop, whose end goes on as it begins, is played again and again: then it does not matter that it
-    # is short.
+    # The length of a short loop whose end continues its beginning does not matter, because it is repeated.
     flows = min(1.0, x.steady / FLOWING) if apart < 0.1 else 0.0
     small = 1.5 * max(0.0, 1 - x.extent / 0.08)
     return (
@@ -86,7 +85,7 @@ def resting(traits: Traits) -> float:
 
 
 def is_walk(traits: Traits) -> bool:
-    """Return whether a clip is a cycle of steps, on the spot or over the ground."""
+    """Return whether a clip is a cycle of steps, in place or over the ground."""
     body = traits.layers["body"]
     return (
         traits.stride > STRIDE
@@ -97,7 +96,7 @@ def is_walk(traits: Traits) -> bool:
 
 
 def layer_of(traits: Traits) -> Belief[Layer]:
-    """Return which layer a clip moves: the body where hips or legs do, else the arms, else the head."""
+    """Return which layer a clip moves: the body if hips or legs move, else the arms, else the head."""
     e, layers = _beyond_tremble(traits), traits.layers
     lower, upper = e["hips"] + e["legs"], e["head"] + e["trunk"]
     breath = BREATHES if upper > 3 * BREATHES else 0.0
@@ -134,8 +133,8 @@ def layer_of(traits: Traits) -> Belief[Layer]:
 
 
 def find_layer_moving_most(traits: Traits) -> Belief[Layer]:
-    """Return which layer of a recording of the whole body goes farthest, beside what is usual for a stance of
-    it: all of it sways, so that speeds tell little.
+    """Return which layer of a whole-body recording goes farthest, compared with a usual stance. Everything
+    sways in one, so speeds say little.
     """
     far = sorted(
         ((x.extent / TYPICAL[layer], layer) for layer, x in traits.layers.items() if x.names), reverse=True
@@ -157,5 +156,5 @@ def _goes_farthest(layer: Layer, length: float) -> str:
 
 
 def _tempered(ratio: float) -> float:
-    """Return how sure one is of a ratio above 1: half at 1, SUREST from 5 on."""
+    """Return the confidence for a ratio above 1: 0.5 at 1, SUREST from 5 on."""
     return 0.5 + (SUREST - 0.5) * min(1.0, log(max(ratio, 1.0)) / log(5.0))

@@ -1,4 +1,4 @@
-"""What an action has beside its labels, proposed: timing, the joints it moves, its stroke, how likely it is;
+"""Propose what an action has besides its labels: timing, the joints it moves, its stroke, its likelihood;
 each with a reason.
 """
 
@@ -25,17 +25,17 @@ from metagraph.suggest.traits import Traits
 
 Array = NDArray[Any]
 
-STILL = np.radians(2.0)  # that any joint turns at most in a moment that is still enough to stand in
+STILL = np.radians(2.0)  # the most that a joint turns in a moment that is still enough to stand in
 STAYS = 0.01  # heights that the hips move in it, at most
-LONGEST = 2.0  # seconds of such a moment
-MANY = 12  # clips that are looked through for one
+LONGEST = 2.0  # seconds: the longest such moment
+MANY = 12  # clips that are searched for one
 
 
 def with_timing(
     project: Project, proposals: Mapping[str, Proposal], cancelled: Callable[[], bool] | None = None
 ) -> dict[str, Proposal]:
-    """Return proposals with timing from the statistics of the user's own clips, where stances have loops to
-    measure against.
+    """Return proposals with timing from the statistics of the user's own clips, if there are loops of stances
+    to compare with.
     """
     roles = anatomy.project_roles(project)
     out = dict(proposals)
@@ -120,8 +120,8 @@ def _plays(kind: Kind) -> str:
 
 
 def with_moved_joints(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
-    """Return a proposal with the joints its clip moves: all its layer reaches, but of a clip of the face only
-    those.
+    """Return a proposal with the joints its clip moves: all that its layer reaches, or for a clip of only the
+    face, those of the face.
     """
     motion = project.clips[p.clip].motion
     if motion is None or traits is None:
@@ -148,7 +148,7 @@ def with_moved_joints(project: Project, p: Proposal, traits: Traits | None) -> P
 
 
 def with_stroke(project: Project, p: Proposal, motion: MotionGuess | None) -> Proposal:
-    """Return a gesture's proposal with its stroke, as `playback.timing.phases` finds it within the proposed
+    """Return a gesture's proposal with its stroke, found by `playback.timing.phases` within the proposed
     timing.
     """
     if p.kind.value != "gesture" or motion is None or project.clips[p.clip].motion is None:
@@ -179,8 +179,8 @@ def _fastest(layer: Layer, seconds: float) -> str:
 
 
 def with_likelihoods(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, Proposal]:
-    """Return proposals with likelihoods: numbered variants of one thing share one weight, so that many takes
-    of it do not crowd out the rest. Those placed before count along.
+    """Return proposals with likelihoods. Numbered variants of one action share one weight, so that many takes
+    of it do not crowd out the rest; those placed before are counted, too.
     """
     groups: dict[Any, list[str]] = defaultdict(list)
     placed: dict[Any, int] = defaultdict(int)
@@ -224,8 +224,8 @@ def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> t
 
 
 def rest_of(project: Project, place: StancePlace, proposals: Mapping[str, Proposal]) -> RestMoment | None:
-    """Return the stillest moment in which clips show a stance that none rests in: the first of one that
-    begins there, or the last of one that ends there; None where no clip has motion.
+    """Return the stillest moment in which clips show a stance that no clip rests in: the beginning of one
+    that starts there, or the end of one that ends there; None if no clip has motion.
     """
     ends: list[tuple[float, str, bool]] = []
     for p in proposals.values():
@@ -262,7 +262,7 @@ def rest_of(project: Project, place: StancePlace, proposals: Mapping[str, Propos
 
 
 def _still(motion: Clip, first: bool) -> float:
-    """Return for how many seconds a clip stays as it is at its beginning or end; at least a frame."""
+    """Return for how many seconds a clip stays as it is at its beginning or end; at least one frame."""
     if motion.frames < 2:
         return motion.duration
     count = min(motion.frames, int(LONGEST * motion.fps) + 1)

@@ -1,4 +1,4 @@
-"""A guess with how sure it is, and why."""
+"""Define a guess with its confidence and reason."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Belief(Generic[T]):
-    """value: what is believed. confidence: 0..1, how often such a guess is right. reason: in words, for
-    people, without a full stop: 'ends 0.4 cm from "arms crossed"'.
+    """A guess.
+
+    `confidence` is how often such a guess is right, 0..1. `reason` is for people, without a full stop: 'ends
+    0.4 cm from "arms crossed"'.
     """
 
     value: T

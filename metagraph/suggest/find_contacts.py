@@ -1,7 +1,7 @@
-"""Contacts found in motion: where a hand lies on the body, or goes along with it.
+"""Find contacts in motion: where a hand touches the body, or moves along with it.
 
-A hand touches a part while their surfaces are near each other and it moves slowly seen from that part. It is
-then put where the surfaces meet, so that a hand that hovers touches, and one that is inside comes out.
+A hand touches a part while their surfaces are near each other and it moves slowly relative to that part. It
+is then put where the surfaces meet, so that a hand that hovers touches, and a hand inside the part comes out.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ from metagraph.playback.posing.rigs import rigs_of
 Array = NDArray[Any]
 
 NEAR = 0.045  # of the arm's length: surfaces this near each other may touch
-SLOW = 0.35  # of the arm's length a second: a hand that stays goes no faster over what it touches
-SLIDING = 1.0  # and one that rubs it, no faster than this while it is TOUCHING
+SLOW = 0.35  # of the arm's length a second: a hand that stays is not faster over what it touches
+SLIDING = 1.0  # the same for a hand that rubs while it is TOUCHING
 TOUCHING = 0.02  # of the arm's length
-SHORTEST = 0.25  # seconds of a contact worth the name
-BRIDGED = 0.2  # seconds of a gap between two that are one
-AT_ENDS = 0.1  # seconds from an action's beginning or end, from where a contact goes on to it
+SHORTEST = 0.25  # seconds that a contact must last
+BRIDGED = 0.2  # seconds of a gap between two contacts that are one
+AT_ENDS = 0.1  # seconds: a contact this near an action's beginning or end continues to it
 STILL = (0.012, 6.0)  # metres, degrees: a hand that moves less stays
-THIN = (0.003, 2.0)  # metres, degrees: what keys are thinned out to
+THIN = (0.003, 2.0)  # metres, degrees: error to which keys are thinned
 DEEPEST = 0.002  # metres a hand may be inside what it touches
-ROUNDS = 12  # of bringing a hand to a surface and out of others
-HANGING = (0.77, 0.88)  # cosine of the way down, and how straight: an arm that hangs touches no leg or trunk
+ROUNDS = 12  # steps of bringing a hand to a surface and out of others
+HANGING = (0.77, 0.88)  # cosine to straight down, and how straight: an arm that hangs touches no leg or trunk
 
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
-    """A clip's frames: where joints are, and of each hand the gap to each part and whether it touches."""
+    """The frames of a clip: where joints and capsules are."""
 
     rig: ContactRig
     times: Array
@@ -54,7 +54,7 @@ class _Seen:
 
 
 def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
-    """Return the contacts of the hands an action moves, in order; none where its clip is missing or the
+    """Return the contacts of the hands that an action moves, in order; none if its clip is missing or the
     character has no arms.
     """
     motion = motion_of(project, action)
@@ -85,7 +85,7 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
 
 
 def with_contacts(project: Project, actions: Sequence[str]) -> Project:
-    """Return a project whose named actions have the contacts that are found in their motion."""
+    """Return a project whose named actions have the contacts found in their motion."""
     changes = {
         ident: {"contacts": find_contacts(project, action)}
         for ident in actions
@@ -95,7 +95,7 @@ def with_contacts(project: Project, actions: Sequence[str]) -> Project:
 
 
 def _parts(rig: ContactRig, side: int) -> dict[int, list[int]]:
-    """Return what a hand may touch: the place of a joint to the capsules that stand for it."""
+    """Return what a hand may touch: joint index -> the capsules that stand for it."""
     out: dict[int, list[int]] = {}
     for n, capsule in enumerate(rig.capsules):
         if capsule.arm != side:
@@ -131,7 +131,7 @@ def _of_hand(
         if not len(free) or len(free) < 0.6 * (k + 1 - i):
             continue
         i, k = i + int(free[0]), i + int(free[-1])
-        # Of two hands on each other one carries the other.
+        # Of two hands on each other, one carries the other.
         carried = rig.capsules[_parts(rig, side)[joint][0]].kind != OBSTACLE
         if carried and any(
             s.to == rig.hands[side] and s.start < times[k] and s.end > times[i] for s in known
@@ -148,7 +148,7 @@ def _of_hand(
 
 
 def _runs(on: Array, times: Array) -> list[tuple[int, int]]:
-    """Return first and last frame of each contact, near ones joined."""
+    """Return the first and last frame of each contact, with near ones joined."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], on.astype(int), [0]))))
     out: list[tuple[int, int]] = []
     for i, k in edges.reshape(-1, 2):
@@ -179,7 +179,7 @@ def _beside(seen: _Seen, joint: int, points: Array) -> Array:
 
 
 def _keys(seen: _Seen, side: int, joint: int, i: int, k: int) -> tuple[tuple[ContactKey, ...], str]:
-    """Return where a hand is on a joint from frame i to k, at the surface, and what of it touches."""
+    """Return where a hand is on a joint from frame i to k, at the surface, and which part of it touches."""
     hand = seen.rig.arms[side].hand
     frames = np.arange(i, k + 1)
     at = _beside(seen, joint, seen.at[:, hand])[frames]
@@ -210,7 +210,9 @@ def _keys(seen: _Seen, side: int, joint: int, i: int, k: int) -> tuple[tuple[Con
 
 
 def _thinned(times: Array, at: Array, turn: Array) -> list[int]:
-    """Return the frames that tell a path: others lie on the lines between them (Ramer, Douglas, Peucker)."""
+    """Return the frames that define a path: others lie on the lines between them (Ramer, Douglas,
+    Peucker).
+    """
     kept = {0, len(times) - 1}
     waiting = [(0, len(times) - 1)]
     while waiting:
@@ -232,8 +234,8 @@ def _thinned(times: Array, at: Array, turn: Array) -> list[int]:
 
 
 def _to_surface(seen: _Seen, side: int, joint: int, frame: int) -> tuple[Array, str]:
-    """Return by what a hand moves in the joint's space, so that it touches the part and is not inside, and
-    what of it touches.
+    """Return by what vector a hand moves in the joint's space to touch the part without being inside, and
+    which part of it touches.
     """
     rig = seen.rig
     own = [n for n, c in enumerate(rig.capsules) if c.arm == side and c.kind == HAND]
@@ -251,7 +253,7 @@ def _to_surface(seen: _Seen, side: int, joint: int, frame: int) -> tuple[Array, 
         touching = int(np.argmax(np.where(its, depth, -np.inf)))
         way = apart[touching] / max(gap[touching], 1e-9)
         deepest = int(np.argmax(depth))
-        if depth[deepest] > DEEPEST:  # out of this part, and of whatever else it is in there
+        if depth[deepest] > DEEPEST:  # out of this part, and of any other that it is in
             push = push + apart[deepest] / max(gap[deepest], 1e-9) * (depth[deepest] - DEEPEST)
         elif depth[touching] < -DEEPEST and turn < ROUNDS // 2:
             push = push + way * (depth[touching] + DEEPEST)
@@ -262,7 +264,7 @@ def _to_surface(seen: _Seen, side: int, joint: int, frame: int) -> tuple[Array, 
 
 
 def _place(seen: _Seen, side: int, capsule: int, way: Array, frame: int) -> str:
-    """Return what of a hand touches. way: from what it touches to the hand."""
+    """Return which part of a hand touches. `way` points from what it touches to the hand."""
     rig = seen.rig
     hand = rig.arms[side].hand
     if rig.capsules[capsule].joint != hand:
@@ -276,8 +278,8 @@ def _place(seen: _Seen, side: int, capsule: int, way: Array, frame: int) -> str:
 
 
 def with_measured_body(project: Project, character: CharacterMesh | None) -> Project:
-    """Return a project whose body has the measures of its character's mesh, of its skeleton without one that
-    is of that skeleton.
+    """Return a project whose body has the measures of its character's mesh, or of its skeleton if there is no
+    mesh on that skeleton.
     """
     fits = character is not None and character.skeleton == project.skeleton
     bare = replace(project, touch=msgspec.structs.replace(project.touch, parts=()))

@@ -1,8 +1,8 @@
-"""Which proposals somebody should look at: how likely each is wrong, and what makes it so.
+"""Decide which proposals a person should check: how likely each is wrong, and why.
 
-One answer for the window, the command line and the report. The chance comes from what the parts of a
-proposal say of themselves, weighed by a logistic regression over labelled and made sets:
-`tests/benchmarks/fit_flags.py` prints the weights, and how right they are on sets they were not fitted on.
+The window, the command line and the report all use this. The probability comes from the confidences within a
+proposal, weighted by a logistic regression over labelled and made sets. `tests/benchmarks/fit_flags.py`
+prints the weights, and how right they are on sets they were not fitted on.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from metagraph.suggest.proposal import Proposal
 
 Array = NDArray[Any]
 
-ALIKE = 0.3  # of a look's worth, that each other clip of the same words adds
-LOOK = 0.2  # chance of being wrong, from which on a look is worth its time
-LOST = 0.5  # confidence, below which a stance is hardly known at all
+ALIKE = 0.3  # share of a check's gain that each other clip with the same words adds
+LOOK = 0.2  # probability of being wrong; from this on a check is worth its time
+LOST = 0.5  # confidence below which a stance is almost unknown
 WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
 
 
 def proposal_measures(p: Proposal) -> Array:
-    """Return what a proposal says of itself `[7]`: 1, logits of kind, of layer and of where a transition ends
-    (0 of what is none), whether it is an act, a gesture or fidget, which are the hardest to tell apart,
-    whether its name says its kind, and whether its stance is hardly known.
+    """Return what a proposal says about itself `[7]`: 1, the logits of kind, of layer and of where a
+    transition ends (0 for other kinds), whether it is a gesture or fidget, which are the hardest to tell
+    apart, whether its name says its kind, and whether its stance is almost unknown.
 
-    How sure a stance is, whether the sources disagree, and whether it would jump said nothing more about
-    right and wrong on the sets that the weights were fitted on.
+    The confidence of the stance, disagreement of the sources and a visible jump said nothing more about right
+    and wrong on the sets that the weights were fitted on.
     """
     end = p.end_stance.confidence if p.end_stance is not None else 0.02
     return np.array(
@@ -53,14 +53,14 @@ def chance_wrong(p: Proposal) -> float:
 
 
 def needs_look(p: Proposal, left: Container[str] = ()) -> bool:
-    """Return whether somebody should look at a proposal: it may well be wrong, or was not placed. left: clips
-    that were not.
+    """Return whether a person should check a proposal: it is probably wrong, or was not placed. `left` has
+    the clips that were not placed.
     """
     return p.clip in left or chance_wrong(p) > LOOK
 
 
 def doubt(p: Proposal) -> str:
-    """Return how likely a proposal is wrong and what makes it so, in words."""
+    """Return how likely a proposal is wrong and why, in words."""
     chance = f"{chance_wrong(p):.0%} likely wrong"
     if p.conflicts:
         return f"{chance}: {p.conflicts[0]}"
@@ -78,8 +78,8 @@ def doubt(p: Proposal) -> str:
 
 
 def gain(p: Proposal) -> float:
-    """Return what a look at a proposal would gain: its chance of being wrong, more where others are called
-    alike, which a correction puts right along with it.
+    """Return what checking a proposal would gain: its probability of being wrong, more if other clips have
+    the same words, because a correction corrects them, too.
     """
     share = p.details.get("likelihood")
     alike = round(1 / share.value) if share is not None and share.value > 0 else 1

@@ -1,5 +1,5 @@
-"""Clips that are none of the four kinds: walks, turns in place, exercises, fights. They are left aside with a
-word, not forced into what a talking character does.
+"""Find clips that are none of the four kinds: walks, turns in place, exercises, fights. They are skipped with
+a reason, not forced into what a talking character does.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from metagraph.suggest.stances.known import Stances, likely
 from metagraph.suggest.traits import Traits
 from metagraph.suggest.words.names import NEVER, NameGuess
 
-# Words that mean nothing else; others may be a beat in another language, or in another mouth
+# Words with no other meaning; other words may mean a beat in another language, or to another person.
 SURELY = NEVER | {"dance", "dancing", "turn in place"}
 MANY = 0.2  # of a set's names that say so, from which on it is a game's
-POSE = 0.2  # seconds, below which a clip is a pose and no movement
-FAR = 0.5  # heights over the ground, from which on a clip that goes to no other stance goes away
-ROUND = 50.0  # degrees that one who goes to no other stance turns round
-EXERCISE = 0.14  # heights the hips go up and down, while the legs move fast
+POSE = 0.2  # seconds: a shorter clip is a pose and no movement
+FAR = 0.5  # heights over the ground: a clip that goes farther and to no other stance goes away
+ROUND = 50.0  # degrees that a clip turns round without going to another stance
+EXERCISE = 0.14  # heights the hips go up and down while the legs move fast
 FAST = 0.25  # heights a second the legs move
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
-PASSES = 0.8  # of the chance that a clip passes between two stances, from which on that is why it moves so
+PASSES = 0.8  # probability that a clip passes between two stances, from which on that explains its movement
 
 
 def _talks(traits: Traits | None, motion: MotionGuess | None) -> bool:
-    """Whether a clip moves as talkers do: from a stance and back, on the spot."""
+    """Return whether a clip moves as in conversation: from a stance and back, in place."""
     if traits is None or motion is None or not motion.begins or not motion.ends:
         return False
     (begins, one), (ends, other) = motion.begins[0], motion.ends[0]
@@ -39,8 +39,8 @@ def _talks(traits: Traits | None, motion: MotionGuess | None) -> bool:
 
 
 def _shared(traits: Traits, motion: MotionGuess | None, shapes: Stances | None) -> bool:
-    """Return whether a pose is one that other clips begin or end in, so that it may be a stance: in each
-    layer that has such poses, where the layers were recorded apart. Without motion nobody knows.
+    """Return whether other clips begin or end in a pose, so that it may be a stance; in each layer that has
+    such poses, if the layers were recorded separately. Without motion this is unknown, and True.
     """
     if motion is None:
         return True
@@ -67,9 +67,9 @@ def explain_skipping(
     usual: bool = True,
     shapes: Stances | None = None,
 ) -> str:
-    """Return why a clip is none of the four kinds, "" where it may be one. usual: whether many names of the
-    set speak of what talkers do not do, as those of a game do. shapes: the stances, where each layer was
-    recorded by itself.
+    """Return why a clip is none of the four kinds, "" if it may be one. `usual` says whether many names of
+    the set mean things that no one does while talking, as in a game. `shapes` are the stances, if each layer
+    was recorded on its own.
     """
     if traits is not None and traits.duration < POSE and not _shared(traits, motion, shapes):
         if traits.frames == 1:
@@ -112,8 +112,8 @@ def explain_skipping(
 
 
 def take_up_skipped(found: Proposals, clip: str) -> Proposals:
-    """Return the proposals with one clip that was left aside among them. Its stances are those of the same
-    names that there are now.
+    """Return the proposals with one skipped clip among them. Its stances are those that have the same names
+    now.
     """
     spare = found.spare[clip]
     places: dict[str, StancePlace] = dict(found.places)
@@ -147,8 +147,8 @@ def take_up_skipped(found: Proposals, clip: str) -> Proposals:
 
 
 def reasons(aside: Mapping[str, str]) -> list[tuple[str, list[str]]]:
-    """Return reasons in words with the clips they are of, the most frequent first; those that differ in
-    numbers alone are one, with the least and the greatest.
+    """Return reasons in words with their clips, the most frequent first. Reasons that differ only in numbers
+    are one, with the least and the greatest number.
     """
     groups: dict[str, list[str]] = {}
     for clip, why in aside.items():

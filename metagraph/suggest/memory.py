@@ -1,8 +1,8 @@
-"""What is learned between projects: what words in names mean, as the user changed and corrected it, and
-labelled clips of earlier projects.
+"""Keep what is learned between projects: what words in names mean, from the user's changes and corrections,
+and labelled clips of earlier projects.
 
-A value: every change gives a new one, so that a file can be read, changed and written whole. It is kept as
-plain data by whoever has a place for it; a program without one starts from `Memory()`.
+A Memory is a value: every change gives a new one, so that a file can be read, changed and written whole. It
+is kept as plain data by programs that have a place for it; others start from `Memory()`.
 """
 
 from __future__ import annotations
@@ -16,18 +16,20 @@ from metagraph.suggest.words.names import learn_correction
 from metagraph.suggest.words.patterns import Patterns, PatternsError, forget_learned
 
 VERSION: Final = 1
-PROJECTS: Final = 50  # of which examples are kept, the latest
-EXAMPLES: Final = 5000  # kept of all projects together
+PROJECTS: Final = 50  # projects whose examples are kept, the latest
+EXAMPLES: Final = 5000  # examples kept of all projects together
 
 
 class MemoryFormatError(ValueError):
-    """What was kept cannot be read; the message names the place of the first thing wrong."""
+    """Raised if kept data cannot be read; the message names the place of the first error."""
 
 
 @dataclass(frozen=True)
 class Memory:
-    """patterns: what words mean. examples: labelled clips by project key, any text that stays a project's
-    own, the latest last.
+    """What is learned between projects.
+
+    `patterns` say what words mean. `examples` has labelled clips by project key, any text that stays the same
+    for a project, the latest last.
     """
 
     patterns: Patterns = field(default_factory=Patterns)
@@ -36,16 +38,16 @@ class Memory:
     def corrected(
         self, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()
     ) -> Memory:
-        """Remember that a clip of this name was corrected. field: as `words_patterns.LEARNABLE`; value: a
-        stance's or end stance's name, tags as several, else the label. names: the batch it stands in. Raises
-        PatternsError for a field or value that there is not.
+        """Remember that a clip of this name was corrected. `field` is one of `words_patterns.LEARNABLE`.
+        `value` is the name of a stance or end stance, several tags, or a label. `names` are those of its
+        batch. Raises PatternsError for an unknown field or value.
         """
         return replace(self, patterns=learn_correction(self.patterns, name, field, value, names))
 
     def with_project(self, key: str, examples: Sequence[LabelledExample]) -> Memory:
-        """Return memory with a project's labelled clips in place of what it had of it; none forget it. The
-        oldest projects go when there are more than PROJECTS, or EXAMPLES of all; of one that is larger than
-        that an even choice is kept.
+        """Return memory with a project's labelled clips replaced; without clips, the project is forgotten.
+        The oldest projects are removed if there are more than PROJECTS, or more than EXAMPLES in total. A
+        larger project keeps an even selection.
         """
         kept = {k: v for k, v in self.examples.items() if k != key}
         if examples:
@@ -56,14 +58,14 @@ class Memory:
         return replace(self, examples=kept)
 
     def others(self, key: str) -> list[LabelledExample]:
-        """Return the examples of all projects but this one, whose own labels speak for themselves."""
+        """Return the examples of all other projects; this one's own labels are used directly."""
         return [example for k, some in self.examples.items() if k != key for example in some]
 
     def forgotten(
         self, words: bool = True, projects: bool = True, field: str | None = None, phrase: str | None = None
     ) -> Memory:
-        """Return memory without what was learned. words: from corrections, all or of one field or phrase; the
-        patterns the user wrote stay. projects: the examples, which go whole.
+        """Return memory without what was learned. `words` removes what was learned from corrections, all or
+        for one field or phrase; patterns that the user wrote stay. `projects` removes all examples.
         """
         narrow = field is not None or phrase is not None
         patterns = forget_learned(self.patterns, field, phrase) if words else self.patterns
@@ -79,8 +81,8 @@ class Memory:
 
     @staticmethod
     def from_json(data: Any) -> Memory:
-        """Read what `to_json` gave; missing parts are empty. Raises MemoryFormatError naming the first place
-        that is wrong.
+        """Read the result of `to_json`; missing parts are empty. Raises MemoryFormatError naming the first
+        wrong place.
         """
         if not isinstance(data, Mapping):
             raise MemoryFormatError(f"what was learned should be an object, not {type(data).__name__}")

@@ -1,7 +1,7 @@
-"""What a clip seems to be from its motion, beside known or discovered stances.
+"""Guess what a clip is from its motion, beside known or discovered stances.
 
-A transition ends elsewhere than it begins, a stance rests for long, a gesture goes out, holds and comes back
-with the head and trunk along, a fidget is small, busy, or touches the character itself.
+A transition ends elsewhere than it begins; a stance rests for long; a gesture goes out, holds and comes back,
+with the head and trunk moving along; a fidget is small, busy, or touches the character itself.
 """
 
 from __future__ import annotations
@@ -25,19 +25,15 @@ from metagraph.suggest.estimate import Belief
 from metagraph.suggest.stances.known import Shape, Stances, distance_from_stance, likely, rank_stances
 from metagraph.suggest.traits import LayerTraits, Traits
 
-# of the way of a clip that ends in no other stance, the share from end to end from which on it is a
+# of the way of a clip that ends in no other stance: the share from end to end from which on it is a
 # transition
 STRAIGHT = 0.65
-ELSEWHERE = (
-    0.1  # heights from the body's usual pose, from which on a resting clip is of the body: sitting, lying
-)
-LIFE = (
-    0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
-)
-SMALL = 0.12  # heights the hands go, below which they tell little
-ONLY = 0.85  # how sure the stance is at least where there is only one
-CLEAREST = 0.99  # how sure the stance is of a pose that lies in it
-ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
+ELSEWHERE = 0.1  # heights from the body's usual pose; resting clips beyond it are of the body: sitting, lying
+LIFE = 0.11  # share of hips and legs in the movement of a resting clip; above it the whole body breathes
+SMALL = 0.12  # heights the hands go, below which they say little
+ONLY = 0.85  # the least confidence of the stance if there is only one
+CLEAREST = 0.99  # the confidence of the stance for a pose that is in it
+ALONE = 0.5  # of the arms' energy, more on one side than on the other, from which on it is one-armed
 
 
 Likely = Sequence[tuple[float, Shape]]
@@ -45,10 +41,12 @@ Likely = Sequence[tuple[float, Shape]]
 
 @dataclass(frozen=True)
 class MotionGuess:
-    """What a clip seems to be; None where the motion says nothing. stance, end_stance: of a `Shape`; the end
-    stance of transitions only. runner_up: the next nearest stance. stroke: seconds. chances: of each kind,
-    adding up to 1. begins, ends: how likely each stance is that its first and last pose is of, the likeliest
-    first; what is left to 1 is none of them.
+    """What a clip seems to be; None where the motion says nothing.
+
+    `stance` and `end_stance` are `Shape`s; only transitions have an end stance. `runner_up` is the next
+    nearest stance. `stroke` is in seconds. `chances` has the probability of each kind, adding up to 1.
+    `begins` and `ends` say how likely the first and last pose are of each stance, the likeliest first; the
+    remainder to 1 is for none of them.
     """
 
     kind: Belief[Kind]
@@ -67,9 +65,9 @@ class MotionGuess:
 def guess(
     traits: Traits, stances: Stances, on: Layer | None = None, posture: LayerTraits | None = None
 ) -> MotionGuess:
-    """Return what a clip seems to be from its motion alone, beside known or discovered stances (none will
-    do). on: the layer it is of, where that is known from elsewhere. posture: its poses as the stances are
-    told, where that is not the layer's (see `whole_body`).
+    """Return what a clip seems to be from its motion alone, beside known or discovered stances; there may be
+    none. `on` is its layer, if that is known from elsewhere. `posture` has its poses in the form of the
+    stances, if that is not the layer's (see `whole_body`).
     """
     layer = _layer_beside(traits, stances) if on is None else Belief(on, SUREST, "")
     x = traits.layers[layer.value]
@@ -206,13 +204,13 @@ def _beside(
     words = said(_cm(near * cm), shape.name)
     if second is not None:
         words = phrase("{words}; the next nearest is {length} away", words=words, length=_cm(second * cm))
-    sure = max(chance, ONLY) if second is None else chance  # where there is only one, all are in it
+    sure = max(chance, ONLY) if second is None else chance  # if there is only one, all clips are in it
     return Belief(shape, min(CLEAREST * sure, layer.confidence), words)
 
 
 def _passing(begins: Likely, ends: Likely, otherwise: float) -> float:
-    """Return the chance that a clip passes from one stance to another. otherwise: the chance where nobody
-    knows whether its ends are of stances.
+    """Return the probability that a clip passes from one stance to another. `otherwise` is the probability if
+    it is unknown whether its ends are of stances.
     """
     same = sum(p * q for p, shape in begins for q, other in ends if shape is other)
     known = sum(p for p, _ in begins) * sum(p for p, _ in ends)
@@ -226,8 +224,8 @@ def _cm(length: float) -> str:
 
 
 def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
-    """Return which layer a clip moves; of one that rests, the only layer whose pose is not the usual one, if
-    there is.
+    """Return which layer a clip moves; for a resting clip, the only layer whose pose is unusual, if there is
+    one.
     """
     found = layer_of(traits)
     if is_walk(traits):
@@ -271,7 +269,7 @@ def _unusual(layer: Layer, length: float) -> str:
 
 
 def guess_limb_from_motion(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
-    """Return the arm that a clip needs; of a head that goes to one side, the side."""
+    """Return the arm that a clip needs, or the side to which a head goes."""
     if kind in ("stance", "transition"):
         both = (
             phrase("a stance uses both arms") if kind == "stance" else phrase("a transition uses both arms")
@@ -310,7 +308,7 @@ def guess_limb_from_motion(traits: Traits, layer: Layer, kind: Kind) -> Belief[L
 def _moving(
     x: LayerTraits, layer: Layer, starts: Sequence[tuple[float, Shape]], ends: Sequence[tuple[float, Shape]]
 ) -> float:
-    """Return how much speaks for a transition, a logit."""
+    """Return the logit of a transition."""
     if x.loop_error < 1e-6:
         return -10.0
     z = 3.0 * log(x.loop_error / (0.4 * TYPICAL[layer])) + 12.0 * (
@@ -325,13 +323,13 @@ def _moving(
             z -= 3.0
         if (
             there is here or near > 0.5 * TYPICAL[layer]
-        ):  # ends in no other stance: recorded ones seldom end quite as they begin
+        ):  # ends in no other stance: recorded clips seldom end exactly as they begin
             z = min(z, 3.0) + 20.0 * (x.loop_error / (x.loop_error + x.extent) - STRAIGHT)
     return z
 
 
 def _gesturing(traits: Traits, layer: Belief[Layer]) -> float:
-    """Return the chance that it is a gesture rather than a fidget, on whichever layer it is."""
+    """Return the probability that it is a gesture rather than a fidget, on any layer."""
     others = [x for x in LAYERS if x != layer.value and traits.layers[x].names]
     share = layer.confidence if others else 1.0
     chances = [_sigmoid(_telling(traits, x)) for x in others]
@@ -339,19 +337,19 @@ def _gesturing(traits: Traits, layer: Belief[Layer]) -> float:
 
 
 def _telling(traits: Traits, layer: Layer) -> float:
-    """Return how much speaks for a gesture rather than a fidget, a logit.
+    """Return the logit of a gesture rather than a fidget.
 
-    Hands that go far into the space before the body tell (McNeill, Hand and Mind, 1992, on gesture space);
-    the less they move, the more counts what head or body do.
+    Hands that go far into the space before the body mean a gesture (McNeill, Hand and Mind, 1992, on gesture
+    space). The less they move, the more head and body count.
     """
     small = 1 / (1 + (traits.layers["arms"].extent / SMALL) ** 3)
     return (1 - small) * _hands_telling(traits) + small * _rest_telling(traits, layer)
 
 
 def _hands_telling(traits: Traits) -> float:
-    """Return how much the hands speak for a gesture: a stroke in free space does, and so do raised shoulders;
-    hands on the own head, hair, arm or hand are self-adaptors (Ekman and Friesen, 1969), a weight that goes
-    from leg to leg is a postural shift, and what is done over and over is neither a stroke.
+    """Return the logit of a gesture from the hands. A stroke in free space and raised shoulders speak for
+    one. Hands on one's own head, hair, arm or hand are self-adaptors (Ekman and Friesen, 1969), a weight that
+    goes from leg to leg is a postural shift, and a repeated movement is no stroke either.
 
     The signs are the literature's. The sizes were set by hand on the sets of
     docs/contributing/labelling-figures.md.
@@ -385,10 +383,10 @@ def _hands_telling(traits: Traits) -> float:
 
 
 def _rest_telling(traits: Traits, layer: Layer) -> float:
-    """Return how much a clip in which the hands hardly move speaks for a gesture.
+    """Return the logit of a gesture for a clip in which the hands hardly move.
 
-    Weights for head and body: a logistic regression on the sample clips, rounded; lengths and speeds are in
-    typical ones.
+    The weights for head and body are those of a logistic regression on the sample clips, rounded; lengths and
+    speeds are relative to typical ones.
     """
     arms, head, body = (traits.layers[layer] for layer in ("arms", "head", "body"))
     bouts = max((arms, head, body), key=lambda y: y.peak).bouts
@@ -410,7 +408,7 @@ def _rest_telling(traits: Traits, layer: Layer) -> float:
 
 
 def _spread(x: LayerTraits, point: str, axis: int) -> float:
-    """Return how far a point goes along an axis, heights; 0 of a figure that lacks it."""
+    """Return how far a point goes along an axis, in heights; 0 for a figure without it."""
     if point not in x.names:
         return 0.0
     n = x.names.index(point)

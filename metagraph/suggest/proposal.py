@@ -1,5 +1,5 @@
-"""What is proposed for clips: values that name, motion and labels together give, that a person corrects, and
-that are taken over.
+"""Define what is proposed for clips: values made from name, motion and labels together, which a person
+corrects and accepts.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ _USUAL = Patterns()
 
 @dataclass(frozen=True)
 class RestMoment:
-    """A moment of a clip that is still enough to stand in. start, end: seconds of the clip. reason: in
-    words.
+    """A moment of a clip that is still enough to stand in.
+
+    `start` and `end` are seconds of the clip. `reason` is in words.
     """
 
     clip: str
@@ -31,8 +32,10 @@ class RestMoment:
 
 @dataclass(frozen=True)
 class StancePlace:
-    """A stance clips may belong to. key: the project's id, or one of its own for a stance that is not there
-    yet. shape: what it looks like, where that is known. rest: where it can be seen, when no clip rests in it.
+    """A stance that clips may belong to.
+
+    `key` is the project's id, or a key of its own for a stance that does not exist yet; `there` says whether
+    it exists. `shape` is what it looks like, if known. `rest` is where it can be seen if no clip rests in it.
     """
 
     key: str
@@ -45,11 +48,13 @@ class StancePlace:
 
 @dataclass(frozen=True)
 class Proposal:
-    """What a clip is taken for. stance, end_stance: of a `Place`, by key. conflicts: where sources disagree
-    firmly, in words. timing: as `Timing` has it, where the motion says; good: whether neither its beginning
-    nor its end would jump, None where nobody knows. details: what else an action has, by its name in the
-    model, where something is known: each of `timing`, `mask` (names of the only joints it moves, none for
-    all), `stroke` (seconds, of gestures) and `likelihood`. said: whether its name says its kind.
+    """What a clip seems to be.
+
+    `stance` and `end_stance` are keys of `StancePlace`s. `conflicts` say in words where sources firmly
+    disagree. `timing` has fields of `Timing` that the motion gives. `good` says whether neither its beginning
+    nor its end would jump, None if unknown. `details` has what else is known of the action, by its name in
+    the model: the fields of `timing`, `mask` (names of the only joints it moves, empty for all), `stroke`
+    (seconds, for gestures) and `likelihood`. `said` says whether its name says its kind.
     """
 
     clip: str
@@ -68,7 +73,7 @@ class Proposal:
 
     @property
     def confidence(self) -> float:
-        """How sure it is as a whole: as its least sure part that decides where it goes."""
+        """Return the confidence of the whole: that of its least certain part that decides where it goes."""
         parts = [
             self.kind.confidence,
             self.layer.confidence,
@@ -81,7 +86,7 @@ class Proposal:
 
 @dataclass(frozen=True)
 class Spare:
-    """What a clip that is left aside would be taken for. places: the stances this speaks of, by key."""
+    """What a skipped clip would be. `places` has the stances of the proposal, by key."""
 
     proposal: Proposal
     places: Mapping[str, StancePlace]
@@ -89,9 +94,11 @@ class Spare:
 
 @dataclass(frozen=True)
 class Proposals:
-    """Proposals by clip, and the stances they speak of, by key. aside: clip -> why it is none of the four
-    kinds: walks, turns, exercises. whole: whether one layer plays the whole body (see `whole_body`). spare:
-    for each clip that is left aside, what it would be if somebody wanted it all the same.
+    """Proposals by clip, and their stances by key.
+
+    `aside` says for each skipped clip why it is none of the four kinds: walks, turns, exercises. `whole` says
+    whether one layer plays the whole body (see `whole_body`). `spare` has for each skipped clip what it would
+    be if it were used after all.
     """
 
     proposals: Mapping[str, Proposal]
@@ -102,12 +109,12 @@ class Proposals:
 
     @property
     def doubtful(self) -> list[Proposal]:
-        """The proposals, the least certain first."""
+        """Return the proposals, the least certain first."""
         return sorted(self.proposals.values(), key=lambda p: (p.confidence, p.clip))
 
 
 def name_words(name: str) -> tuple[str, ...]:
-    """Return the distinct words of a name, in their order, small letters."""
+    """Return the distinct words of a name, in order, in lower case."""
     return tuple(dict.fromkeys(split_clip_name(name, _USUAL).words))
 
 

@@ -1,8 +1,8 @@
-"""Proposals for clips: what each is, from its name, its motion and what is labelled already, together; and
-the edit that takes them over.
+"""Propose what clips are, from their names, their motion and existing labels together. `accept` is the edit
+that places them.
 
-Stances come first: those the project has, those found in the motion, those that names speak of. A name's word
-belongs to the stance in which the clips it names begin; then every clip is asked where it belongs.
+Stances come first: those of the project, those found in the motion, those in names. A word in names belongs
+to the stance in which the clips with that word begin. Then each clip is assigned to a stance.
 """
 
 from __future__ import annotations
@@ -69,13 +69,13 @@ __all__ = [
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
-TOLD = 0.7  # of how sure a name is of its stance, below which it does not say what stances there are
-LEADS = 0.8  # of how sure the motion is that a clip called after a stance goes there
+TOLD = 0.7  # confidence of a name's stance, below which it does not define stances
+LEADS = 0.8  # confidence of the motion that a clip named after a stance goes there
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 
 
 def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[LabelledExample]:
-    """Return what a project's labelled clips teach."""
+    """Return the examples that a project's labelled clips give."""
     out = []
     for action in project.actions():
         entry = project.clips.get(action.clip)
@@ -87,7 +87,7 @@ def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[Labelled
 
 
 def measures_of(traits: Traits | None) -> Any:
-    """Return a clip's motion as numbers that clips of any character share."""
+    """Return a clip's motion as numbers that are comparable between characters."""
     if traits is None:
         return np.zeros(0)
     rows: list[float] = [
@@ -106,7 +106,7 @@ def measures_of(traits: Traits | None) -> Any:
 
 
 def waiting(project: Project) -> list[str]:
-    """Return the clips that are not placed yet; one that only lends a stance a still moment is not."""
+    """Return the clips that are not placed yet, including those that only lend a stance a still moment."""
     return [
         clip
         for clip in project.clips
@@ -133,16 +133,16 @@ def propose(
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Proposals:
-    """Return proposals for clips, those that are not placed yet when None. examples: of earlier projects.
-    sources: which may speak.
+    """Return proposals for clips; None means those that are not placed yet. `examples` are from earlier
+    projects. `sources` are those that may be used.
 
-    Never raises for what clips are; one of which nothing is known is left out.
+    Never raises because of a clip's content; a clip of which nothing is known is left out.
     """
     chosen = waiting(project) if clips is None else [c for c in clips if c in project.clips]
     seen = traits_of(project, cancelled, progress) if {"motion", "learned"} & set(sources) else {}
     traits = with_tremble(seen)
-    # All names together tell the stances, also those of clips that are placed: what a number means is not
-    # forgotten while somebody goes through them.
+    # All names together give the stances, also those of placed clips, so that the meaning of a number is not
+    # forgotten while a person goes through the proposals.
     names = read_names([x.name for x in project.clips.values()], patterns) if "name" in sources else {}
     moving = "motion" in sources
     mine = {c: traits[c] for c in chosen if c in traits}
@@ -154,7 +154,7 @@ def propose(
     }
     fresh = not any(True for _ in project.actions())
     whole = moving and (is_whole_body_carried(project) or (fresh and are_whole_body_recordings(mine, begun)))
-    standing = {c: t for c, t in mine.items() if called[c].other is None}  # where fights begin nobody stands
+    standing = {c: t for c, t in mine.items() if called[c].other is None}  # nobody stands where fights begin
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
@@ -230,8 +230,8 @@ def _going_away(out: Mapping[str, Proposal], traits: Mapping[str, Traits]) -> di
 
 
 def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:
-    """Return what a name says of a clip that is called after a stance alone and yet goes from one pose to
-    another: the stance is where it leads, "Sitting" is how somebody sits down.
+    """Return the name's guess for a clip that is named only after a stance and yet goes from one pose to
+    another: the stance is its end, so "Sitting" means sitting down.
     """
     named = said.kind is not None and said.kind.value == "stance" and said.end_stance is None
     if not named or said.stance is None or motion is None:
@@ -250,7 +250,7 @@ def _shapes(
     called: Mapping[str, NameGuess],
 ) -> Mapping[Layer, Sequence[Shape]]:
     """Return the stances of each layer as the project's clips show them, else those found among `mine`,
-    parted where names and poses part alike.
+    divided where names and poses both divide.
     """
     if whole:
         every = {c: with_whole_body(t) if t.face == 0 else t for c, t in traits.items()}
@@ -289,7 +289,7 @@ def _unknown(there: Sequence[Shape], found: Sequence[Shape]) -> list[Shape]:
 def _ends(
     traits: Mapping[str, Traits], layer: Layer, called: Mapping[str, NameGuess], whole: bool
 ) -> list[tuple[str, float, Any, str]]:
-    """Return the ends of a layer's clips that names speak of."""
+    """Return the ends of a layer's clips that are named."""
     out = []
     for clip, t in traits.items():
         said, x = called[clip], t.layers[layer]
@@ -306,7 +306,7 @@ def _ends(
 
 
 def _layer_of(each: ClipEvidence) -> Agreed[Layer] | None:
-    """Return which layer a clip is for: the carrier's where the whole body was recorded together."""
+    """Return which layer a clip is for: the carrier's if the whole body was recorded together."""
     if each.posture is not None:
         why = phrase("the whole body was recorded together, so this layer plays all of it")
         return Agreed(Belief(CARRIER, 0.95, why))
@@ -314,8 +314,8 @@ def _layer_of(each: ClipEvidence) -> Agreed[Layer] | None:
 
 
 def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, StancePlace]) -> dict[str, Proposal]:
-    """Return proposals, those that nothing says the stance of in the stance most clips of their layer are in;
-    one is made where there is none.
+    """Return proposals. Those without a stance get the stance that most clips of their layer are in; one is
+    made if there is none.
     """
     used = Counter(p.stance.value for p in proposals.values() if p.stance is not None)
     out = {}
@@ -342,7 +342,7 @@ def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, StancePlace]
 def _spare(
     proposals: Mapping[str, Proposal], others: Iterable[ClipEvidence], places: StancePlaces
 ) -> dict[str, Spare]:
-    """Return what clips that are left aside would be taken for; they say nothing of the stances there are."""
+    """Return what skipped clips would be. They do not define stances."""
     by_key = dict(places.by_key)
     mine = {each.clip: _proposal(each, places, True) for each in others}
     known = {clip: p for clip, p in mine.items() if p is not None}
@@ -358,7 +358,7 @@ def _spare(
 def _with_rests(
     project: Project, places: Mapping[str, StancePlace], proposals: Mapping[str, Proposal]
 ) -> dict[str, StancePlace]:
-    """Return the stances, those that no clip rests in with a moment of some clip that shows them."""
+    """Return the stances. Those that no clip rests in get a moment of a clip that shows them."""
     shown = {p.stance.value for p in proposals.values() if p.kind.value == "stance" and p.stance is not None}
     names = {plain_stance_name(places[key].name) for key in shown}
     return {
@@ -370,7 +370,9 @@ def _with_rests(
 
 
 def _proposal(each: ClipEvidence, places: StancePlaces, anyway: bool = False) -> Proposal | None:
-    """Return what is proposed for a clip; nothing where nothing says kind or layer, unless anyway."""
+    """Return what is proposed for a clip; None if neither its kind nor its layer is known, unless
+    `anyway`.
+    """
     kind, layer = each.agreed("kind", len(KINDS)), _layer_of(each)
     if kind is None and layer is None and not anyway:
         return None

@@ -1,8 +1,8 @@
-"""A person going through proposals: what they correct, what is still open, and how long the rest will take.
+"""Let a person review proposals: what they correct, what is still open, and how long the rest will take.
 
-Stances come first, the most used before the others, since all else hangs on them; then those at which a
-look gains most. A correction is kept as it was meant - a stance by its name - so that it outlives proposals
-that are made anew.
+Stances come first, the most used before the others, because everything else depends on them; then the clips
+for which a check gains most. A correction is kept as it was meant, a stance by its name, so that it still
+holds when proposals are made again.
 """
 
 from __future__ import annotations
@@ -31,38 +31,40 @@ DECIDING: tuple[Field, ...] = (
     "stance",
     "end_stance",
     "limb",
-)  # what has a few values to choose from
+)  # fields with a few values to choose from
 WORDS: tuple[Field, ...] = ("kind", "layer", "limb", "tags")
 SAID = phrase("you chose it")
-USUAL = 6.0  # seconds a clip takes somebody, until some were decided
-PAUSE = 60.0  # seconds after which somebody was away, not deciding
-REMEMBERED = 25  # decisions the pace is taken from
+USUAL = 6.0  # seconds that a clip takes at first, before the pace is known
+PAUSE = 60.0  # seconds: a longer pause is an absence, not a decision
+REMEMBERED = 25  # latest decisions that the pace is computed from
 
 
 @dataclass(frozen=True)
 class Review:
-    """found: the proposals with what was said in them. said: clip -> field -> value; stances are told by
-    name, tags as a tuple, timing as `Timing` has it.
+    """The proposals with a person's corrections.
+
+    `found` has the corrected proposals. `said` is clip -> field -> value: stances by name, tags as a tuple,
+    timing as fields of `Timing`.
     """
 
     found: Proposals
     said: Mapping[str, Mapping[Field, Any]] = field(default_factory=dict)
 
     def tell(self, clip: str, name: Field, value: Any) -> Review:
-        """Correct one field of a clip's proposal. A stance nobody spoke of before becomes a new one."""
+        """Correct one field of a clip's proposal. A stance with a new name becomes a new one."""
         old = self.said.get(clip, {})
         if name == "timing":
             value = {**old.get("timing", {}), **value}
         if name == "layer" and value != self.found.proposals[clip].layer.value:
             old = {
                 k: v for k, v in old.items() if k not in ("stance", "end_stance")
-            }  # they were of the other layer
+            }  # they belong to the other layer
         said = {**old, name: value}
         return Review(_corrected(self.found, clip, said), {**self.said, clip: said})
 
     def anew(self, found: Proposals) -> Review:
-        """Return the review of other proposals for the same clips; what was said stays said. Clips that are
-        not among them keep theirs.
+        """Return the review of new proposals for the same clips, with the corrections kept. Clips that are
+        not among them keep their proposals.
         """
         mine = {c: p for c, p in self.found.proposals.items() if c not in found.proposals}
         found = replace(
@@ -78,10 +80,11 @@ class Review:
         return Review(found, self.said)
 
     def settled(self, project: Project) -> Review:
-        """Return the review with the stances that have been made meanwhile as the project's, those that are
-        gone as ones to be made.
+        """Return the review with stances that were made in the meantime as the project's, and those that were
+        removed as ones to be made.
 
-        To be called after every change of the project: an id that is gone may come again for another stance.
+        Call it after every change of the project, because the id of a removed stance may be used again for
+        another one.
         """
         moved: dict[str, str] = {}
         places: dict[str, StancePlace] = {}
@@ -109,9 +112,9 @@ class Review:
         return Review(replace(self.found, proposals=proposals, places=places), self.said)
 
     def order(self) -> list[str]:
-        """Return the clips in the order they are best looked at: stances first, the most used before the
-        others, since a layer begins in its first and the first gives the base pose; then those at which a
-        look gains most.
+        """Return the clips in the best order to review: stances first, the most used before the others,
+        because a layer begins in its first stance and the first gives the base pose; then those for which a
+        check gains most.
         """
         used = Counter(p.stance.value for p in self.found.proposals.values() if p.stance is not None)
 
@@ -128,8 +131,8 @@ class Review:
         return [p.clip for p in sorted(self.found.proposals.values(), key=rank)]
 
     def choices(self, clip: str, name: Field) -> list[tuple[Any, str]]:
-        """Return what a deciding field may be: (value to tell, words). Stances the project has come first,
-        then the most spoken of.
+        """Return the values of a deciding field, as pairs of value and words. The project's stances come
+        first, then the most used ones.
         """
         p = self.found.proposals[clip]
         if name == "kind":
@@ -150,14 +153,14 @@ class Review:
         ]
 
     def value(self, clip: str, name: Field) -> Any:
-        """Return what a deciding field is now, as `choices` names it; None where nothing is known."""
+        """Return the current value of a deciding field, as in `choices`; None if it is unknown."""
         belief = getattr(self.found.proposals[clip], name)
         if belief is None:
             return None
         return self.found.places[belief.value].name if name in ("stance", "end_stance") else belief.value
 
     def doubtful(self, clip: str) -> Field:
-        """Return the deciding field that is least sure."""
+        """Return the least certain deciding field."""
         p = self.found.proposals[clip]
         beliefs: dict[Field, Belief[Any] | None] = {
             n: getattr(p, n) for n in DECIDING if self.choices(clip, n)
@@ -165,8 +168,8 @@ class Review:
         return min(beliefs, key=lambda n: belief.confidence if (belief := beliefs[n]) is not None else -1.0)
 
     def take(self, project: Project, clips: Collection[str], above: float = 0.0) -> AcceptedProposals:
-        """Return the project with clips placed as proposed, and resting clips along with them that show a
-        stance they need and that is not there yet. A clip that is placed already is placed anew.
+        """Return the project with clips placed as proposed, together with resting clips for the stances they
+        need that do not exist yet. A clip that is placed already is placed again.
         """
         known = [c for c in clips if c in self.found.proposals and c in project.clips]
         open_ = set(waiting(project))
@@ -181,19 +184,21 @@ class Review:
         if (again and taken.left) or not set(wanted) & set(taken.placed):
             return AcceptedProposals(
                 project, (), taken.left
-            )  # nothing comes along for nothing, and what was placed is not lost
+            )  # nothing is placed for nothing, and nothing placed is lost
         return taken
 
     def timed(self, project: Project, clip: str) -> Proposal:
-        """Return a clip's proposal with the times the statistics give it as what it is taken for now, and
-        those that were said.
+        """Return a clip's proposal with the times that the statistics give it as what it is now, and with
+        corrected times.
         """
         p = with_timing(project, self.found.proposals)[clip]
         said = self.said.get(clip, {}).get("timing")
         return replace(p, timing={**p.timing, **said}) if said else p
 
     def with_times(self, p: Proposal) -> Review:
-        """Return the review with what `timed` found, unless the clip is taken for something else by now."""
+        """Return the review with what `timed` found, unless the clip has been changed to something else in
+        the meantime.
+        """
         mine = self.found.proposals.get(p.clip)
         if mine is None or _decides(mine) != _decides(p):
             return self
@@ -207,8 +212,8 @@ class Review:
         return Review(replace(self.found, proposals={**self.found.proposals, p.clip: mine}), self.said)
 
     def _resting(self, project: Project, clip: str) -> list[str]:
-        """Return the surest unplaced clips that rest in stances this clip needs and the project does not
-        have.
+        """Return the most certain unplaced clips that rest in stances that this clip needs and the project
+        does not have.
         """
         p = self.found.proposals[clip]
         out, open_ = [], set(waiting(project))
@@ -237,7 +242,7 @@ def _moved(belief: Belief[str] | None, moved: Mapping[str, str]) -> Belief[str] 
 
 
 def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Proposals:
-    """Return the proposals with what was said of one clip."""
+    """Return the proposals with the corrections of one clip."""
     p, places = found.proposals[clip], dict(found.places)
     words: dict[str, Any] = {name: Belief(said[name], 1.0, SAID) for name in WORDS if name in said}
     p = replace(p, **words)
@@ -255,7 +260,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
     if "stance" in said:
         stance = Belief(place(said["stance"]), 1.0, SAID)
     elif stance is not None and places[stance.value].layer != layer:
-        # The other layer's stance of the same name, if there is one; else where most of its clips are.
+        # The other layer's stance of the same name, if there is one; else the one with most of its clips.
         name = plain_stance_name(places[stance.value].name)
         same = next(
             (k for k, x in places.items() if x.layer == layer and plain_stance_name(x.name) == name), None
@@ -281,7 +286,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
         p = replace(p, limb=Belief("both", 0.9, phrase("only arms have sides")))
     was = found.proposals[clip]
     if (p.kind.value, p.layer.value, stance and stance.value, end and end.value) != _decides(was):
-        # Its times were of what it is not; `Review.timed` finds those it has as what it is.
+        # Its times were for what it is not; `Review.timed` finds the right ones.
         p = replace(
             p,
             timing={},
@@ -291,7 +296,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
         )
     if "timing" in said:
         p = replace(p, timing={**p.timing, **said["timing"]})
-    # What sources disagreed about is decided.
+    # The disagreement of the sources is decided.
     conflicts = () if {"kind", "stance", "end_stance", "layer"} & set(said) else p.conflicts
     p = replace(p, stance=stance, end_stance=end, conflicts=conflicts)
     return replace(found, proposals={**found.proposals, clip: p}, places=places)
@@ -302,26 +307,26 @@ def _decides(p: Proposal) -> tuple[Any, ...]:
 
 
 class ReviewPace:
-    """How long decisions take somebody, and what is left of the work."""
+    """Measures how long decisions take, and estimates the rest of the work."""
 
     def __init__(self) -> None:
         self.seconds: list[float] = []
 
     def decided(self, seconds: float) -> None:
-        """Count a decision; a longer pause was none."""
+        """Count a decision. A pause longer than PAUSE is not counted."""
         if seconds <= PAUSE:
             self.seconds.append(seconds)
 
     @property
     def known(self) -> bool:
-        """Whether enough was decided to tell."""
+        """Return whether there were enough decisions for an estimate."""
         return len(self.seconds) >= 3
 
     @property
     def each(self) -> float:
-        """Seconds a clip takes lately."""
+        """Return the seconds that a clip takes lately."""
         return median(self.seconds[-REMEMBERED:]) if self.known else USUAL
 
     def left(self, clips: int) -> float:
-        """Return seconds of work that are left with so many clips."""
+        """Return the seconds of work that remain for this number of clips."""
         return clips * self.each

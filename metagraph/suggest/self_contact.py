@@ -1,6 +1,6 @@
-"""Where hands meet their own body: what tells a self-adaptor from a gesture in free space.
+"""Measure where hands touch their own body, which distinguishes a self-adaptor from a gesture in free space.
 
-Body parts are capsules and a sphere about the joints, sized in heights of the character, so that no mesh is
+Body parts are capsules and a sphere about the joints, sized in heights of the character, so no mesh is
 needed. A hand is the line from its wrist to its longest finger.
 """
 
@@ -18,16 +18,18 @@ Array = NDArray[Any]
 # Heights: about half of what people measure there (a head is 0.09 wide and 0.11 deep, a chest 0.17 by 0.12).
 HEAD, TRUNK, ARM, THIGH = 0.06, 0.075, 0.022, 0.045
 SKULL = 0.06  # heights from the joint of the head to the middle of the skull
-TOUCHES = 0.03  # heights between hand and surface, from which on they touch: bones and takes are not exact
-HANDLES = 0.05  # the same of a hand at its other arm: sleeves and watches lie upon it
-CLEAR = 0.02  # heights that a hand must be farther off at first than it comes, so that the touch is new
+TOUCHES = 0.03  # heights between hand and surface at which they touch, because bones and takes are not exact
+HANDLES = 0.05  # the same for a hand at the other arm, which may have sleeves or a watch
+CLEAR = 0.02  # heights that a hand must come nearer than it is at first, so that the touch is new
 
 
 @dataclass(frozen=True)
 class SelfContact:
-    """Shares of the time, 0..1. head, trunk, arm: that a hand touches its own head, trunk, or other arm or
-    hand, where it did not at first. kept: that the hand that moves goes on touching what it touched at first.
-    rub: heights a second that a hand moves on what it newly touches.
+    """How much hands touch the own body, as shares of the time, 0..1.
+
+    `head`, `trunk` and `arm`: a hand touches the own head, trunk, or other arm or hand, and did not at first.
+    `kept`: the moving hand keeps touching what it touched at first. `rub` is in heights a second: how fast a
+    hand moves on what it newly touches.
     """
 
     head: float = 0.0
@@ -41,8 +43,8 @@ NOTHING = SelfContact()
 
 
 def self_contact(world: Mapping[str, Array], seconds: float) -> SelfContact:
-    """Return how a clip's hands touch their own body. world: name -> `[F, 3]` in heights: hands, tips, lower
-    and upper arms, head and skull, hips, thighs. seconds: from frame to frame.
+    """Return how a clip's hands touch their own body. `world` is name -> `[F, 3]` in heights: hands, tips,
+    lower and upper arms, head and skull, hips, thighs. `seconds` is the time from frame to frame.
     """
     share = {"head": 0.0, "trunk": 0.0, "arm": 0.0}
     kept, rub = 0.0, 0.0
@@ -66,7 +68,7 @@ def self_contact(world: Mapping[str, Array], seconds: float) -> SelfContact:
 
 
 def _goes(world: Mapping[str, Array], side: str) -> float:
-    """Return how far a hand goes beside its shoulder, heights."""
+    """Return how far a hand moves relative to its shoulder, in heights."""
     hand, shoulder = world.get(f"{side}_hand"), world.get(f"{side}_upper_arm")
     if hand is None or shoulder is None:
         return 0.0
@@ -74,7 +76,9 @@ def _goes(world: Mapping[str, Array], side: str) -> float:
 
 
 def _gaps(world: Mapping[str, Array], other: str, points: Array) -> list[tuple[str, Array, Array]]:
-    """Return (part, `[F]` how far the hand is from its surface, `[F, 3]` where the hand is beside it)."""
+    """Return (part, `[F]` the distance of the hand from its surface, `[F, 3]` the hand's position relative to
+    it).
+    """
     out = []
     if (skull := world.get("skull")) is not None:
         out.append(("head", _nearest(points, skull, skull) - HEAD, points[2] - skull))
@@ -94,7 +98,7 @@ def _gaps(world: Mapping[str, Array], other: str, points: Array) -> list[tuple[s
 
 
 def _nearest(points: Array, a: Array, b: Array) -> Array:
-    """Return `[F]` how far the nearest of points `[P, F, 3]` is from the line a-b, each `[F, 3]`."""
+    """Return `[F]` the distance of the nearest of points `[P, F, 3]` from the line a-b, `[F, 3]` each."""
     line = b - a
     length = np.maximum(np.sum(line * line, -1), 1e-9)
     share = np.clip(np.sum((points - a) * line, -1) / length, 0, 1)

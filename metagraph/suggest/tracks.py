@@ -1,5 +1,5 @@
-"""Where the counted joints of clips are, as transitions are compared: from the root, as the character faces,
-at one rate.
+"""Compute where the relevant joints of clips are, for comparing transitions: from the root, as the character
+faces, at one frame rate.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ RATE = 30.0  # frames a second
 
 @dataclass(frozen=True, eq=False)
 class TrackRig:
-    """What counts of a skeleton. small: the joints `keep` of it."""
+    """The relevant part of a skeleton. `small` has its joints `keep`."""
 
     small: Skeleton
     keep: Array
-    joints: Array  # of keep: those that count
-    parts: tuple[str, ...]  # of joints
-    places: Mapping[str, int]  # of keep: legs and arms, to tell where it faces
-    root: int  # of keep
+    joints: Array  # indices in `keep` of the relevant joints
+    parts: tuple[str, ...]  # the body part of each of `joints`
+    places: Mapping[str, int]  # indices in `keep` of legs and arms, which show where it faces
+    root: int  # index in `keep`
 
 
 @lru_cache(maxsize=32)
@@ -64,8 +64,8 @@ _TRACKS: WeakKeyDictionary[Clip, tuple[TrackRig, Array]] = WeakKeyDictionary()
 
 
 def joint_track(rig: TrackRig, clip: Clip) -> Array:
-    """Return where the counted joints are, `[F, J, 3]` float32, metres, from the root as the character faces,
-    RATE frames a second.
+    """Return where the relevant joints are, `[F, J, 3]` float32, in metres, from the root as the character
+    faces, at RATE frames a second.
     """
     known = _TRACKS.get(clip)
     if known is not None and known[0] is rig:
@@ -77,13 +77,13 @@ def joint_track(rig: TrackRig, clip: Clip) -> Array:
 
 
 def clip_poses(clip: Clip) -> Pose:
-    """Return a clip's poses, RATE frames a second."""
+    """Return a clip's poses at RATE frames a second."""
     return clip.pose_at(track_seconds(clip)) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
 
 
 def facing_and_standing(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
-    """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `TrackRig.keep`
-    are `[F, K, 3]`, in the world.
+    """Return where a character faces `[F, 2]`, as in `body_points.facing_of`, and where the joints
+    `TrackRig.keep` are `[F, K, 3]`, in the world.
     """
     turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
     return facing_of(
@@ -99,11 +99,11 @@ def track_seconds(clip: Clip) -> Array:
 
 
 def velocity_of(track: Array) -> Array:
-    """Return the velocities `[F, J, 3]` of a track, metres a second."""
+    """Return the velocities `[F, J, 3]` of a track, in metres a second."""
     return np.gradient(track, 1 / RATE, axis=0) if len(track) > 1 else np.zeros_like(track)
 
 
 def track_rig(clip: Clip, roles: Mapping[str, int] | None) -> TrackRig:
-    """Return what counts of a clip's skeleton. roles: as found unless given."""
+    """Return the relevant part of a clip's skeleton. `roles` are found if None."""
     named = find_roles(clip.skeleton) if roles is None else roles
     return _rig(clip.skeleton, tuple(sorted(named.items())))

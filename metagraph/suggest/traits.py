@@ -1,8 +1,8 @@
-"""What a clip's motion looks like, in measures that compare between characters: poses seen from their own
+"""Describe a clip's motion in measures that are comparable between characters: poses relative to their own
 ground, and how much moves when.
 
-Lengths are in character heights, so that size does not matter; directions are the character's own (see
-`points`), so that neither does where it stands or what its rest pose is.
+Lengths are in character heights, so size does not matter. Directions are the character's own (see
+`body_points`), so neither does where it stands or what its rest pose is.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from metagraph.suggest.self_contact import NOTHING, SelfContact, self_contact
 
 Array = NDArray[Any]
 
-RATE = 30.0  # frames a second looked at, about
+RATE = 30.0  # frames a second that are used, about
 BATCH = 6000  # frames posed at once
-SMOOTH = 0.06  # seconds, standard deviation of the filter on speeds
+SMOOTH = 0.06  # seconds: standard deviation of the filter on speeds
 RESTING = 0.05  # heights a second: slower is rest
-_BACK = np.array([-1.0, 1.0])  # turns a facing into what undoes it
+_BACK = np.array([-1.0, 1.0])  # turns a facing direction into its inverse
 TOUCH = 0.12  # heights from a wrist to what its hand touches, at most
 PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
 
@@ -39,13 +39,14 @@ PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
 class LayerTraits:
     """One layer of a clip. All lengths are in heights.
 
-    names: which points there are, n (see NAMES; fewer on characters that lack them). first, last, typical
-    `[n, 3]`: the poses at the ends and the median. loop_error: how far the last pose is from the first, of
-    the farthest point. steady: speed at the ends beside the greatest, 0..1. extent, extent_at: how far any
-    point goes from the line between both ends, and when, seconds. energy: mean speed; peak, peak_at: the
-    greatest speed and when, seconds. rest: share of the time below RESTING. bouts: how often it speeds up.
-    farthest `[n, 3]`: the pose at extent_at; low, high `[n, 3]`: the least and the greatest of each
-    coordinate. stroke_at: when it is fastest on its way to there, seconds.
+    `names` has the n points (see NAMES; fewer on characters that lack some). `first`, `last` and `typical`
+    `[n, 3]` are the poses at the ends and the median. `loop_error` is the distance of the last pose from the
+    first, of the farthest point. `steady` is the speed at the ends relative to the greatest, 0..1. `extent`
+    and `extent_at` say how far any point goes from the line between both ends, and when, in seconds. `energy`
+    is the mean speed; `peak` and `peak_at` are the greatest speed and its time in seconds. `rest` is the
+    share of the time below RESTING. `bouts` is how often it speeds up. `farthest` `[n, 3]` is the pose at
+    `extent_at`; `low` and `high` `[n, 3]` are the least and the greatest of each coordinate. `stroke_at` is
+    when it is fastest on its way there, in seconds.
     """
 
     names: tuple[str, ...]
@@ -69,17 +70,20 @@ class LayerTraits:
 
 @dataclass(frozen=True, eq=False)
 class Traits:
-    """height: metres. duration: seconds. energy: speed of each of PARTS, heights a second, the root of its
-    mean square, so that slow drifts count little beside movements. travel: how far the character goes over
-    the ground. symmetry: -1 only the right arm moves, 0 both alike, 1 only the left. mirrored: 0..1, how far
-    the arms move as mirror images. out, near: how much farther from, and nearer to, the trunk and head the
-    hands come than where they begin. touch: how near a moving hand comes to the other arm, the neck or the
-    head, beyond how near it was. stride: how far each foot comes in front of the other, the lesser of both:
-    what walks. turned: degrees the character turns round, from its first to its last pose. rise: how far the
-    hips go up and down, heights. face: of a clip in which nothing else moves, how much joints of the face do,
-    0..2; 0 of any other. contact: with its own body. shrug: how far the shoulders rise more than the
-    trunk, heights. sway: how far the hips go to a side. front, lifted: how far before the chest, and above
-    the hips, the hand is that goes farthest, when it is farthest, heights. tremble: the energies that all
+    """What a clip's motion looks like.
+
+    `height` is in metres, `duration` in seconds; all other lengths are in heights. `energy` has the speed of
+    each of PARTS, in heights a second: the root of its mean square, so slow drifts count little beside
+    movements. `travel` is how far the character goes over the ground. `symmetry` is -1 if only the right arm
+    moves, 0 for both equally, 1 for only the left. `mirrored`, 0..1, is how far the arms move as mirror
+    images. `out` and `near` are how much farther from, and nearer to, the trunk and head the hands come than
+    where they begin. `touch` is how much nearer a moving hand comes to the other forearm or the head than at
+    first. `stride` is how far each foot passes the other, the lesser of both, which shows a walk. `turned` is
+    by how many degrees the character turns from its first to its last pose. `rise` is how far the hips go up
+    and down. `face` is, for a clip in which nothing else moves, how much joints of the face do, 0..2; 0 for
+    other clips. `contact` is that with its own body. `shrug` is how far the shoulders rise more than the
+    trunk. `sway` is how far the hips go to a side. `front` and `lifted` say how far before the chest, and
+    above the hips, the hand that goes farthest is when it is farthest. `tremble` has the energies that all
     clips of its set have (see `with_tremble`).
     """
 
@@ -106,13 +110,13 @@ class Traits:
     tremble: Mapping[str, float] = field(default_factory=dict)
 
 
-# Clips are values that never change, so what was found of one holds for as long as it lives.
+# Clips never change, so the traits of one hold as long as it exists.
 _KNOWN: WeakKeyDictionary[Clip, tuple[tuple[tuple[str, int], ...], Traits]] = WeakKeyDictionary()
 
 
 def traits(skeleton: Skeleton, roles: Mapping[str, int] | None, clip: Clip) -> Traits:
-    """Return what a clip's motion looks like. roles: role -> joint of the skeleton, None to find them. Never
-    raises.
+    """Return what a clip's motion looks like. `roles` maps roles to joints of the skeleton; None finds them.
+    Never raises.
     """
     named = _named(
         skeleton if clip.skeleton == skeleton else clip.skeleton, roles if clip.skeleton == skeleton else None
@@ -125,8 +129,8 @@ def traits_of(
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Traits]:
-    """Return clip id -> traits of a project, or name -> traits of clips; those found until `cancelled`.
-    progress: done, of how many.
+    """Return clip id -> traits for a project, or name -> traits for clips; those found until `cancelled`
+    returns True. `progress` is called with the numbers of clips done and of all clips.
     """
     if isinstance(source, Project):
         clips = [(ident, entry.motion) for ident, entry in source.clips.items() if entry.motion is not None]
@@ -158,7 +162,7 @@ def traits_of(
 
 
 def list_known_traits(project: Project) -> dict[str, Traits]:
-    """Return clip id -> traits of those clips that were looked at before, at once."""
+    """Return clip id -> traits of the clips that were measured before, without computing anything."""
     found = {
         ident: _KNOWN.get(entry.motion) for ident, entry in project.clips.items() if entry.motion is not None
     }
@@ -170,7 +174,7 @@ def _named(skeleton: Skeleton, roles: Mapping[str, int] | None) -> tuple[tuple[s
 
 
 def _frames(clip: Clip) -> Array:
-    """Return which frames are looked at, ascending, the first and the last among them."""
+    """Return which frames are used, ascending, including the first and the last."""
     step = max(1, int(clip.fps / RATE + 0.5))
     return np.unique(np.append(np.arange(0, clip.frames, step), clip.frames - 1))
 
@@ -199,7 +203,7 @@ def _all(clips: Sequence[Clip], roles: Callable[[Clip], tuple[tuple[str, int], .
 
 
 def _smoothed(x: Array, seconds: float) -> Array:
-    """Return `[F, ...]` filtered along time; seconds: from frame to frame."""
+    """Return `[F, ...]` filtered along time. `seconds` is the time from frame to frame."""
     reach = int(3 * SMOOTH / seconds + 0.5) if seconds > 0 else 0
     if reach < 1 or len(x) < 3:
         return x
@@ -214,7 +218,7 @@ def _smoothed(x: Array, seconds: float) -> Array:
 
 
 def _speeds(tracks: Array, times: Array) -> Array:
-    """Return `[F, n]` speeds of `[F, n, 3]`, smoothed; zeros of a single frame."""
+    """Return the smoothed speeds `[F, n]` of `[F, n, 3]`; zeros for a single frame."""
     if len(tracks) < 2 or tracks.shape[1] == 0:
         return np.zeros(tracks.shape[:2])
     velocity = np.gradient(tracks.astype(np.float64), times, axis=0)
@@ -222,8 +226,8 @@ def _speeds(tracks: Array, times: Array) -> Array:
 
 
 def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, times: Array) -> LayerTraits:
-    """Return one layer's traits. poses `[F, n, 3]`: as the character faces then; tracks: as it faced at
-    first.
+    """Return one layer's traits. `poses` `[F, n, 3]` are relative to where the character faces then, `tracks`
+    to where it faces at first.
     """
     if not names:
         none = np.zeros((0, 3))
@@ -234,7 +238,7 @@ def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, t
     peak = _greatest(fast)
     first, last = tracks[0].astype(float), tracks[-1].astype(float)
     way = (times / times[-1] if times[-1] > 0 else times)[:, None, None]
-    # Against a smooth way from one end to the other, so that a transition does not count as going out and
+    # Relative to a smooth way from one end to the other, so that a transition does not count as going out and
     # back.
     away = np.linalg.norm(tracks - (first + (last - first) * (way * way * (3 - 2 * way))), axis=-1).max(-1)
     far = _greatest(away)
@@ -260,7 +264,7 @@ def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, t
 
 
 def _greatest(x: Array) -> int:
-    """Return where the greatest value is, the first of those that are as good as equal: rounding must not
+    """Return the index of the greatest value, the first of those that are almost equal: rounding must not
     choose.
     """
     return int(np.argmax(x >= x.max() - 1e-4))
@@ -271,7 +275,7 @@ def _mean(x: Array, times: Array) -> float:
 
 
 def _bouts(speed: Array) -> int:
-    """Return how many peaks of at least a quarter of the greatest there are, with a slowing to below half
+    """Return the number of peaks of at least a quarter of the greatest, with a slowing to less than half
     between them.
     """
     least, count, low, top = speed.max() / 4, 0, 0.0, 0.0
@@ -301,7 +305,7 @@ def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Ar
             names += tuple(n for n in points if n.startswith("joint "))
         tracks = np.stack([points[n] for n in names], axis=1) if names else np.zeros((len(times), 0, 3))
         turned = tracks
-        if layer == "body" and names:  # that the whole body turns is a movement
+        if layer == "body" and names:  # a turn of the whole body is a movement
             turned = view_from(facing[:1, None], view_from(facing[:, None] * _BACK, tracks))
         fast = _speeds(turned, times)
         speeds |= dict(zip(names, fast.T, strict=True))
@@ -364,7 +368,7 @@ def _shrug(points: Mapping[str, Array]) -> float:
 
 
 def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> tuple[float, float]:
-    """Return where the hand is that goes farthest: before the chest and above the hips."""
+    """Return where the hand that goes farthest is: before the chest and above the hips."""
     best, out = 0.0, (0.0, 0.0)
     for name in ("left_hand", "right_hand"):
         if name not in points:
@@ -379,13 +383,13 @@ def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> t
 
 
 def _turned(facing: Array) -> float:
-    """Return by how many degrees a character turns round. facing `[F, 2]`: sine and cosine."""
+    """Return by how many degrees a character turns. `facing` `[F, 2]` is sine and cosine."""
     angle = np.unwrap(np.arctan2(facing[:, 0], facing[:, 1]))
     return float(np.degrees(abs(angle[-1] - angle[0])))
 
 
 def _face(clip: Clip, roles: Mapping[str, int]) -> float:
-    """Return how much the joints beneath the head turn, and move in heights of the character, at most."""
+    """Return how much the joints below the head turn, and move in heights of the character, at most."""
     if "head" not in roles:
         return 0.0
     face = [j for j in clip.skeleton.descendants(roles["head"]) if j != roles["head"]]
@@ -405,8 +409,8 @@ def _stride(points: Mapping[str, Array]) -> float:
 
 
 def _reach(world: Mapping[str, Array]) -> tuple[float, float]:
-    """Return how much farther away from the trunk and head the farther hand goes, and how much nearer the
-    nearer comes.
+    """Return how much farther from the trunk and head the farther hand goes, and how much nearer the nearer
+    one comes.
     """
     centres = [world[n] for n in ("carrier", "head") if n in world]
     hands = [world[n] for n in ("left_hand", "right_hand") if n in world]
@@ -422,7 +426,7 @@ def _reach(world: Mapping[str, Array]) -> tuple[float, float]:
 
 def _touch(world: Mapping[str, Array]) -> float:
     """Return how much nearer a hand comes to the other forearm or the head than where it begins, if it comes
-    within a touch of them.
+    close enough to touch them.
     """
     nearest = 0.0
     for side, other in (("left", "right"), ("right", "left")):

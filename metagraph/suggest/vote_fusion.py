@@ -1,11 +1,11 @@
-"""Several beliefs about one thing made one: each source votes for its value with its confidence, and against
+"""Combine several beliefs about one thing: each source votes for its value with its confidence, and against
 all others with the rest.
 
-For values v and sources i with value x_i and confidence c_i, of `count` values there might be,
+For values v and sources i with value x_i and confidence c_i, of `count` possible values,
 
     p(v) ~ product over i of  c_i where v = x_i, else (1 - c_i) / (count - 1)
 
-so agreement makes surer, conflict unsure, and a source that says nothing changes nothing.
+so agreement raises the confidence, conflict lowers it, and a source without a vote changes nothing.
 """
 
 from __future__ import annotations
@@ -23,14 +23,16 @@ T = TypeVar("T")
 LEAST, MOST = (
     0.02,
     0.995,
-)  # nothing is certain: the sources are not independent, and not always right about themselves
-FIRM = 0.7  # from here on two sources that disagree are a conflict worth telling
+)  # nothing is certain: the sources depend on each other, and misjudge their own confidence
+FIRM = 0.7  # from here on, two sources that disagree are a conflict to report
 
 
 @dataclass(frozen=True, slots=True)
 class Agreed(Generic[T]):
-    """belief: what they say together; its reason joins those that agree. conflict: in words, where firm ones
-    disagree, else empty.
+    """The combined belief of several sources.
+
+    `belief` has the reasons of those that agree. `conflict` says in words where firm ones disagree, else it
+    is empty.
     """
 
     belief: Belief[T]
@@ -38,8 +40,8 @@ class Agreed(Generic[T]):
 
 
 def combine(votes: Sequence[Belief[T]], count: int) -> Agreed[T] | None:
-    """Return what sources say together of a thing that has `count` possible values; None where none says
-    anything.
+    """Return the combined belief of sources about a thing that has `count` possible values; None without
+    votes.
     """
     if not votes:
         return None
@@ -52,7 +54,7 @@ def combine(votes: Sequence[Belief[T]], count: int) -> Agreed[T] | None:
             sure = min(MOST, max(LEAST, vote.confidence))
             total += log(sure if vote.value == value else (1 - sure) / others)
         logs.append(total)
-    # What nobody named may be it, too.
+    # It may also be a value that no source named.
     unnamed = max(0, others + 1 - len(values))
     rest = sum(log((1 - min(MOST, max(LEAST, v.confidence))) / others) for v in votes)
     top = max([*logs, rest])

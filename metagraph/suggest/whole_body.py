@@ -1,9 +1,9 @@
-"""Clips recorded with the whole body: stances in which all layers stand together, and how that is noticed.
+"""Detect clips recorded with the whole body: their stances involve all layers together.
 
-An additive layer holds what differs from the base pose. Where arms, trunk and legs always change their stance
-together, as in takes of somebody who sits down, every layer would add the same lean once more. Then one
-layer, the arms', carries the whole body: it holds all stances, transitions, gestures and fidgets, and plays
-them as they were recorded.
+An additive layer holds what differs from the base pose. If arms, trunk and legs always change their stance
+together, as in takes of somebody who sits down, every layer would add the same lean again. Then one layer,
+the arms', carries the whole body: it holds all stances, transitions, gestures and fidgets, and plays them as
+they were recorded.
 """
 
 from __future__ import annotations
@@ -25,19 +25,20 @@ from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
 
-CARRIER: Layer = "arms"  # the layer that moves the whole body where all of it was recorded together
-# How much farther than the carrier's points another layer's count: another stance of the trunk is smaller
+CARRIER: Layer = "arms"  # the layer that moves the whole body if all of it was recorded together
+# Factors for the distances of the layers' points, relative to the carrier's: stances of the trunk differ
+# less.
 SCALE: Mapping[Layer, float] = {layer: TYPICAL[CARRIER] / TYPICAL[layer] for layer in LAYERS}
 # Of the clips that do not move a layer, the share that is in another than its usual pose: arms that gesture
-# while the weight is on the other leg, a nod with crossed arms
+# while the weight is on the other leg, a nod with crossed arms.
 TOGETHER = 0.28
-# Which clips tell that of a layer: those of others. A head goes along with arms, and with a trunk that leans.
+# The layers whose clips show that for a layer. A head moves along with arms, and with a trunk that leans.
 BESIDE: Mapping[Layer, tuple[Layer, ...]] = {"body": ("arms", "head"), "arms": ("body", "head")}
-CLEAR = 0.7  # how sure the layer is that a clip moves, from which on it says something
-FEW = 3  # clips of one stance, from which on its name tells what is done in it
-MIXED = 0.2  # of those clips that move another layer than most of their stance
+CLEAR = 0.7  # confidence of the layer that a clip moves, from which on it counts
+FEW = 3  # clips of one stance from which on its name shows what is done in it
+MIXED = 0.2  # share of those clips that move another layer than most of their stance
 APART: Mapping[Layer, float] = {"arms": 0.02, "head": 0.012, "body": 0.01}  # heights; less is the same pose
-WIDER = 4.0  # times the spread of its clips' ends that a stance of a layer is away at least
+WIDER = 4.0  # the least distance of a layer's stance, relative to the spread of its clips' ends
 
 
 def is_whole_body_carried(project: Project) -> bool:
@@ -46,11 +47,11 @@ def is_whole_body_carried(project: Project) -> bool:
 
 
 def with_whole_body(traits: Traits) -> Traits:
-    """Return a clip's traits with the whole body's pose in the carrier's place, so that it is compared
-    as one.
+    """Return a clip's traits with the whole body's pose in the carrier's place, so that it is compared as
+    one.
 
-    The points of the other layers are scaled (see SCALE) so that a usual step from stance to stance is as
-    long in each.
+    The points of the other layers are scaled (see SCALE) so that a usual step from stance to stance is
+    equally long in each.
     """
     parts = [(traits.layers[layer], SCALE[layer]) for layer in LAYERS if traits.layers[layer].names]
     if not parts:
@@ -79,11 +80,11 @@ def with_whole_body(traits: Traits) -> Traits:
 
 
 def are_whole_body_recordings(traits: Mapping[str, Traits], named: Mapping[str, str] | None = None) -> bool:
-    """Return whether these clips are recordings of the whole body, made in several stances. named: clip ->
-    the stance its name begins with.
+    """Return whether these clips are recordings of the whole body, made in several stances. `named` maps
+    clips to the stance that their names begin with.
 
-    A clip of a single layer leaves the others where they always are; in takes of the whole body arms gesture
-    in every stance the legs have, and one stance's name stands before what arms, head and legs do.
+    A clip of a single layer leaves the others in their usual pose. In takes of the whole body, arms gesture
+    in every stance of the legs, and one stance's name precedes what arms, head and legs do.
     """
     return _named_whole(traits, named or {}) or _seen_whole(traits)
 
@@ -107,7 +108,7 @@ def _seen_whole(traits: Mapping[str, Traits]) -> bool:
         if t.face == 0 and not no_measures(t) and all(t.layers[layer].names for layer in ("arms", "body"))
     }
     shapes = discover(moving, CARRIER, together=True)
-    held: list[tuple[Shape, Layer]] = []  # of clips that stay in a stance, it and the layer they move
+    held: list[tuple[Shape, Layer]] = []  # stance and layer of clips that stay in a stance
     settled = 0
     for clip, t in moving.items():
         x = t.layers[CARRIER]
@@ -132,7 +133,9 @@ def _varies(layer: Layer, held: Sequence[Shape]) -> bool:
 
 
 def _apart(one: Shape, other: Shape, layer: Layer) -> bool:
-    """Return whether two stances of the whole body differ in a layer, beyond what its clips' ends do."""
+    """Return whether two stances of the whole body differ in a layer by more than the ends of its
+    clips do.
+    """
     rows = [n for n, name in enumerate(one.names) if name in NAMES[layer]]
     if not rows or one.names != other.names:
         return False

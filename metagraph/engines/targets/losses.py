@@ -1,4 +1,4 @@
-"""What all state machines lose of a meta-graph; each target adds its own."""
+"""List what every state machine loses of a meta-graph; each target adds its own."""
 
 from __future__ import annotations
 

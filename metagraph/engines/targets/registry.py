@@ -1,4 +1,4 @@
-"""The targets there are, and writing for one: `write(project, "playcanvas", folder)`."""
+"""List the targets, and write for one: `write_for_target(project, "playcanvas", folder)`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from metagraph.formats.atomic import sync_together
 from metagraph.formats.store import writable
 from metagraph.graph.model import Project
 
-# Modules of this package that have TARGETS, in the order they are offered.
+# Modules of this package that have TARGETS, in the order of the lists shown to the user.
 MODULES = (
     "runtimes",
     "web",
@@ -48,7 +48,7 @@ def targets() -> Mapping[str, ExportTarget]:
 
 
 def target(name: str) -> ExportTarget:
-    """Return a target. Raises ExportError naming those there are."""
+    """Return a target. Raises ExportError naming the existing ones."""
     known = targets()
     if name in known:
         return known[name]
@@ -72,12 +72,12 @@ def write_for_target(
     tell: Tell | None = None,
     overwrite: bool = False,
 ) -> TargetReport:
-    """Write a project for a target into a folder, which is made.
+    """Write a project for a target into a folder, which is made if necessary.
 
-    overwrite: also files that are not of an earlier export of the same project for the same target. All of it
-    is written, or nothing. Raises ExportError where the target is read by what cannot unpack a packed GLB,
-    and while the project has errors, `ForeignFilesError`, an ExportError, where such files stand in the way,
-    FileError when a file cannot be written.
+    `overwrite` also replaces files that are not of an earlier export of the same project for the same target.
+    Either all of it is written, or nothing. Raises ExportError while the project has errors, or if a packed
+    GLB is asked for and the target cannot unpack it; ForeignFilesError, an ExportError, if foreign files are
+    in the way; FileError if a file cannot be written.
     """
     chosen = target(name)
     if contents.compress and not chosen.unpacks:

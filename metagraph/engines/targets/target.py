@@ -1,4 +1,4 @@
-"""What every target says of itself and does."""
+"""Define what every export target says about itself and does."""
 
 from __future__ import annotations
 
@@ -16,15 +16,17 @@ Tell = Callable[[int, int, str], None]
 
 @dataclass(frozen=True)
 class Loss:
-    """Something of a performance that a format cannot say. words: for people; "{n}" stands for what `count`
-    finds in a project, and the loss is told only where that is not 0.
+    """Something in a performance that a format cannot express.
+
+    `words` are for people. "{n}" in them is the number that `count` finds in a project; the loss is reported
+    only if that is not 0.
     """
 
     words: str
     count: Callable[[Project], int] | None = None
 
     def told(self, project: Project) -> str | None:
-        """Return the words for a project, None where it loses nothing."""
+        """Return the words for a project, None if it loses nothing."""
         number = 1 if self.count is None else self.count(project)
         if not number:
             return None
@@ -34,11 +36,13 @@ class Loss:
 
 @dataclass(frozen=True)
 class Contents:
-    """What goes into an export, and how. character: the mesh or its file, None to leave it out. expanded: the
-    state machine in the JSON, where there is one. base: the folder the project's own paths are relative to,
-    None to leave the lines' sounds where they are. chosen: which sounds outside `base` the user has chosen,
-    not only the project; no others are copied. compress: pack the GLB (EXT_meshopt_compression), for targets
-    that read it then.
+    """What goes into an export, and how.
+
+    `character` is the mesh or its file, None to leave it out. `expanded` puts the state machine into the
+    JSON, if there is one. `base` is the folder that the project's own paths are relative to, None to leave
+    the lines' sounds where they are. `chosen` returns which sounds outside `base` the user, not only the
+    project, has chosen; no others are copied. `compress` packs the GLB (EXT_meshopt_compression), for targets
+    that can read it.
     """
 
     character: Path | CharacterMesh | None = None
@@ -53,7 +57,9 @@ BARE = Contents()
 
 @dataclass(frozen=True)
 class ExportOrder:
-    """What is to be written: a sound project into a folder that is there. stem: what its files are called."""
+    """What is to be written: a project without errors, into an existing folder. `stem` is that of its files'
+    names.
+    """
 
     project: Project
     folder: Path
@@ -64,7 +70,7 @@ class ExportOrder:
 
 @dataclass(frozen=True)
 class ExportedFiles:
-    """The files of an export, and what else there is to say."""
+    """The files of an export, and notes about them."""
 
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
@@ -72,9 +78,11 @@ class ExportedFiles:
 
 @dataclass(frozen=True)
 class ExportTarget:
-    """name: on the command line. title: in the window. files: what will be written, in words. write: does it.
-    losses: what it loses. untried: why it is experimental; empty where it was run. unpacks: whether
-    it reads GLBs that are packed.
+    """A target of exports.
+
+    `name` is used on the command line, `title` in the window. `files` says in words what will be written,
+    `write` writes it. `losses` are what it cannot express. `untried` says why it is experimental; it is empty
+    if it was run. `unpacks` says whether it reads packed GLBs.
     """
 
     name: str
@@ -89,7 +97,7 @@ class ExportTarget:
 
 @dataclass(frozen=True)
 class TargetReport:
-    """What was written for a target. losses: in words, for this project."""
+    """What was written for a target. `losses` are in words, for this project."""
 
     target: str
     files: tuple[Path, ...]

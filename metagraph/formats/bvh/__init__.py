@@ -1,1 +1,1 @@
-"""BVH motion files."""
+"""Read and write BVH motion files."""

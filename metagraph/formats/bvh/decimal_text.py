@@ -1,8 +1,8 @@
-"""Decimal numbers out of text, all at once: what a motion file mostly is.
+"""Parse decimal numbers from text, all at once: a motion file consists mostly of numbers.
 
-Eight digits are turned into a number by three multiplications of the 64 bits they lie in, for all numbers of
-a piece of text together; a number of up to 15 digits is one division from exact, which rounds as `float`
-does. Whatever looks any other way (more digits, no number at all) is left to NumPy, word by word.
+Eight digits become a number by three multiplications of the 64 bits they occupy, for all numbers of a piece
+of text together. A number of up to 15 digits is one division away from exact, which rounds as `float` does.
+Anything else (more digits, no number at all) is left to NumPy, word by word.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[Any]
 
-_PIECE = 1 << 18  # bytes taken apart at once: what is worked on stays in a processor's cache
+_PIECE = 1 << 18  # bytes parsed at once: the data stays in a processor's cache
 _THREADS_FROM = (
     2 << 20
 )  # bytes from which two threads pay; arrays are worked on without the interpreter's lock
-_DIGITS = 15  # that a double holds, whatever they are
-_TENS = 10.0 ** np.arange(23)  # as many powers of ten are exact
+_DIGITS = 15  # digits that a double always holds
+_TENS = 10.0 ** np.arange(23)  # the powers of ten that are exact
 _SPACE, _PLUS, _MINUS, _DOT, _ZERO, _E = b" +-.0e"
 
 
 def decimals(data: bytes, start: int) -> Array:
-    """Return every number after `start` as float64. Raises ValueError where a word is none, as `float` would;
-    the first words must lie 8 bytes or more from the beginning of the data.
+    """Return every number after `start` as float64. Raises ValueError for a word that is no number, as
+    `float` would. The first words must be at least 8 bytes from the beginning of the data.
     """
     edges = [start]
     while edges[-1] < len(data):
@@ -48,7 +48,7 @@ def _piece(data: bytes, start: int, end: int) -> Array:
     count = len(first)
     if not count:
         return np.zeros(0)
-    # Eight bytes from any place on, as one number whose lowest byte comes first.
+    # Eight bytes from any place on, as one number in little-endian order.
     words = np.ndarray((len(data) - 7,), "<u8", data, 0, (1,))
     odd = np.zeros(count, bool)
     minus = text[first] == _MINUS
@@ -63,7 +63,7 @@ def _piece(data: bytes, start: int, end: int) -> Array:
     dot = _dots(first, until, dots, odd)
     whole, behind = dot - first - minus, np.maximum(until - dot - 1, 0)
     digits = whole + behind
-    less = behind - exponent  # by how many tens it is less than its digits as a whole number
+    less = behind - exponent  # by how many powers of ten it is less than its digits as an integer
     odd |= (digits > _DIGITS) | (digits <= 0) | (dot > until) | (abs(less) >= len(_TENS))
     out: Array = _digits(words, start + dot, whole) * _TENS[np.minimum(behind, _DIGITS)]
     out += _digits(words, start + until, behind)
@@ -81,8 +81,8 @@ def _piece(data: bytes, start: int, end: int) -> Array:
 def _exponents(
     text: Array, words: Array, start: int, first: Array, last: Array, others: Array, odd: Array
 ) -> tuple[Array, Array]:
-    """Return where each word's digits end, and its exponent. Words that have anything else in them are marked
-    as odd.
+    """Return where each word's digits end, and its exponent. Words with anything else in them are marked as
+    odd.
     """
     of = np.searchsorted(first, others, "right") - 1
     marks = (text[others] | 0x20) == _E
@@ -90,7 +90,7 @@ def _exponents(
     sign = text[np.minimum(at + 1, len(text) - 1)]
     signed = (sign == _MINUS) | (sign == _PLUS)
     digits = last[places] - at - 1 - signed
-    # What is strange in such a word is its mark and its sign.
+    # The mark and its sign are the unusual letters in such a word.
     strange = np.bincount(of, minlength=len(first))
     strange[places] -= 1 + signed
     wrong = (digits < 1) | (digits > 3)
@@ -113,7 +113,7 @@ def _ends(edge: Array, parts_first: bool, parts_last: bool, length: int) -> tupl
 
 
 def _dots(first: Array, last: Array, dots: Array, odd: Array) -> Array:
-    """Return where each word's point is, its end where it has none; a word of several is odd."""
+    """Return where each word's decimal point is, or its end if it has none. A word with several is odd."""
     if len(dots) == len(first) and bool((dots >= first).all()) and bool((dots < last).all()):
         return dots
     out = last.copy()
@@ -124,7 +124,9 @@ def _dots(first: Array, last: Array, dots: Array, odd: Array) -> Array:
 
 
 def _digits(words: Array, ends: Array, count: Array) -> Array:
-    """Return the number that the last `count` digits before each end make, float64; of over 15 anything."""
+    """Return the number made of the last `count` digits before each end, float64; undefined for
+    more than 15.
+    """
     out = _eight(words, ends, np.minimum(count, 8)).astype(np.float64)
     long = np.flatnonzero(count > 8)
     if len(long):
@@ -133,11 +135,11 @@ def _digits(words: Array, ends: Array, count: Array) -> Array:
 
 
 def _eight(words: Array, ends: Array, count: Array) -> Array:
-    """Return the number that up to 8 digits before each end make."""
+    """Return the number made of up to 8 digits before each end."""
     found: Array = words[np.maximum(ends - 8, 0)]
     found &= np.uint64(0x0F0F0F0F0F0F0F0F)
     gone = (8 * (8 - count)).astype(np.uint64)
-    half = gone >> np.uint64(1)  # a shift by 64 is none
+    half = gone >> np.uint64(1)  # shifting by 64 is undefined
     found = found >> half >> (gone - half) << half << (gone - half)
     found = (found * np.uint64(10) + (found >> np.uint64(8))) & np.uint64(0x00FF00FF00FF00FF)
     found = (found * np.uint64(100) + (found >> np.uint64(16))) & np.uint64(0x0000FFFF0000FFFF)

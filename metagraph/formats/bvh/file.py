@@ -51,15 +51,15 @@ class _Joint:
     channels: list[str] = field(default_factory=list)
 
 
-@np.errstate(all="ignore")  # what a broken file makes overflow is refused by the checks, without a warning
+@np.errstate(all="ignore")  # broken files can overflow; the checks refuse them without a warning
 def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str] = ()) -> Clip:
     """Return the motion of a BVH file in metres, Y up.
 
-    scale: metres per unit of the file. BVH states no unit: without `scale` the one that makes the skeleton a
-    human between 1.2 and 2.5 m is taken (centimetres when none does) and named in the notes. A file with Z up
-    is turned. as_is: repairs (`takes.REPAIRS`) not to make; the unit is then centimetres, as in most files.
-    Positions replace a joint's OFFSET. The rest pose has all rotations zero and stands on the ground over the
-    origin. Raises FileError with the line.
+    `scale` is in metres per unit of the file. BVH states no unit: without `scale`, the unit is the one that
+    makes the skeleton a human between 1.2 and 2.5 m tall (centimetres if none does), and the notes name it. A
+    file with Z up is turned. `as_is` names repairs (`takes.REPAIRS`) not to make; the unit is then
+    centimetres, as in most files. Positions replace a joint's OFFSET. The rest pose has zero rotations and
+    stands on the ground over the origin. Raises FileError with the line.
     """
     path = Path(path)
     data = read_file(path, MOTION_FILE)
@@ -91,7 +91,9 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
 
 
 def _afford(path: Path, size: int, frames: int, joints: list[_Joint]) -> None:
-    """Refuse what would take far more memory than the file has: joints without channels cost it nothing."""
+    """Refuse a file that would take far more memory than its size: joints without channels take no space in
+    it.
+    """
 
     def refuse(where: str) -> None:
         raise FileError(path, OUT_OF_PROPORTION, where, phrase("Remove the joints that do not move."))
@@ -111,7 +113,7 @@ class _Header:
         self.at = 0
         self.found: list[_Joint] = []
         self.stack: list[int] = []  # open braces; -1 for an End Site
-        self.opened: int | None = None  # whose brace comes next
+        self.opened: int | None = None  # the joint whose brace comes next
 
     def fail(self, cause: str, line: int, remedy: str = _DAMAGED) -> NoReturn:
         raise FileError(self.path, cause, phrase("line {line}", line=line), remedy)
@@ -223,7 +225,7 @@ class _Header:
             joint.channels.append(channel.lower())
 
     def _whole(self) -> None:
-        """Refuse a section that ends within a joint, has none, or leaves one without a place."""
+        """Refuse a section that ends within a joint, has no joint, or has one without an OFFSET."""
         if self.stack:
             self.fail(phrase("{count} '}}' are missing", count=len(self.stack)), self.words[-1][1])
         if not self.found:
@@ -325,7 +327,7 @@ def _line(data: bytes, at: int) -> int:
 
 
 def _uneven_row(data: bytes, start: int, channels: int) -> int:
-    """Return the line of the first row that has not `channels` numbers, or 0."""
+    """Return the line of the first row that does not have `channels` numbers, or 0."""
     first = _line(data, start)
     for i, row in enumerate(data[start:].split(b"\n")):
         words = len(row.split())
@@ -335,7 +337,9 @@ def _uneven_row(data: bytes, start: int, channels: int) -> int:
 
 
 def _fps(text: str, step: float) -> float:
-    """Return frames per second; whole where the frame time says so within its last written digit."""
+    """Return the frames per second, rounded to an integer if the frame time equals it within its last written
+    digit.
+    """
     digits = re.fullmatch(r"\d*\.?(\d*)", text)
     whole = float(round(1 / step))
     if (
@@ -380,7 +384,7 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
 
 
 def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) -> Array:
-    """Return local rotations `[F, J, 4]` float32, neighbours on the same side."""
+    """Return local rotations `[F, J, 4]` float32, with neighbouring frames on the same side."""
     frames = len(values)
     turns = [
         [c for c, name in zip(own, joint.channels, strict=True) if name[1] == "r"]
@@ -405,7 +409,7 @@ def _clip(
     repairs: list[Repair],
     as_is: Collection[str],
 ) -> Clip:
-    """Put channels, units and axes together."""
+    """Build the clip from channels, units and axes."""
     names = unique_names([j.name for j in joints])
     if names != tuple(j.name for j in joints):
         notes.append("joints without a name or with a repeated one were given names of their own")
@@ -472,8 +476,8 @@ def _columns(joints: list[_Joint]) -> list[list[int]]:
 def _placed(
     joints: list[_Joint], columns: list[list[int]], offsets: Array, values: Array
 ) -> dict[int, Array]:
-    """Return the positions `[F, 3]` of the first joint and of those that have position channels. An axis
-    without one keeps its OFFSET.
+    """Return the positions `[F, 3]` of the first joint and of joints with position channels. An axis without
+    a channel keeps its OFFSET.
     """
     placed = {}
     for i, joint in enumerate(joints):
@@ -492,8 +496,8 @@ def _metres(
     notes: list[str],
     as_is: Collection[str],
 ) -> tuple[float, list[Repair]]:
-    """Return the metres per unit of a file, and the repair where they are not the usual ones. scale: those
-    that were asked for. Raises ValueError where these make no sense.
+    """Return the metres per unit of a file, and the repair if these are not the usual ones. `scale` is given
+    by the caller, or None. Raises ValueError if it makes no sense.
     """
     if scale is not None:
         if not (scale > 0 and np.isfinite(scale)):
@@ -508,7 +512,7 @@ def _metres(
 
 
 def _turn_up(roots: Array, rotations: Array, offsets: Array, placed: dict[int, Array]) -> None:
-    """Turn the motion of a figure whose Z axis points up."""
+    """Rotate the motion of a figure whose Z axis points up."""
     rotations[:, roots] = rotation.multiply(_TO_Y_UP, rotations[:, roots].astype(float))
     offsets[roots] = rotation.rotate_vectors(_TO_Y_UP, offsets[roots])
     for i in roots.tolist():
@@ -517,10 +521,10 @@ def _turn_up(roots: Array, rotations: Array, offsets: Array, placed: dict[int, A
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:
-    """Write a clip as BVH in centimetres: rotations in ZXY order, positions for every joint that has
+    """Write a clip as BVH in centimetres, with rotations in ZXY order and positions for every joint that has
     translations.
 
-    BVH has no rest rotations and no morph targets: they are lost, the motion is not. Raises FileError.
+    BVH has no rest rotations and no morph targets: these are lost, the motion is not. Raises FileError.
     """
     skeleton = clip.skeleton
     lines = ["HIERARCHY"]

@@ -1,4 +1,6 @@
-"""What BVH leaves unsaid: the unit of length, which axis points up, and where the skeleton stands at rest."""
+"""Find what BVH does not state: the unit of length, which axis points up, and where the skeleton stands at
+rest.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +14,8 @@ from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
-_HUMAN = (1.2, 2.5)  # metres from sole to the base of the head's top; what a unit must make of the skeleton
-USUAL = 0.01  # metres per unit of most files
+_HUMAN = (1.2, 2.5)  # metres: how tall a unit must make the skeleton
+USUAL = 0.01  # metres per unit in most files
 _BURIED = 0.25  # of the figure's height: a foot that is deeper on average is under the floor
 _ON_FLOOR = 0.12  # of it: a foot that is nearer to the floor on average stands there
 _COLLAPSED = 0.3  # of their length: bones that are shorter on average have lost it
@@ -28,10 +30,10 @@ _UNITS = (
 
 
 def stand_up(offsets: Array, parents: Array, rest_rotations: Array, placed: set[int]) -> None:
-    """Give the rest pose a place of its own, in place: over the origin, its lowest joint on the ground.
+    """Move the rest pose, in place, over the origin, with its lowest joint on the ground.
 
-    Exporters leave the first frame's position in the OFFSET of a root, so that files of one actor would all
-    seem to have different skeletons.
+    Exporters leave the first frame's position in the OFFSET of a root, so without this the files of one actor
+    would seem to have different skeletons.
     """
     line, joint = [0], 0
     while True:
@@ -47,8 +49,8 @@ def stand_up(offsets: Array, parents: Array, rest_rotations: Array, placed: set[
         tuple(map(str, range(len(parents)))), parents.copy(), rest_rotations.copy(), offsets.copy()
     )
     _, positions = unplaced.globals(unplaced.rest)
-    # The lift must survive the turns above the last joint of the line, which are the rest rotation of the
-    # root.
+    # The lift must survive the rotations above the last joint of the line, which are the root's rest
+    # rotation.
     lift = np.array([0.0, -float(positions[:, 1].min()), 0.0])
     offsets[line[-1]] = (
         rotation.rotate_vectors(rotation.conjugate(rest_rotations[0]), lift) if len(line) > 1 else lift
@@ -86,7 +88,7 @@ def find_relative_joints(
 
 
 def find_unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
-    """Return metres per unit and a note that says how it was found."""
+    """Return the metres per unit, and a note that says how they were found."""
     bones = np.linalg.norm(skeleton.rest_translations, axis=1)
 
     def length(top: int, bottom: int) -> float:
@@ -99,7 +101,7 @@ def find_unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
         if legs:
             tall = (
                 max(legs) + length(roles["hips"], roles["head"])
-            ) * 1.12  # soles and the top of the head lie beyond
+            ) * 1.12  # soles and the top of the head are farther out
     known = tall > 0
     tall = tall or skeleton.height
     for scale, name in _UNITS if known else _UNITS[:4]:
@@ -119,7 +121,9 @@ def find_unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
 def is_z_up(
     skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: dict[int, Array], offsets: Array
 ) -> tuple[bool, bool]:
-    """Return whether Z points up, and whether it does so in the rest pose too. offsets, placed: metres."""
+    """Return whether Z points up, and whether it also does so in the rest pose. `offsets` and `placed` are in
+    metres.
+    """
     feet = [roles[r] for r in ("left_foot", "right_foot") if r in roles]
     if "head" not in roles or not feet:
         return False, False

@@ -1,1 +1,1 @@
-"""FBX motion files, read by the optional ufbx library in processes of their own."""
+"""Read FBX motion files with the optional ufbx library, in separate processes."""

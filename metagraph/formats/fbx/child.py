@@ -1,9 +1,9 @@
-"""Run as a process of its own: read FBX files with ufbx, one after another, as binary glTF.
+"""Read FBX files with ufbx in a process of its own, one after another, and return them as binary glTF.
 
-Paths come in as lines of JSON; out go a code, a length and either the glTF or why there is none. A broken
-file, or a slip in the use of the library's handles, ends this process and nothing else. ufbx frees a scene
-while its nodes are still in use unless every list is kept, so all of them are made at once and held to the
-end: that of the process, which reads a limited number of files.
+Paths come in as lines of JSON; each answer is a code, a length and either the glTF or the reason why there is
+none. A broken file, or an error in the use of the library's handles, ends only this process. ufbx frees a
+scene while its nodes are still in use unless every list is kept, so all lists are made at once and held until
+the process ends. It reads a limited number of files.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ import numpy as np
 from metagraph.common.budgets import CLIP_SECONDS, FBX_MEMORY, FBX_SAMPLES, NODES
 from metagraph.formats.gltf.binary import BinaryChunk, glb_bytes
 
-FPS = 30.0  # where the file's own rate is none that motion is recorded at
+FPS = 30.0  # if the file's own rate is not one that motion is recorded at
 _RATES = (10.0, 240.0)
 MISSING, REFUSED = 4, 3  # exit code; code of an answer
 _CAMERAS = (3, 4, 18, 19)  # ufbx element types: light, camera, camera switcher, stereo camera
 _PATHS = (("translation", slice(0, 3)), ("rotation", slice(3, 7)), ("scale", slice(7, 10)))
 
 
-_held: list[Any] = []  # every scene and list of one, to the end of the process
+_held: list[Any] = []  # every scene and its lists, until the process ends
 
 
 def main() -> int:
-    """Convert the files that are asked for; return the exit code."""
+    """Convert the requested files; return the exit code."""
     try:
         import ufbx
     except ImportError:
         return MISSING
     _bound()
     out = sys.stdout.buffer
-    sys.stdout = sys.stderr  # what a library prints is no answer
+    sys.stdout = sys.stderr  # what a library prints is not an answer
     for line in sys.stdin.buffer:
         code = 0
         try:
@@ -60,8 +60,8 @@ def main() -> int:
 
 
 def _bound() -> None:
-    """Take no more memory than a file is worth, where the system can see to that: what the library unpacks it
-    does not count.
+    """Limit this process's memory if the system supports it, because what the library unpacks is
+    not counted.
     """
     with suppress(ImportError, OSError, ValueError):
         import resource
@@ -85,9 +85,12 @@ def _transform(t: Any) -> tuple[float, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Scene:
-    """What of a scene is written. nodes, stacks, clusters, blends: the library's, the last the channels of
-    blend shapes. parents: of each node, -1 for none. bones: which nodes are. still: `[N, 10]` where nodes
-    stand without motion: place, turn, scale. fps: the rate that takes are sampled at.
+    """The parts of a scene that are written.
+
+    `nodes`, `stacks`, `clusters` and `blends` are the library's; `blends` are the channels of blend shapes.
+    `parents` has each node's parent, -1 for none. `bones` lists the nodes that are bones. `still` `[N, 10]`
+    is where nodes stand without motion: translation, rotation, scale. `fps` is the rate at which takes are
+    sampled.
     """
 
     nodes: list[Any]
@@ -101,7 +104,7 @@ class _Scene:
 
 
 def _convert(scene: Any) -> bytes:
-    """Return a scene as binary glTF. Raises ValueError where it is too large."""
+    """Return a scene as binary glTF. Raises ValueError if it is too large."""
     read = _read(scene)
     document: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}]}
     document["nodes"] = _described(read)
@@ -134,7 +137,7 @@ def _read(scene: Any) -> _Scene:
 
 
 def _described(scene: _Scene) -> list[dict[str, Any]]:
-    """Return the nodes as glTF has them."""
+    """Return the nodes in glTF's form."""
     described: list[dict[str, Any]] = []
     below: dict[int, list[int]] = {}
     for i, parent in enumerate(scene.parents):
@@ -164,8 +167,8 @@ def _bind_pose(scene: _Scene) -> dict[int, Any]:
             own = _matrix(nodes[i].node_to_parent)
             bind[i] = bind[parents[i]] @ own if parents[i] in bind else _matrix(nodes[i].node_to_world)
     if not scene.clusters:
-        # Nothing tells the bind pose; the root's own place is that of the first frame, so stand it over
-        # the origin.
+        # The bind pose is unknown, and the root is where it is in the first frame, so move it over the
+        # origin.
         away = bind[bones[0]][[0, 2], 3].copy()
         for i in bones:
             bind[i][[0, 2], 3] -= away
@@ -173,8 +176,8 @@ def _bind_pose(scene: _Scene) -> dict[int, Any]:
 
 
 def _moving(scene: _Scene) -> list[int]:
-    """Return the nodes whose motion is looked at: bones and what carries them; without bones all. Lights,
-    targets and footprints beside them do not matter.
+    """Return the nodes whose motion is read: bones and their ancestors; all nodes if there are no bones.
+    Lights, targets and footprints beside them do not matter.
     """
     nodes, parents = scene.nodes, scene.parents
     carrying = set(scene.bones)
@@ -190,8 +193,8 @@ def _moving(scene: _Scene) -> list[int]:
 
 
 def _animations(scene: _Scene, document: dict[str, Any], body: BinaryChunk) -> list[dict[str, Any]]:
-    """Return the takes that move anything. document: gets a node for the face of each take that has one.
-    Raises ValueError where they are too long together.
+    """Return the takes that move anything. `document` gets a node for the face of each take that has one.
+    Raises ValueError if they are too long together.
     """
     moving = _moving(scene)
     animations = []
@@ -212,8 +215,8 @@ def _animations(scene: _Scene, document: dict[str, Any], body: BinaryChunk) -> l
 def _animation(
     scene: _Scene, stack: Any, frames: int, moving: list[int], body: BinaryChunk
 ) -> dict[str, Any]:
-    """Return a take with a channel for all that does not stand as its node. The first bone has all channels:
-    they keep the length of the take.
+    """Return a take with a channel for everything that differs from its node. The first bone has all
+    channels, because they keep the length of the take.
     """
     anim = stack.anim
     times = stack.time_begin + np.arange(frames) / scene.fps
@@ -244,7 +247,7 @@ def _add_face(
     body: BinaryChunk,
 ) -> None:
     """Add the weights of blend shapes that are not zero throughout a take. Meshes that share a shape's name
-    share its weight; names lose the deformer's that stands before them ("blendShape1.jawOpen").
+    share its weight. The deformer's name before a shape's is removed ("blendShape1.jawOpen").
     """
     times = stack.time_begin + np.arange(frames) / scene.fps
     columns: dict[str, Any] = {}
@@ -272,4 +275,4 @@ def _add_face(
 if __name__ == "__main__":
     code = main()
     sys.stderr.flush()
-    os._exit(code)  # the library's handles are not taken apart
+    os._exit(code)  # the library's handles are not released

@@ -1,6 +1,8 @@
-"""The processes that read FBX files: each reads one file after another, and a crash costs the file it was at.
+"""Run the processes that read FBX files. Each reads one file after another, and a crash affects only its
+current file.
 
-Starting one takes some 0.3 s, a file a fiftieth of that. Within a `batch` they are kept for the next file.
+Starting one takes about 0.3 s, reading a file a fiftieth of that. Within a `batch` they are kept for the next
+file.
 """
 
 from __future__ import annotations
@@ -16,14 +18,14 @@ from metagraph.common.programs import python_command, start
 from metagraph.formats.fbx import child as fbx_child
 
 HEAD = struct.Struct("<Bq")  # code, length
-MOST = 50  # files one process reads: it keeps what it has read
+MOST = 50  # files that one process reads, because it keeps what it has read
 
 
 class ReaderError(Exception):
-    """A process could not read a file.
+    """Raised if a process could not read a file.
 
-    code: its exit code, negative for a signal, None when it took too long; `fbx_child.REFUSED` when the file
-    is to blame. words: what it said last.
+    `code` is its exit code, negative for a signal, None if it took too long; `fbx_child.REFUSED` if the file
+    is at fault. `words` is the last line of its output.
     """
 
     def __init__(self, code: int | None, words: str = "") -> None:
@@ -32,7 +34,7 @@ class ReaderError(Exception):
 
 
 class _Reader:
-    """One process. count: how many files it has read."""
+    """One process. `count` is the number of files it has read."""
 
     def __init__(self) -> None:
         import subprocess
@@ -49,7 +51,9 @@ class _Reader:
         )
 
     def read(self, path: Path, timeout: float) -> bytes:
-        """Return a file as binary glTF. Raises ReaderError: the file is refused, or the process is over."""
+        """Return a file as binary glTF. Raises ReaderError if the file is refused or the process
+        has ended.
+        """
         late = threading.Event()
 
         def stop() -> None:
@@ -76,7 +80,7 @@ class _Reader:
                 self.process.kill()
                 raise ReaderError(1, "its reader talks nonsense")
         except OSError:
-            pass  # it ended before it was asked
+            pass  # it ended before the request was written
         finally:
             timer.cancel()
         code = self.process.wait()
@@ -92,7 +96,7 @@ class _Reader:
                 try:
                     pipe.close()
                 except OSError:
-                    continue  # what was still to be written has no reader
+                    continue  # the rest of the output has no reader
         try:
             self.process.wait(1.0)
         except subprocess.TimeoutExpired:
@@ -108,7 +112,7 @@ _batches = 0
 
 @contextmanager
 def batch() -> Iterator[None]:
-    """Keep processes for the next file until this ends."""
+    """Keep processes for the next file while this context lasts."""
     global _batches
     with _lock:
         _batches += 1
@@ -123,8 +127,8 @@ def batch() -> Iterator[None]:
 
 
 def convert(path: Path, timeout: float) -> bytes:
-    """Return an FBX file as binary glTF. timeout: seconds. Raises ReaderError, and OSError when no process
-    starts.
+    """Return an FBX file as binary glTF. `timeout` is in seconds. Raises ReaderError, and OSError if no
+    process starts.
     """
     while True:
         with _lock:
@@ -139,7 +143,7 @@ def convert(path: Path, timeout: float) -> bytes:
             alive = error.code == fbx_child.REFUSED and reader.process.poll() is None
             if alive or error.code is None or not before:
                 raise
-            # An earlier file may be to blame: it is asked once more, of a process that has read none.
+            # An earlier file may be the cause: try again with a process that has read none.
         finally:
             with _lock:
                 keep = alive and _batches > 0 and reader.count < MOST

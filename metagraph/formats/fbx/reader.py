@@ -1,4 +1,6 @@
-"""Read FBX motion through the optional ufbx library, in processes of their own, so a crash costs one file."""
+"""Read FBX motion through the optional ufbx library, in separate processes, so that a crash affects only one
+file.
+"""
 
 from __future__ import annotations
 
@@ -26,11 +28,11 @@ _AGAIN = phrase("Export it again from the program that made it, as binary FBX 20
 
 def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every take of an FBX file, with the weights of its blend shapes, sampled at the file's own rate
-    (30 fps where that is not from 10 to 240), in metres, Y up, on one Skeleton.
+    (30 fps if that is not from 10 to 240), in metres, Y up, on one Skeleton.
 
-    Needs the extra `metagraph-studio[fbx]`. Meshes are not read. Raises FileError, also when
-    the library is missing, takes longer than `timeout` seconds or crashes on the file. as_is: repairs
-    (`takes.REPAIRS`) not to make.
+    Needs the extra `metagraph-studio[fbx]`. Meshes are not read. `as_is` names repairs (`takes.REPAIRS`) not
+    to make. Raises FileError, also if the library is missing, takes longer than `timeout` seconds or crashes
+    on the file.
     """
     path = check_file(path, MOTION_FILE)
     if importlib.util.find_spec("ufbx") is None:

@@ -1,1 +1,1 @@
-"""glTF 2.0 files: clips, characters, morph targets and packed buffers, read and written."""
+"""Read and write glTF 2.0 files: clips, characters, morph targets and packed buffers."""

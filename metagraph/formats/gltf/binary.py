@@ -1,5 +1,5 @@
-"""The binary chunk of a glTF file as it is written: its views and accessors, shared where they can be, and
-packed (EXT_meshopt_compression) where that is asked for.
+"""Write the binary chunk of a glTF file: its views and accessors, shared if possible, and packed
+(EXT_meshopt_compression) on request.
 """
 
 from __future__ import annotations
@@ -33,8 +33,11 @@ _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 @dataclass(frozen=True)
 class Packing:
-    """How values are packed where files are. mode, filter: the extension's. amount: bits of a component, or
-    the exponent of what floats are whole numbers of (-16: of metres their error is 8 micrometres at most).
+    """How values are packed if files are.
+
+    `mode` and `filter` are the extension's. `amount` is the number of bits of a component, or the exponent
+    for floats, which become integers times 2 to that power (-16: their error in metres is 8 micrometres at
+    most).
     """
 
     mode: MeshoptMode = "ATTRIBUTES"
@@ -42,7 +45,7 @@ class Packing:
     amount: int = 0
 
     def rounded(self, values: Array) -> Array:
-        """Return floats as they will come back."""
+        """Return floats as they will be read back."""
         if self.filter != "EXPONENTIAL":
             return values
         whole = np.frombuffer(exponential(values, self.amount), "<i4")
@@ -50,7 +53,7 @@ class Packing:
         return floats.reshape(values.shape)
 
     def packed(self, raw: bytes, stride: int) -> bytes:
-        """Return a view's bytes packed; normals and turns as they are stored without."""
+        """Return a view's bytes packed. Normals and turns are given in their unpacked form."""
         if self.mode != "ATTRIBUTES":
             return pack_indices(np.frombuffer(raw, "<u2" if stride == 2 else "<u4"))
         if self.filter == "EXPONENTIAL":
@@ -65,7 +68,7 @@ class Packing:
 
 @dataclass
 class _Pool:
-    """Values of one kind, one after another in one view. stride: bytes of an element."""
+    """Values of one kind, one after another in one view. An element has `stride` bytes."""
 
     stride: int
     packing: Packing | None
@@ -74,8 +77,8 @@ class _Pool:
 
 
 class BinaryChunk:
-    """The binary chunk as it grows, with its views and accessors; equal arrays are stored once. compress:
-    pack what says how.
+    """The growing binary chunk, with its views and accessors. Equal arrays are stored once. With `compress`,
+    arrays that have a packing are packed.
     """
 
     def __init__(self, compress: bool = False) -> None:
@@ -83,7 +86,7 @@ class BinaryChunk:
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
         self.compress = compress
-        self.unpacked = 0  # bytes that packed views take once they are not
+        self.unpacked = 0  # bytes that packed views take when unpacked
         self._known: dict[tuple[Any, ...], int] = {}
         self._pools: dict[tuple[Any, ...], _Pool] = {}
 
@@ -95,8 +98,8 @@ class BinaryChunk:
         packing: Packing | None = None,
         size: int = 0,
     ) -> int:
-        """Add bytes and return their view's index. stride: of vertex attributes. size: bytes of an
-        element.
+        """Add bytes and return their view's index. `stride` is that of vertex attributes; `size` is the
+        number of bytes of an element.
         """
         view: dict[str, Any] = {"byteLength": len(raw)}
         if target:
@@ -134,8 +137,8 @@ class BinaryChunk:
         packing: Packing | None = None,
         shared: str = "",
     ) -> int:
-        """Add `[count]` or `[count, n]` values and return the accessor's index. shared: the name of a view
-        that has all such values one after another; none of their own.
+        """Add `[count]` or `[count, n]` values and return the accessor's index. `shared` names a view that
+        has all such values one after another; without it, they have their own view.
         """
         if self.compress and packing is not None:
             values = packing.rounded(np.asarray(values, _DTYPES[component]))
@@ -147,7 +150,7 @@ class BinaryChunk:
         size = width * values.itemsize
         stride = 0
         raw = values.tobytes()
-        if target == ARRAY_BUFFER and size % 4:  # vertex attributes start on multiples of four
+        if target == ARRAY_BUFFER and size % 4:  # vertex attributes must begin at multiples of four
             padded = np.zeros((len(values), size + (-size % 4)), np.uint8)
             padded[:, :size] = values.view(np.uint8).reshape(len(values), size)
             raw, stride = padded.tobytes(), padded.shape[1]
@@ -174,8 +177,8 @@ class BinaryChunk:
         pool.users.append(user)
 
     def sparse(self, offsets: Array, packing: Packing | None = None) -> int:
-        """Add offsets `[count, 3]` of a morph target and return the accessor's index: only those that are not
-        zero, where that takes less room.
+        """Add offsets `[count, 3]` of a morph target and return the accessor's index. Only the offsets that
+        are not zero are stored, if that is smaller.
         """
         if self.compress and packing is not None:
             offsets = packing.rounded(np.asarray(offsets, np.float32))
@@ -202,7 +205,7 @@ class BinaryChunk:
         return len(self.accessors) - 1
 
     def close(self) -> None:
-        """Make the views of what is shared."""
+        """Make the views of shared values."""
         for pool in self._pools.values():
             place = self.view(bytes(pool.data), packing=pool.packing, size=pool.stride)
             for user in pool.users:
@@ -211,7 +214,7 @@ class BinaryChunk:
 
 
 def glb_bytes(document: dict[str, Any], body: BinaryChunk) -> bytes:
-    """Return the file: header, JSON and binary chunk. Adds the accessors, views and buffers of `body` to
+    """Return the file: header, JSON and binary chunk. The accessors, views and buffers of `body` are added to
     `document`.
     """
     body.close()
@@ -219,7 +222,7 @@ def glb_bytes(document: dict[str, Any], body: BinaryChunk) -> bytes:
     body.data += b"\0" * (-len(body.data) % 4)
     document["buffers"] = [{"byteLength": len(body.data)}]
     if body.unpacked:
-        # A buffer that is nowhere: what packed views would lie in.
+        # A buffer without data, for the unpacked content of packed views.
         document["buffers"].append({"byteLength": body.unpacked, "extensions": {MESHOPT: {"fallback": True}}})
         for name in ("extensionsUsed", "extensionsRequired"):
             document[name] = sorted({*document.get(name, ()), MESHOPT})

@@ -1,4 +1,6 @@
-"""What the channels of a glTF file's animations say, as columns of numbers: a file has thousands of them."""
+"""Read the channels of a glTF file's animations as columns of numbers, because a file has thousands
+of them.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +23,12 @@ _NAMES = tuple(MODES)
 
 @dataclass(frozen=True, eq=False)
 class JointChannels:
-    """The channels that move joints, sorted into groups that share key times, mode and path; groups in the
-    order in which animations have them. begins `[G + 1]`: where each group's channels are. takes, sources,
-    modes, paths `[G]`: its animation, and the accessor of its key times. joints, outputs `[C]`: of a channel.
-    doubled: animations and paths where two channels move one joint.
+    """The channels that move joints, sorted into groups that share key times, mode and path. The groups are
+    in the order of the animations.
+
+    `begins` `[G + 1]` says where each group's channels are. `takes`, `sources`, `modes`, `paths` `[G]` have
+    each group's animation, the accessor of its key times, its mode and its path. `joints` and `outputs` `[C]`
+    are those of each channel. `doubled` has the animations and paths in which two channels move one joint.
     """
 
     begins: Array
@@ -38,10 +42,10 @@ class JointChannels:
 
     @classmethod
     def of(cls, table: ChannelTable, places: dict[int, int], nodes: int, accessors: int) -> JointChannels:
-        """places: the joint of each node; others' channels animate something that never moves and was folded
-        away.
+        """Make the groups. `places` has the joint of each node. Channels of other nodes are left out: those
+        nodes never move, and their transform is part of a joint's.
         """
-        joint_of = np.full(nodes + 1, -1)  # the last one: no node
+        joint_of = np.full(nodes + 1, -1)  # the last one is for no node
         joint_of[list(places)] = list(places.values())
         node = table.nodes
         joints = joint_of[np.where((node < 0) | (node > nodes), nodes, node)]
@@ -69,7 +73,7 @@ class JointChannels:
         )
 
     def targets(self, group: int) -> tuple[Array, Array]:
-        """Return joints and outputs of a group's channels."""
+        """Return the joints and outputs of a group's channels."""
         own = slice(self.begins[group], self.begins[group + 1])
         return self.joints[own], self.outputs[own]
 
@@ -80,7 +84,7 @@ class JointChannels:
 
 
 def check_channels(gltf: Gltf, table: ChannelTable, number: int, where: str) -> None:
-    """Fail for the first channel of an animation that makes no sense."""
+    """Fail with a FileError for the first invalid channel of an animation."""
     if number not in table.odd:
         return
     own = slice(table.begins[number], table.begins[number + 1])
@@ -95,7 +99,7 @@ def check_channels(gltf: Gltf, table: ChannelTable, number: int, where: str) -> 
 
 
 def note_unused_channels(gltf: Gltf, table: ChannelTable, number: int) -> list[str]:
-    """Return notes of an animation's channels that move nothing known."""
+    """Return notes on an animation's channels that move nothing known."""
     if number not in table.odd:
         return []
     own = slice(table.begins[number], table.begins[number + 1])
@@ -108,7 +112,7 @@ def note_unused_channels(gltf: Gltf, table: ChannelTable, number: int) -> list[s
 def morph_channels(
     table: ChannelTable, number: int, expressions: Collection[int] = ()
 ) -> list[tuple[int, str, int, int]]:
-    """Return an animation's channels of weights: input, mode, node, output. expressions: nodes whose
+    """Return an animation's channels of weights: input, mode, node, output. `expressions` are nodes whose
     translation is a weight.
     """
     if number not in table.odd and not expressions:
@@ -125,8 +129,8 @@ def morph_channels(
 
 
 def sound_times(gltf: Gltf, inputs: Array) -> dict[int, Array]:
-    """Return key times by accessor, as float64, of those that are plain scalars which ascend: as good as all.
-    Those of others are read where they are asked for, and refused there.
+    """Return key times by accessor, as float64, if they are plain ascending scalars, as in almost all files.
+    Others are read when they are needed, and refused there if they are invalid.
     """
     plain = gltf.plain
     some = np.unique(inputs[(inputs >= 0) & (inputs < len(plain.begins))])
@@ -139,7 +143,7 @@ def sound_times(gltf: Gltf, inputs: Array) -> dict[int, Array]:
     some, starts = some[starts >= 0], starts[starts >= 0]
     counts = plain.counts[some]
     ends = np.cumsum(counts)
-    if not len(some) or ends[-1] > len(numbers):  # they are told more than once: each is counted by itself
+    if not len(some) or ends[-1] > len(numbers):  # some share bytes; each is counted when it is read
         return {}
     begins = ends - counts
     times = numbers[np.repeat(starts - begins, counts) + np.arange(ends[-1])].astype(np.float64)

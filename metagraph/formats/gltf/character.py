@@ -1,4 +1,4 @@
-"""Meshes of a glTF file merged into one Character in its skeleton's rest pose."""
+"""Merge the meshes of a glTF file into one character in its skeleton's rest pose."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 
 Array = NDArray[Any]
 
-_VERTEX = 400  # bytes that a vertex takes while it is placed
+_VERTEX = 400  # bytes of a vertex while it is processed
 
 
 @dataclass
@@ -32,11 +32,11 @@ class _Part:
     weights: Array
     mirrored: bool
     morphs: dict[str, Array] = field(default_factory=dict)
-    held: int = -1  # the joint that carries it whole
+    held: int = -1  # the only joint that moves it
 
 
 def character_of(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
-    """Return the default scene's meshes on the rig's skeleton. Raises FileError when there are none."""
+    """Return the default scene's meshes on the rig's skeleton. Raises FileError if there are none."""
     doc = gltf.json
     notes = [*rig.notes, *(repair.words for repair in rig.repairs)]
     parts: list[_Part] = []
@@ -115,7 +115,7 @@ def character_of(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
 
 
 def _free(name: str, taken: Container[str]) -> str:
-    """Return a name that is not taken: hidden meshes are kept by name."""
+    """Return a name that is not taken, because hidden meshes are identified by name."""
     number, found = 1, name
     while found in taken:
         number += 1
@@ -147,9 +147,7 @@ def _scene_nodes(gltf: Gltf, rig: GltfRig) -> list[int]:
 def _part(
     gltf: Gltf, rig: GltfRig, node: int, primitive: Primitive, triangles: Array, where: str, notes: list[str]
 ) -> _Part | None:
-    """Return one primitive's vertices in the rest pose, in metres, or None when they are scaled to
-    nothing.
-    """
+    """Return one primitive's vertices in the rest pose, in metres; None if they are scaled to zero size."""
     attributes = primitive.attributes
     gltf.spend(len(gltf.array(attributes["POSITION"], where, "VEC3")) * _VERTEX, where)
     positions = _floats(gltf, attributes["POSITION"], "VEC3", None, where)
@@ -185,7 +183,7 @@ def _part(
     if normals is None:
         normals = _smooth_normals(moved, triangles[:, ::-1] if mirrored else triangles)
     else:
-        # The cofactor matrix turns normals rightly under uneven scale and never needs an inverse.
+        # The cofactor matrix turns normals correctly under uneven scale and never needs an inverse.
         a, b, c = linear[:, :, 0], linear[:, :, 1], linear[:, :, 2]
         cofactor = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], -1)
         normals = np.einsum("vab,vb->va", cofactor, normals) * (-1 if mirrored else 1)
@@ -207,7 +205,7 @@ def _floats(gltf: Gltf, accessor: int, kind: str, count: int | None, where: str)
 
 
 def _triangles(gltf: Gltf, primitive: Primitive, count: int, where: str) -> Array:
-    """Return vertex numbers `[N, 3]`; strips and fans are unrolled."""
+    """Return vertex numbers `[N, 3]`; strips and fans become triangles."""
     asked = count if primitive.indices is None else len(gltf.array(primitive.indices, where, "SCALAR"))
     gltf.spend(asked * (16 if primitive.mode == 4 else 64), where)
     if primitive.indices is None:
@@ -233,7 +231,7 @@ def _triangles(gltf: Gltf, primitive: Primitive, count: int, where: str) -> Arra
 def _skinned(
     gltf: Gltf, rig: GltfRig, skin_index: int, attributes: dict[str, int], count: int, where: str
 ) -> tuple[Array, Array, Array]:
-    """Return per vertex its matrix to the rest pose `[V, 4, 4]`, its joints and its weights `[V, 4]`."""
+    """Return each vertex's matrix to the rest pose `[V, 4, 4]`, its joints and its weights `[V, 4]`."""
     skin = gltf.item(gltf.json.skins, skin_index, "skin", where)
     own = np.array([rig.places[j] for j in skin.joints], np.int64)
     if not len(own):
@@ -269,8 +267,8 @@ def _skinned(
 
 
 def _attached(gltf: Gltf, rig: GltfRig, node: int) -> tuple[Array, int] | None:
-    """Return the matrix of a mesh without a skin and the joint that carries it, or None when it is scaled to
-    nothing.
+    """Return the matrix of a mesh without a skin, and the joint that carries it; None if it is scaled to zero
+    size.
     """
     at = node
     while at >= 0 and at not in rig.places:
@@ -301,7 +299,7 @@ def _smooth_normals(positions: Array, triangles: Array) -> Array:
 def _materials(
     gltf: Gltf, used: list[int], notes: list[str]
 ) -> tuple[tuple[MeshMaterial, ...], dict[int, int]]:
-    """Return the materials that are used and where each of the file's went; -1 is glTF's default material."""
+    """Return the used materials, and the new index of each of the file's; -1 is glTF's default material."""
     out: list[MeshMaterial] = []
     places: dict[int, int] = {}
     images: dict[int, bytes | None] = {}
@@ -343,7 +341,7 @@ def _materials(
 
 
 def _image(gltf: Gltf, index: int, notes: list[str]) -> bytes | None:
-    """Return PNG or JPEG bytes; a texture that cannot be had is a note, not an error."""
+    """Return PNG or JPEG bytes. A texture that cannot be read becomes a note, not an error."""
     value = gltf.item(gltf.json.images, index, "image", "a texture")
     try:
         if value.buffer_view is not None:
@@ -365,7 +363,7 @@ def _image(gltf: Gltf, index: int, notes: list[str]) -> bytes | None:
 
 
 def _no_picture(data: bytes) -> str:
-    """Return in words what makes bytes no picture that can be drawn, "" for one. What is none goes into no
+    """Return why bytes are no picture that can be drawn, "" if they are one. Other data must not get into an
     export.
     """
     if data[:8] != b"\x89PNG\r\n\x1a\n" and data[:3] != b"\xff\xd8\xff":

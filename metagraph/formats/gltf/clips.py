@@ -1,4 +1,4 @@
-"""Animations of a glTF file as clips: every channel resampled to one constant frame rate."""
+"""Read animations of a glTF file as clips; every channel is resampled to one constant frame rate."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from metagraph.motion.clip import Clip
 
 Array = NDArray[Any]
 
-AT_ONCE = 1 << 18  # joints times frames of takes that are made together
+AT_ONCE = 1 << 18  # joints times frames of takes that are processed together
 
 
 def read_animations(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> list[Clip]:
-    """Return all animations that move something of the skeleton. Raises FileError; for takes that are longer
-    together than the file's size warrants before any of them is made.
+    """Return all animations that move something in the skeleton. Raises FileError; if the takes together are
+    longer than the file's size justifies, before any of them is made.
 
-    as_is: repairs (`takes.REPAIRS`) not to make.
+    `as_is` names repairs (`takes.REPAIRS`) not to make.
     """
     table = gltf.channels
     channels = JointChannels.of(table, rig.places, len(gltf.json.nodes), len(gltf.json.accessors))
@@ -55,8 +55,10 @@ def read_animations(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> li
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """What an animation asks for. number: its own among the file's. first, after: its groups of joint
-    channels. morphs: channels of weights: input, mode, node, output.
+    """What has to be read for an animation.
+
+    `number` is its index in the file. `first` and `after` bound its groups of joint channels. `morphs` has
+    channels of weights: input, mode, node, output.
     """
 
     number: int
@@ -77,8 +79,8 @@ def _planned(
     channels: JointChannels,
     keys: dict[int, Array],
 ) -> _Plan | None:
-    """Return what animation `number` asks for, None when it moves nothing of the skeleton. keys: key times by
-    accessor, as they were read.
+    """Return what has to be read for animation `number`; None if it moves nothing in the skeleton. `keys` has
+    the key times read so far, by accessor.
     """
     animation = gltf.json.animations[number]
     where = phrase("animation {a} '{name}'", a=number, name=animation.name)
@@ -110,7 +112,9 @@ def _planned(
 
 
 def _batches(plans: Sequence[_Plan], joints: int) -> Iterator[list[_Plan]]:
-    """Yield takes that are made together: numbers of many short ones are reckoned as quickly as one's."""
+    """Yield takes that are processed together, because the arrays of many short takes take no longer than
+    those of one.
+    """
     batch: list[_Plan] = []
     for plan in plans:
         if batch and joints * sum(len(p.grid.times) for p in (*batch, plan)) > AT_ONCE:
@@ -137,7 +141,7 @@ def _clips(
             if again:
                 gltf.spend(
                     again * len(plan.grid.times) * 192, plan.where
-                )  # others were counted with the clip
+                )  # the others were counted with the clip
     named = [plan.number for plan in plans], [plan.where for plan in plans], [plan.grid for plan in plans]
     takes = TakeTracks(gltf, rig, still, channels, plans[0].first, plans[-1].after, *named, keys)
     try:
@@ -170,7 +174,9 @@ def _clip(
     moved: dict[int, Array],
     as_is: Collection[str],
 ) -> Clip:
-    """rotations `[F, J, 4]`; moved: as `_moved` has it."""
+    """Return the clip of a take. `rotations` are `[F, J, 4]`, `moved` is one item of what `moved` of the
+    tracks returns.
+    """
     translated = tuple(sorted({0, *moved}))
     translations = np.empty((len(rotations), len(translated), 3))
     for n, j in enumerate(translated):

@@ -1,4 +1,6 @@
-"""The long lists of a glTF file as columns of numbers: it may have ten thousand accessors and channels."""
+"""Turn the long lists of a glTF file into columns of numbers: it may have ten thousand accessors and
+channels.
+"""
 
 from __future__ import annotations
 
@@ -21,18 +23,18 @@ TRANSLATION, ROTATION, SCALE, WEIGHTS, UNKNOWN = range(5)
 PATHS = {"translation": TRANSLATION, "rotation": ROTATION, "scale": SCALE, "weights": WEIGHTS}
 LINEAR, STEP, SPLINE, NO_MODE = range(4)
 MODES = {"LINEAR": LINEAR, "STEP": STEP, "CUBICSPLINE": SPLINE}
-_MOST = 1 << 40  # bytes: what is more is beyond any file just as well, and sums of it are still numbers
+_MOST = 1 << 40  # bytes: more is beyond any file, and sums of it do not overflow
 
 _decoder = msgspec.json.Decoder(Document)
 
 
 def decode_columns(text: bytes | memoryview) -> Document:
-    """Return what a file's JSON says. Raises MsgspecError, RecursionError, ValueError."""
+    """Return the document in a file's JSON. Raises MsgspecError, RecursionError, ValueError."""
     return _decoder.decode(text)
 
 
 def column(numbers: list[int]) -> Array:
-    """Return whole numbers as an array; the largest there is for larger ones."""
+    """Return integers as an array; those that are too large become the largest possible."""
     try:
         return np.array(numbers, np.int64)
     except OverflowError:
@@ -41,8 +43,10 @@ def column(numbers: list[int]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class PlainAccessors:
-    """Which accessors are float32 numbers one after another in the first buffer. begins `[A]`: the byte where
-    each begins, -1 where it is not so. counts, widths `[A]`: its elements, and how many numbers each has.
+    """The accessors that are contiguous float32 numbers in the first buffer.
+
+    `begins` `[A]` is the byte where each begins, -1 for other accessors. `counts` and `widths` `[A]` are the
+    number of its elements, and of numbers in each.
     """
 
     begins: Array
@@ -76,8 +80,8 @@ class PlainAccessors:
         return cls(np.where(there, begin, -1), count, width)
 
     def starts(self, indices: Array, counts: Array | int, width: int, size: int) -> Array:
-        """Return where among a first buffer of `size` bytes, as numbers, accessors begin that hold `counts`
-        elements of `width` numbers, or more; -1 for all that do not, or lie in other ways.
+        """Return the index in a first buffer of `size` bytes, as numbers, at which accessors begin that hold
+        at least `counts` elements of `width` numbers; -1 for all others.
         """
         if not len(self.begins):
             return np.full(len(indices), -1)
@@ -90,9 +94,11 @@ class PlainAccessors:
 
 @dataclass(frozen=True, eq=False)
 class ChannelTable:
-    """Channels of all animations, one after another. begins `[A + 1]`: where each animation's are. samplers,
-    nodes, paths `[C]`: what each names; -1 for no node. inputs, modes, outputs `[C]`: of the sampler; of one
-    that does not exist -1, of a mode that is unknown `NO_MODE`.
+    """The channels of all animations, one after another.
+
+    `begins` `[A + 1]` says where each animation's channels are. `samplers`, `nodes`, `paths` `[C]` are what
+    each channel names; -1 for no node. `inputs`, `modes`, `outputs` `[C]` are those of its sampler; -1 if
+    that does not exist, and `NO_MODE` for an unknown mode.
     """
 
     begins: Array
@@ -105,7 +111,7 @@ class ChannelTable:
 
     @cached_property
     def odd(self) -> frozenset[int]:
-        """Animations with channels that make no sense, that move no joint or that nothing is known of."""
+        """Return the animations with channels that are invalid, move no joint, or are unknown."""
         odd = (self.inputs < 0) | (self.modes == NO_MODE) | (self.nodes < 0) | (self.paths > SCALE)
         return frozenset((np.searchsorted(self.begins, np.flatnonzero(odd), "right") - 1).tolist())
 

@@ -1,7 +1,7 @@
-"""A glTF 2.0 file opened and checked: its buffers, and accessors as arrays.
+"""Open and check a glTF 2.0 file; return its buffers, and accessors as arrays.
 
-Nothing in the file is believed: every index, length and range is checked before use, and the memory that a
-small file may ask for (zero-filled accessors, long resampled clips) is bounded by `Gltf.spend`.
+Nothing in the file is trusted: every index, length and range is checked before use, and `Gltf.spend` limits
+the memory that a small file may take (zero-filled accessors, long resampled clips).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Array = NDArray[Any]
 DAMAGED = phrase("The file is damaged: export it again.")
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _DTYPES = {code: np.dtype(name) for code, name in _COMPONENTS.items()}
-# Required extensions that change nothing we read, or that the reader understands.
+# Required extensions that change nothing we read, or that this reader supports.
 _KNOWN = (
     "KHR_mesh_quantization",
     "EXT_meshopt_compression",
@@ -73,13 +73,13 @@ class Gltf:
         raise FileError(self.path, cause, where, remedy)
 
     def spend(self, size: int, where: str) -> None:
-        """Count `size` bytes that the file asks for beyond its own; FileError once it is out of all
+        """Count `size` bytes that the file needs beyond its own. Raises FileError if the sum is out of
         proportion.
         """
         self._allowance.spend(size, where)
 
     def item(self, items: list[Any], index: int, kind: str, where: str) -> Any:
-        """Return `items[index]`, or fail naming what refers to it."""
+        """Return `items[index]`, or fail and name what refers to it."""
         if index >= len(items):
             self.fail(
                 phrase(
@@ -105,7 +105,7 @@ class Gltf:
         return self._buffers[index]
 
     def resource(self, uri: str, where: str) -> bytes:
-        """Return the bytes of a data URI or of a file beside this one. Raises FileError when it is absent or
+        """Return the bytes of a data URI or of a file beside this one. Raises FileError if it is missing or
         elsewhere.
         """
         if uri.startswith("data:"):
@@ -122,7 +122,7 @@ class Gltf:
         name = unquote(uri[:PATH_LENGTH])
         if name in self._named:
             return self._named[name]
-        if (why := explain_refusal(name, self.path.parent)) is not None:  # never: its files lie beside it
+        if (why := explain_refusal(name, self.path.parent)) is not None:  # never; its files are beside it
             self.fail(
                 phrase("'{name}' was not opened: {why}", name=name[:80], why=why),
                 where,
@@ -193,9 +193,10 @@ class Gltf:
         return self._unpacked[index]
 
     def array(self, index: int, where: str, kind: str = "") -> Array:
-        """Return accessor `index` as `[count, n]`, or `[count]` for scalars; normalised integers as float32.
+        """Return accessor `index` as `[count, n]`, or `[count]` for scalars; normalised integers become
+        float32.
 
-        kind: the type it must have ("VEC3"), if any. The array may be a view of the file's bytes: do not
+        `kind` is the type it must have ("VEC3"), if any. The array may be a view of the file's bytes: do not
         write to it.
         """
         accessor: Accessor = self.item(self.json.accessors, index, "accessor", where)
@@ -233,29 +234,29 @@ class Gltf:
         return out[:, 0] if width == 1 else out
 
     def numbers(self, where: str) -> Array:
-        """Return the first buffer as float32 numbers, what is over left out."""
+        """Return the first buffer as float32 numbers, without remaining bytes at its end."""
         data = self.buffer(0, where)
         return np.frombuffer(data, "<f4", len(data) // 4)
 
     def starts(self, indices: Array, counts: Array | int, width: int, where: str) -> Array:
-        """Return where among `numbers` accessors begin that are float32 numbers one after another in the
-        first buffer, as `PlainAccessors` does.
+        """Return where accessors of contiguous float32 numbers in the first buffer begin among `numbers`, as
+        `PlainAccessors` does.
         """
         return self.plain.starts(indices, counts, width, len(self.buffer(0, where)))
 
     @cached_property
     def vrm_face(self) -> VrmFace:
-        """The nodes that are the face of a VRM animation."""
+        """Return the nodes that are the face of a VRM animation."""
         return find_vrm_face(extras(self.json.extensions))
 
     @cached_property
     def channels(self) -> ChannelTable:
-        """What the channels of all animations say."""
+        """Return the channels of all animations."""
         return ChannelTable.of(self.json.animations)
 
     @cached_property
     def plain(self) -> PlainAccessors:
-        """Which accessors are float32 numbers one after another in the first buffer."""
+        """Return which accessors are contiguous float32 numbers in the first buffer."""
         return PlainAccessors.of(self.json)
 
     def _strided(self, accessor: Accessor, index: int, dtype: np.dtype[Any], width: int, where: str) -> Array:
@@ -317,7 +318,9 @@ def open_gltf(path: str | Path) -> Gltf:
 
 
 def parse_gltf(path: Path, data: bytes) -> Gltf:
-    """Open the bytes of a file; `path` names it in errors and is where its buffers lie. Raises FileError."""
+    """Open the bytes of a file. `path` names it in errors, and its buffers are beside it. Raises
+    FileError.
+    """
     text: bytes | memoryview = data
     binary = None
     if data[:4] == b"glTF":
@@ -390,7 +393,7 @@ def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
 
 
 def extras(raw: msgspec.Raw) -> dict[str, Any]:
-    """Return `extras` or `extensions` as a dictionary, empty when there is none or it is something else."""
+    """Return `extras` or `extensions` as a dictionary; empty if there are none or they have another form."""
     if not bytes(raw):
         return {}
     try:

@@ -1,4 +1,4 @@
-"""Which frames of a motion to keep as keys, so that what lies between them is within a tolerance."""
+"""Choose which frames of a motion to keep as keys, so that everything between them is within a tolerance."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from metagraph.motion import rotation
 
 Array = NDArray[Any]
 
-WORTH = 0.66  # of all frames: with more keys a track keeps all, and needs no times of its own
-AT_ONCE = 1 << 18  # numbers that are worked on together: short clips by themselves are mostly calls of NumPy
+WORTH = 0.66  # of all frames: with more keys, a track keeps all frames and needs no times of its own
+AT_ONCE = 1 << 18  # numbers processed together: alone, short clips mostly cost calls of NumPy
 
-# Which frames to keep is most of the time of an export, and the same when it is written again, or for another
+# Choosing frames takes most of the time of an export, and gives the same result the next time, or for another
 # engine.
 _KNOWN: dict[tuple[bytes, tuple[int, ...], float, bool], list[Array]] = {}
-MOST = 1000  # tracks of clips that are remembered, some 10 kB each
+MOST = 1000  # tracks of clips that are kept, about 10 kB each
 
 
 def find_kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> list[list[Array]]:
-    """Return for each of `many`, values of tracks `[F, C, n]`, the frames to keep of each track, ascending:
-    what lies between them, on the straight way, is within the tolerance, reckoned in 64 bits; the first alone
-    where nothing moves. turning: values are quaternions, and the way is `rotation.slerp`'s. Found frames are
-    remembered.
+    """Return for each of `many`, values of tracks `[F, C, n]`, the frames to keep of each track, ascending.
+    Everything between them on a straight line is within the tolerance, computed in 64 bits; if nothing moves,
+    only the first frame is kept. With `turning`, values are quaternions, and the line is `rotation.slerp`'s.
+    Results are remembered.
     """
     keys = [
         (hashlib.blake2b(np.ascontiguousarray(v).data, digest_size=16).digest(), v.shape, tolerance, turning)
@@ -37,14 +37,14 @@ def find_kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> 
     for some in _batches(list(missing), missing):
         made = _thinned([missing[key] for key in some], tolerance, turning)
         found.update(zip(some, made, strict=True))
-    _KNOWN.update(found)  # the last used last
+    _KNOWN.update(found)  # the last used ones come last
     while len(_KNOWN) > MOST:
         _KNOWN.pop(next(iter(_KNOWN)), None)
     return [found[key] for key in keys]
 
 
 def _batches(keys: Sequence[Any], sized: Any) -> Iterator[list[Any]]:
-    """Yield keys of what is worked on together."""
+    """Yield keys of values that are processed together."""
     some: list[Any] = []
     size = 0
     for key in keys:
@@ -61,7 +61,7 @@ def _thinned(many: Sequence[Array], tolerance: float, turning: bool) -> list[lis
     """Return what `find_kept_frames` does.
 
     Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at
-    once; a stretch that is near enough is not looked at again.
+    once. A stretch that is near enough is not checked again.
     """
     many = [v.astype(np.float64) for v in many]
     still = [np.abs(v - v[:1]).max((0, 2)) <= tolerance for v in many]

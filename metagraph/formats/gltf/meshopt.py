@@ -1,7 +1,6 @@
-"""Reading buffer views packed as EXT_meshopt_compression says: attributes, triangles and indices, and the
-filters.
+"""Read buffer views packed by EXT_meshopt_compression: attributes, triangles and indices, and the filters.
 
-After the specification of the extension (Khronos Group, "EXT_meshopt_compression", appendices A and B).
+Follows the specification of the extension (Khronos Group, "EXT_meshopt_compression", appendices A and B).
 """
 
 from __future__ import annotations
@@ -16,10 +15,10 @@ Array = NDArray[Any]
 MeshoptMode = Literal["ATTRIBUTES", "TRIANGLES", "INDICES"]
 MeshoptFilter = Literal["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"]
 
-GROUP = 16  # elements of a group
+GROUP = 16  # elements in a group
 _BLOCK_BYTES, _BLOCK = 8192, 256
-_BITS = (0, 2, 4, 8)  # of a delta, by a group's mode
-# How many of the values in a byte say that a byte of its own follows, by mode.
+_BITS = (0, 2, 4, 8)  # bits of a delta, by a group's mode
+# How many values in a byte mean that a byte of their own follows, by mode.
 _LATER = (
     (0,) * 256,
     tuple(sum(b >> s & 3 == 3 for s in (0, 2, 4, 6)) for b in range(256)),
@@ -29,19 +28,19 @@ _LATER = (
 
 
 class MeshoptError(ValueError):
-    """Packed data is damaged; the message says how."""
+    """Raised if packed data is damaged; the message says how."""
 
 
 def block_elements(stride: int) -> int:
-    """Return how many elements of `stride` bytes a block has at most."""
+    """Return the largest number of elements of `stride` bytes in a block."""
     return min(_BLOCK_BYTES // stride & ~(GROUP - 1), _BLOCK)
 
 
 def unpack_buffer(
     data: bytes, count: int, stride: int, mode: MeshoptMode, kind: MeshoptFilter = "NONE"
 ) -> bytes:
-    """Return `count` elements of `stride` bytes. Raises MeshoptError where the data does not hold them, or
-    mode, filter and stride do not go together.
+    """Return `count` elements of `stride` bytes. Raises MeshoptError if the data does not hold them, or mode,
+    filter and stride do not fit each other.
     """
     if mode == "ATTRIBUTES":
         if stride <= 0 or stride % 4 or stride > 256:
@@ -81,7 +80,7 @@ def _attributes(data: bytes, count: int, stride: int) -> Array:
 
 
 def _groups(data: bytes, count: int, stride: int) -> tuple[Array, Array]:
-    """Return where each group's deltas begin, and their modes: block by block, byte by byte, in order."""
+    """Return where each group's deltas begin, and their modes, in order: block by block, byte by byte."""
     size = block_elements(stride)
     starts: list[int] = []
     modes: list[int] = []
@@ -125,7 +124,7 @@ def _deltas(data: Array, starts: Array, modes: Array) -> Array:
 
 
 def _unfiltered(raw: Array, kind: MeshoptFilter) -> Array:
-    """Return attributes `[count, stride]` as they were before a filter."""
+    """Return attributes `[count, stride]` with a filter undone."""
     stride = raw.shape[1]
     if kind == "NONE":
         return raw
@@ -157,7 +156,7 @@ def _unfiltered(raw: Array, kind: MeshoptFilter) -> Array:
 
 
 class _Bytes:
-    """Bytes that are read one after another; IndexError behind the last."""
+    """Bytes that are read one after another. Raises IndexError after the last."""
 
     def __init__(self, data: bytes, at: int) -> None:
         self.data, self.at = data, at
@@ -167,7 +166,7 @@ class _Bytes:
         return self.data[self.at - 1]
 
     def number(self) -> int:
-        """Return an integer of 7 bits a byte, the lowest first."""
+        """Return an integer with 7 bits in each byte, the lowest first."""
         out = shift = 0
         while True:
             byte = self.byte()
@@ -198,7 +197,7 @@ def _triangles(data: bytes, count: int) -> list[int]:
     if len(data) < 17 + triangles or data[0] != 0xE1:
         raise MeshoptError("its triangles are cut short or of another version")
     table, source = data[len(data) - 16 :], _Bytes(data[: len(data) - 16], 1 + triangles)
-    edges: list[tuple[int, int]] = [(0, 0)] * 16  # the latest last
+    edges: list[tuple[int, int]] = [(0, 0)] * 16  # the latest is the last
     recent: list[int] = [0] * 16
     following = last = 0
     out: list[int] = []

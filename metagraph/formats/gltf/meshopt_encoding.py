@@ -1,6 +1,6 @@
-"""Packing buffer views as EXT_meshopt_compression says, and the filters that make them smaller.
+"""Pack buffer views by EXT_meshopt_compression, with the filters that make them smaller.
 
-After the specification of the extension (Khronos Group, "EXT_meshopt_compression", appendices A and B).
+Follows the specification of the extension (Khronos Group, "EXT_meshopt_compression", appendices A and B).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Array = NDArray[Any]
 
 
 def pack_attributes(raw: bytes, stride: int) -> bytes:
-    """Return elements of `stride` bytes, a multiple of 4 up to 256, packed; they come back exactly."""
+    """Return elements of `stride` bytes, a multiple of 4 up to 256, packed without loss."""
     values = np.frombuffer(raw, np.uint8).reshape(-1, stride)
     first = values[0] if len(values) else np.zeros(stride, np.uint8)
     deltas = np.diff(values, axis=0, prepend=first[None])
@@ -46,7 +46,7 @@ def _blocks(coded: Array) -> bytes:
         ]
     )
     modes = lengths.argmin(0)
-    # Each row is what is stored of a group, at its beginning; a row before them has the modes of all.
+    # Each row begins with what is stored of a group; a row before them has the modes of all groups.
     rows = np.zeros((blocks, stride, count + 1, 24), np.uint8)
     sizes = np.zeros((blocks, stride, count + 1), np.int64)
     heads = np.zeros((blocks, stride, ceil(count / 4) * 4), np.uint8)
@@ -89,7 +89,7 @@ def pack_indices(indices: Array) -> bytes:
 
 
 def exponential(values: Array, exponent: int) -> bytes:
-    """Return floats `[..]` as whole numbers of 2 ** exponent, -100..100; those too large for 24 bits get an
+    """Return floats `[..]` as integers times 2 ** exponent, -100..100. Floats too large for 24 bits get an
     exponent of their own.
     """
     numbers = np.asarray(values, np.float64)
@@ -101,7 +101,7 @@ def exponential(values: Array, exponent: int) -> bytes:
 
 
 def quaternions(values: Array, bits: int) -> bytes:
-    """Return unit quaternions `[N, 4]` by three components of `bits`, 4..16, without the largest."""
+    """Return unit quaternions `[N, 4]` as three components of `bits`, 4..16, without the largest."""
     q = np.asarray(values, np.float64)
     largest = np.abs(q).argmax(1)
     turned = np.take_along_axis(q, (largest[:, None] + np.arange(1, 5)) & 3, 1)
@@ -114,7 +114,7 @@ def quaternions(values: Array, bits: int) -> bytes:
 
 
 def octahedral(vectors: Array, bits: int) -> bytes:
-    """Return unit vectors `[N, 3]` by two numbers of `bits`, 4..8, in 4 bytes each."""
+    """Return unit vectors `[N, 3]` as two numbers of `bits`, 4..8, in 4 bytes each."""
     v = np.asarray(vectors, np.float64)
     v = v / np.maximum(np.abs(v).sum(1, keepdims=True), 1e-12)
     folded = np.where(v[:, :2] >= 0, 1, -1) * (1 - np.abs(v[:, 1::-1]))

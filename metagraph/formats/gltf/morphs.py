@@ -1,4 +1,4 @@
-"""Morph targets of a glTF file: their names, and their weights in its animations."""
+"""Read morph targets of a glTF file: their names, and their weights in its animations."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[Any]
 
 
 def read_morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
-    """Return the names of the morph targets of a node's mesh: from `targetNames`, else made from the mesh's
+    """Return the names of the morph targets of a node's mesh, from `targetNames`, else made from the mesh's
     name.
     """
     mesh_index = gltf.json.nodes[node].mesh
@@ -40,8 +40,8 @@ def read_morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
 def morph_weights(
     gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: FrameGrid, where: str
 ) -> tuple[tuple[str, ...], Array | None]:
-    """Return morph names and weights `[F, K]`; meshes that share a target's name share its weight. The
-    expressions of a VRM animation are named as it names them.
+    """Return morph names and weights `[F, K]`. Meshes that share a target's name share its weight.
+    Expressions of a VRM animation keep their names.
     """
     columns: dict[str, Array] = {}
     for source, mode, node, output in channels:

@@ -1,6 +1,4 @@
-"""Read and write glTF 2.0: .glb, .gltf, .vrm. Everything comes out in metres, Y up, on one skeleton per
-file.
-"""
+"""Read and write glTF 2.0: .glb, .gltf, .vrm. All results are in metres, Y up, on one skeleton per file."""
 
 from __future__ import annotations
 
@@ -22,8 +20,7 @@ from metagraph.formats.takes import unique_takes
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
 
-# Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to
-# warn.
+# Numbers of a broken file may overflow before a check refuses them; that is no reason for a warning.
 _QUIET = np.errstate(all="ignore")
 
 __all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
@@ -34,9 +31,9 @@ __all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles",
 def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every animation of a file as a clip; all share one Skeleton.
 
-    Keys are resampled to the constant frame rate they lie on (30 when any would do). The rest pose comes from
-    the skin's inverse bind matrices where they are sound, else from the nodes. Raises FileError, also when
-    there is no animation of the skeleton. as_is: repairs (`takes.REPAIRS`) not to make.
+    Keys are resampled to the constant frame rate on which they lie (30 if any rate fits). The rest pose comes
+    from the skin's inverse bind matrices if they are valid, else from the nodes. `as_is` names repairs
+    (`takes.REPAIRS`) not to make. Raises FileError, also if there is no animation of the skeleton.
     """
     gltf = open_gltf(path)
     if not gltf.json.animations:
@@ -70,14 +67,14 @@ def read_character(path: str | Path) -> CharacterMesh:
 
 @guard_reader
 def has_skinned_mesh(path: str | Path) -> bool:
-    """Return whether a file holds a mesh on a skeleton: something to draw. Raises FileError."""
+    """Return whether a file has a mesh on a skeleton, which can be drawn. Raises FileError."""
     nodes = open_gltf(path).json.nodes
     return any(node.mesh is not None and node.skin is not None for node in nodes)
 
 
 @guard_reader
 def morph_targets(path: str | Path) -> tuple[str, ...]:
-    """Return the names of a character's morph targets, as `read_character` has them. Raises FileError."""
+    """Return the names of a character's morph targets, as in `read_character`. Raises FileError."""
     gltf = open_gltf(path)
     nodes = [n for n, node in enumerate(gltf.json.nodes) if node.mesh is not None]
     return tuple(dict.fromkeys(name for n in nodes for name in read_morph_names(gltf, n)))

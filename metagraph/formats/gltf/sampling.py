@@ -1,4 +1,4 @@
-"""Keys of glTF channels evaluated at the frames of a clip."""
+"""Evaluate keys of glTF channels at the frames of a clip."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class FrameGrid:
-    """When a clip's frames are, `[F]` seconds in the file, and how many a second."""
+    """The times of a clip's frames, `[F]` seconds in the file, and their number a second."""
 
     times: Array
     fps: float
 
     @property
     def near(self) -> float:
-        """Seconds that a key may be off a frame and still be at it."""
+        """Return how many seconds a key may be away from a frame and still be on it."""
         return 1e-3 / self.fps
 
     def holds(self, times: Array) -> bool:
-        """Whether key times are those of the frames."""
+        """Return whether key times are those of the frames."""
         return len(times) == len(self.times) and bool(np.abs(times - self.times).max() < self.near)
 
 
@@ -65,8 +65,8 @@ def sample_channels(times: Array, values: Array, grid: FrameGrid, mode: str, tur
 
 
 def slerp_exact(a: Array, b: Array, u: Array) -> Array:
-    """Return what is `u [..., 1]` of the way from rotations a to b `[..., 4]`: keys may be far apart after a
-    tool has thinned them out.
+    """Return the rotations `u [..., 1]` of the way from a to b `[..., 4]`. Keys may be far apart after a tool
+    has thinned them.
     """
     dot = np.einsum("...i,...i->...", a, b, dtype=np.float64)[..., None]
     b = np.where(dot < 0, -b, b)
@@ -84,8 +84,9 @@ def slerp_exact(a: Array, b: Array, u: Array) -> Array:
 class KeyTable:
     """Keys of many channels: a rig has dozens of groups that share key times, a file dozens of takes.
 
-    numbers: the buffer that they lie in, `width` of them for a key. times, takes `[G]`: of each group.
-    groups, joints, starts `[C]`: of each channel its group, ascending, its joint, and where its keys begin.
+    `numbers` is the buffer with the keys, `width` numbers each. `times` and `takes` `[G]` are those of each
+    group. `groups`, `joints`, `starts` `[C]` are each channel's group (ascending), its joint, and where its
+    keys begin.
     """
 
     numbers: Array
@@ -98,12 +99,12 @@ class KeyTable:
 
     @cached_property
     def counts(self) -> Array:
-        """`[C]` how many keys each channel has."""
+        """Return the number of keys of each channel, `[C]`."""
         return np.array([len(times) for times in self.times])[self.groups]
 
     @cached_property
     def values(self) -> Array:
-        """`[N, width]`: the keys, one channel's after another's."""
+        """Return the keys, one channel after another, `[N, width]`."""
         shape = (len(self.numbers) - self.width + 1, self.width)
         steps = self.numbers.strides * 2
         rows = np.lib.stride_tricks.as_strided(self.numbers, shape, steps, writeable=False)
@@ -114,7 +115,7 @@ class KeyTable:
         return self.width * np.arange(int(self.counts.sum()))
 
     def only(self, which: Array) -> KeyTable | None:
-        """Return some of the channels `[C]`, None for none."""
+        """Return some of the channels `[C]`; None if there are none."""
         if which.all():
             return self
         if not which.any():
@@ -126,31 +127,31 @@ class KeyTable:
 
     @cached_property
     def begins(self) -> Array:
-        """`[C]` where each channel's keys begin."""
+        """Return where each channel's keys begin, `[C]`."""
         return np.asarray(np.cumsum(self.counts) - self.counts)
 
     def along(self, of_channels: Array) -> Array:
-        """Return for each key `[N, ...]` what is its channel's `[C, ...]`."""
+        """Return for each key `[N, ...]` the value of its channel `[C, ...]`."""
         return np.repeat(of_channels, self.counts, axis=0)
 
     def most(self, of_keys: Array) -> Array:
-        """Return `[C]` the most of each channel's keys `[N, n]`."""
+        """Return `[C]` the maximum over each channel's keys `[N, n]`."""
         return np.asarray(np.maximum.reduceat(of_keys.max(-1), self.begins))
 
     def where(self, which: Any) -> tuple[list[int], list[int]]:
-        """Return takes and joints of some channels."""
+        """Return the takes and joints of some channels."""
         return self.takes[self.groups[which]].tolist(), self.joints[which].tolist()
 
     def some(self, group: int) -> tuple[slice, slice]:
-        """Return which channels, and which keys, are of a group."""
+        """Return which channels, and which keys, belong to a group."""
         first, after = np.searchsorted(self.groups, (group, group + 1)).tolist()
         begin = int(self.begins[first])
         return slice(first, after), slice(begin, begin + len(self.times[group]) * (after - first))
 
 
 def sample_turns(keys: KeyTable, grids: Sequence[FrameGrid], begins: Array, out: Array) -> None:
-    """Write rotations to out `[F, J, 4]`, as `sample` evaluates keys with straight ways between them, of
-    several takes at once. grids: of the takes; begins: their first frames in out.
+    """Write rotations to `out` `[F, J, 4]`, evaluating linear keys as `sample_channels` does, for several
+    takes at once. `grids` are those of the takes, and `begins` their first frames in `out`.
     """
     frames = np.array([len(grid.times) for grid in grids])
     take = keys.takes[keys.groups]
@@ -179,14 +180,14 @@ def sample_turns(keys: KeyTable, grids: Sequence[FrameGrid], begins: Array, out:
 
 
 def _counted(begins: Array, counts: Array) -> Array:
-    """Return begin, begin + 1 ... of each, so many, one after another."""
+    """Return begin, begin + 1 ... for each, `counts` numbers, one after another."""
     ends = np.cumsum(counts)
     return np.asarray(np.repeat(begins - (ends - counts), counts) + np.arange(ends[-1]))
 
 
 def _places(keys: Sequence[Array], grid: FrameGrid) -> tuple[Array, Array]:
-    """Return `[G, F]` the key before each frame, but for the last one, and how much of the way to the next
-    has gone, of several arrays of two or more key times.
+    """Return `[G, F]`, for several arrays of two or more key times, the key before each frame (never the last
+    key), and the share of the way to the next.
     """
     counts = np.array([len(times) for times in keys])
     times = np.concatenate(keys)

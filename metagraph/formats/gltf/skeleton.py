@@ -1,4 +1,4 @@
-"""From glTF nodes to a Skeleton: which nodes are joints, the rest pose, and where the scale went."""
+"""Make a skeleton from glTF nodes: find which nodes are joints, the rest pose, and where scale is applied."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
 
-_TALL, _TINY = 20.0, 0.05  # metres: nothing that talks is taller or smaller, so the file is in other units
+_TALL, _TINY = 20.0, 0.05  # metres: no talking character is taller or smaller, so the file has other units
 _PATHS = tuple(PATHS)
-_LARGEST = 1e7  # a translation or scale beyond this is damage
+_LARGEST = 1e7  # a larger translation or scale means damage
 
 
 @dataclass(frozen=True, eq=False)
 class GltfRig:
-    """A skeleton and how the file's nodes map onto it.
+    """A skeleton and how the file's nodes map to it.
 
-    nodes: the node of each joint. places: node -> joint. parents: the parent of every node. A joint's
-    translation is `lift [J, 3, 3] @ file value + shift [J, 3]`, its rotation `turn [J, 4] * file value`.
-    still_rotations, still_translations, still_scales: the nodes' own values, what a joint without channels
-    keeps, in the file's terms. rest_matrices: `[J, 4, 4]`, the full rest transforms with scale, metres.
-    worlds: `[N, 4, 4]` of every node as saved.
+    `nodes` has the node of each joint, `places` the joint of each node, `parents` the parent of every node. A
+    joint's translation is `lift [J, 3, 3] @ file value + shift [J, 3]`, its rotation `turn [J, 4] * file
+    value`. `still_rotations`, `still_translations`, `still_scales` are the nodes' own values in the file's
+    terms, which a joint without channels keeps. `rest_matrices` `[J, 4, 4]` are the full rest transforms with
+    scale, in metres. `worlds` `[N, 4, 4]` are those of every node as saved.
     """
 
     skeleton: Skeleton
@@ -57,7 +57,7 @@ class GltfRig:
 
 
 def compose(translations: Array, rotations: Array, scales: Array) -> Array:
-    """Return matrices `[..., 4, 4]` of translation, rotation (xyzw), scale."""
+    """Return matrices `[..., 4, 4]` of translation, rotation (xyzw) and scale."""
     out = np.zeros((*translations.shape[:-1], 4, 4))
     out[..., :3, :3] = rotation.to_matrix(rotations) * scales[..., None, :]
     out[..., :3, 3] = translations
@@ -66,7 +66,7 @@ def compose(translations: Array, rotations: Array, scales: Array) -> Array:
 
 
 def decompose(matrices: Array) -> tuple[Array, Array, Array]:
-    """Return translations, rotations (xyzw) and scales of matrices `[..., 4, 4]`; a mirror shows as a
+    """Return translations, rotations (xyzw) and scales of matrices `[..., 4, 4]`. A mirroring becomes a
     negative x scale.
     """
     linear = matrices[..., :3, :3]
@@ -76,15 +76,15 @@ def decompose(matrices: Array) -> tuple[Array, Array, Array]:
     return matrices[..., :3, 3], rotation.from_matrix(linear / safe[..., None, :]), scales
 
 
-_CACHED = 16  # rigs remembered: the files of a folder mostly share one
+_CACHED = 16  # rigs that are kept: the files of a folder usually share one
 _rigs: dict[bytes, GltfRig] = {}
 
 
 def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> GltfRig:
-    """Return the one skeleton of the file; the same object for files whose nodes and skins are the same.
-    Raises FileError.
+    """Return the only skeleton of the file; the same object for files with equal nodes and skins. Raises
+    FileError.
 
-    as_is: repairs (`takes.REPAIRS`) not to make.
+    `as_is` names repairs (`takes.REPAIRS`) not to make.
     """
     nodes = gltf.json.nodes
     if not nodes:
@@ -126,7 +126,7 @@ def _build(
 
     still = (rotations[joints], translations[joints], scales[joints])
     roots = np.flatnonzero(above < 0)
-    base = np.tile(np.eye(4), (len(joints), 1, 1))  # what was folded into each root: its ancestors' transform
+    base = np.tile(np.eye(4), (len(joints), 1, 1))  # folded into each root: its ancestors' transform
     for i in roots:
         if parents[joints[i]] >= 0:
             base[i] = worlds[parents[joints[i]]]
@@ -178,7 +178,7 @@ def _build(
 
 def _joints(gltf: Gltf, members: set[int], parents: list[int], order: list[int]) -> tuple[list[int], Array]:
     """Return the joints' nodes, parents first, and each joint's parent among them, -1 for none. Refuses more
-    than any character has.
+    joints than any character has.
     """
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > JOINTS:
@@ -206,7 +206,7 @@ def _joints(gltf: Gltf, members: set[int], parents: list[int], order: list[int])
 
 
 def _scale_notes(above: Array, scales: Array, base_scales: Array) -> list[str]:
-    """Return what there is to say of the joints' scales at rest, and of those folded into the roots."""
+    """Return notes on the joints' scales at rest, and on those applied to the roots."""
     notes: list[str] = []
     spread = np.abs(scales).max(-1) > np.abs(scales).min(-1) * 1.01
     if spread.any():
@@ -220,12 +220,12 @@ def _scale_notes(above: Array, scales: Array, base_scales: Array) -> list[str]:
 
 
 def _lift(above: Array, scales: Array, base_scales: Array) -> Array:
-    """Return matrices `[J, 3, 3]` that scale each joint's translation as those above it do, zero for roots.
-    scales: at rest. base_scales: what was folded into each root.
+    """Return matrices `[J, 3, 3]` that scale each joint's translation as the joints above it do, zero for
+    roots. `scales` are those at rest, `base_scales` those applied to each root.
     """
     size = np.abs(np.cbrt(np.prod(scales, -1)))
     roots, inner = np.flatnonzero(above < 0), np.flatnonzero(above >= 0)
-    total = size.tolist()  # the scale that a joint hands down; parents come first
+    total = size.tolist()  # the scale that a joint passes on; parents come first
     for root, scale in zip(roots.tolist(), np.abs(np.cbrt(np.prod(base_scales, -1))).tolist(), strict=True):
         total[root] *= scale
     for joint, parent in zip(inner.tolist(), above[inner].tolist(), strict=True):
@@ -239,7 +239,9 @@ def _lift(above: Array, scales: Array, base_scales: Array) -> Array:
 
 
 def _unit(rest: Array, as_is: Collection[str]) -> tuple[float, tuple[Repair, ...]]:
-    """Return the metres per unit of a figure, and the repair where it is not in metres. rest: `[J, 4, 4]`."""
+    """Return the metres per unit of a figure, and the repair if it is not in metres. `rest` is `[J,
+    4, 4]`.
+    """
     height = float(np.ptp(rest[:, :3, 3], axis=0).max())
     unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(rest) > 3 else 1.0
     if unit == 1.0:
@@ -250,7 +252,7 @@ def _unit(rest: Array, as_is: Collection[str]) -> tuple[float, tuple[Repair, ...
 
 
 def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
-    """Return every node's parent, and the nodes depth first with parents before children."""
+    """Return every node's parent, and the nodes depth first, with parents before children."""
     parents = [-1] * len(nodes)
     for i, node in enumerate(nodes):
         for child in node.children:
@@ -322,7 +324,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     animated: dict[int, list[tuple[str, int]]] = {}
     table = gltf.channels
     free = np.flatnonzero((table.nodes >= 0) & (table.paths <= SCALE))
-    free = free[~np.isin(table.nodes[free], list(skinned))]  # others are joints in any case
+    free = free[~np.isin(table.nodes[free], list(skinned))]  # other nodes are joints in any case
     for n, node, path, output in zip(
         *(a[free].tolist() for a in (np.arange(len(table.nodes)), table.nodes, table.paths, table.outputs)),
         strict=True,
@@ -342,7 +344,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     face = gltf.vrm_face.nodes - skinned
     if members - face:
         members -= face
-    # Close the gaps: a node between two joints is a joint.
+    # A node between two joints is a joint, too.
     under, over = set(), set(members)
     for i in order:
         if parents[i] in under or parents[i] in members:
@@ -354,7 +356,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
 
 
 def _moves(gltf: Gltf, node: Node, outputs: list[tuple[str, int]]) -> bool:
-    """Whether an animated node ever leaves the transform it has in the scene."""
+    """Return whether an animated node ever leaves the transform it has in the scene."""
     if node.matrix is not None:
         return True
     still = {
@@ -377,8 +379,8 @@ def _moves(gltf: Gltf, node: Node, outputs: list[tuple[str, int]]) -> bool:
 
 
 def _without_skin(nodes: list[Node], parents: list[int], order: list[int], animated: set[int]) -> set[int]:
-    """Joints of a file that has no skin: the trees with animation in them, less scenery and less a wrapper on
-    top.
+    """Return the joints of a file without a skin: the trees that have animation, without scenery and without
+    a wrapper on top.
     """
     kept: set[int] = set()
     for i in reversed(order):
@@ -411,7 +413,7 @@ def _without_skin(nodes: list[Node], parents: list[int], order: list[int], anima
 
 
 def _in_order(gltf: Gltf, members: set[int], parents: list[int], order: list[int]) -> list[int]:
-    """Return the joints, parents first, otherwise in the order the skins list them, then as in the scene."""
+    """Return the joints, parents first, otherwise in the order of the skins, then as in the scene."""
     listed = (joint for skin in gltf.json.skins for joint in skin.joints)
     wanted = dict.fromkeys([*listed, *(i for i in order if i in members)])
     out: list[int] = []
@@ -427,7 +429,7 @@ def _in_order(gltf: Gltf, members: set[int], parents: list[int], order: list[int
 
 
 def _globals(locals_: Array, parents: Array, order: Sequence[int]) -> Array:
-    """Return model-space matrices of local ones, walking level by level; in `order` parents come first."""
+    """Return model-space matrices of local ones, level by level; in `order`, parents come first."""
     above = parents.tolist()
     levels: list[list[int]] = []
     depths = [0] * len(above)
@@ -444,7 +446,7 @@ def _globals(locals_: Array, parents: Array, order: Sequence[int]) -> Array:
 
 
 def _is_sound(matrices: Array) -> bool:
-    """Return whether matrices `[N, 4, 4]` are places, turns and sizes that can be undone."""
+    """Return whether matrices `[N, 4, 4]` are invertible translations, rotations and scales."""
     linear = matrices[:, :3, :3]
     return bool(
         np.isfinite(matrices).all()
@@ -466,9 +468,9 @@ def _rest_pose(
 ) -> tuple[Array, Array, Array]:
     """Return the rest translations, rotations and scales of the joints, in the file's own local terms.
 
-    Exporters save nodes in whatever pose was on the screen, so the inverse bind matrices are the better
-    witness. They are believed when they describe rigid bones in the same frame as the nodes; where both agree
-    the nodes' numbers win, being exact.
+    Exporters save nodes in whatever pose was on the screen, so the inverse bind matrices are more reliable.
+    They are used if they describe rigid bones in the same frame as the nodes. Where both agree, the nodes'
+    numbers are used, because they are exact.
     """
     rotations, translations, scales = (a.copy() for a in still)
     differs = False

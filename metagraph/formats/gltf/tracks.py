@@ -1,4 +1,4 @@
-"""What glTF channels make the joints of several takes do, evaluated together: turn, move, grow."""
+"""Evaluate what glTF channels do to the joints of several takes together: rotation, translation, scale."""
 
 from __future__ import annotations
 
@@ -26,9 +26,11 @@ _NAMES = tuple(MODES)
 
 
 class Still:
-    """What a skeleton does that no channel moves. places `[J, 3]`: translations. apart: the joints of which
-    these are not those of the rest pose. turned: joints whose file values are turned. lengths `[J, 3]`: what
-    translations are multiplied by, axis by axis, None where axes are turned or mixed.
+    """The values of a skeleton's joints that no channel moves.
+
+    `places` `[J, 3]` are translations. `apart` has the joints for which these differ from the rest pose.
+    `turned` has joints whose file values are turned. `lengths` `[J, 3]` are the factors of translations, axis
+    by axis, None if axes are turned or mixed.
     """
 
     def __init__(self, rig: GltfRig) -> None:
@@ -45,12 +47,12 @@ class Still:
 
     @cached_property
     def pose(self) -> Pose:
-        """The pose of the nodes as they are saved."""
+        """Return the pose of the nodes as they are saved."""
         return Pose(rotation.multiply(self._rig.turn, self._rig.still_rotations), self.places)
 
 
 class NotFiniteError(ValueError):
-    """A key is not a number."""
+    """Raised if a key is not a number."""
 
     def __init__(self, take: int, joint: int) -> None:
         super().__init__(take, joint)
@@ -59,8 +61,10 @@ class NotFiniteError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class TakeTracks:
-    """Takes that are made together. first, after: their groups of `channels`. numbers: theirs among the
-    file's animations; wheres: how errors name them. keys: key times by accessor.
+    """Takes that are processed together.
+
+    `first` and `after` bound their groups of `channels`. `numbers` are their indices among the file's
+    animations; `wheres` are their names in errors. `keys` has key times by accessor.
     """
 
     gltf: Gltf
@@ -76,7 +80,7 @@ class TakeTracks:
 
     @cached_property
     def ends(self) -> Array:
-        """`[T]` frames up to each take's end."""
+        """Return the frames up to each take's end, `[T]`."""
         return np.cumsum([len(grid.times) for grid in self.grids])
 
     @cached_property
@@ -84,8 +88,8 @@ class TakeTracks:
         return np.asarray(self.ends - [len(grid.times) for grid in self.grids])
 
     def turned(self) -> Array:
-        """Return rotations `[F, J, 4]` of the takes, one after another, neighbours on the same side. Raises
-        NotFiniteError.
+        """Return rotations `[F, J, 4]` of the takes, one after another, with neighbouring frames on the same
+        side. Raises NotFiniteError.
         """
         out = np.empty((int(self.ends[-1]), len(self.rig.nodes), 4), np.float32)
         out[:] = self.rig.still_rotations
@@ -102,7 +106,7 @@ class TakeTracks:
         return self._finished(out)
 
     def _finished(self, rotations: Array) -> Array:
-        """Return rotations normalised, and neighbours of a take on the same side."""
+        """Return rotations normalised, with neighbouring frames of a take on the same side."""
         still = self.still
         if len(still.turned):
             rotations[:, still.turned] = rotation.multiply(still.turns, rotations[:, still.turned])
@@ -115,8 +119,8 @@ class TakeTracks:
         return rotations
 
     def moved(self) -> list[dict[int, Array]]:
-        """Return of each take where the joints are that are not where the rest pose has them: `[F, 3]`, empty
-        for those that stay where their nodes are saved.
+        """Return for each take the translations `[F, 3]` of the joints that are not as in the rest pose;
+        empty for those that stay as their nodes are saved.
         """
         still, keys = self.still, self.keys
         moved = [dict.fromkeys(still.apart, np.empty(0)) for _ in self.grids]
@@ -163,7 +167,7 @@ class TakeTracks:
             moved[take].update(zip(table.joints[channels][chosen].tolist(), sampled, strict=True))
 
     def scaled(self) -> list[int]:
-        """Return of each take how many joints' scales are animated."""
+        """Return for each take how many joints' scales are animated."""
         table, others = self._sorted(SCALE)
         scales, scaled = self.rig.still_scales, np.zeros(len(self.grids), int)
         most = 0.01 * np.abs(scales).max(-1)
@@ -180,14 +184,14 @@ class TakeTracks:
         return [int(count) for count in scaled]
 
     def _take(self, group: int) -> tuple[int, int, str]:
-        """Return which of the takes a group is of, its key times' accessor, and its mode."""
+        """Return which of the takes a group belongs to, the accessor of its key times, and its mode."""
         c = self.channels
         return self.numbers.index(int(c.takes[group])), int(c.sources[group]), _NAMES[c.modes[group]]
 
     def _sorted(self, path: int) -> tuple[KeyTable | None, list[int]]:
-        """Return the keys of a path's channels that can be read and looked at together, and the groups of the
-        others: splines and steps, what lies otherwise in the file, and all of a take where two move the same
-        joint, of which the last one counts.
+        """Return the keys of a path's channels that can be read together, and the groups of the others:
+        splines and steps, keys with another layout in the file, and all channels of a take in which two move
+        the same joint; of these the last one counts.
         """
         width, c = 4 if path == ROTATION else 3, self.channels
         mine = np.flatnonzero(c.paths[self.first : self.after] == path) + self.first
@@ -222,8 +226,8 @@ def spend_keys(gltf: Gltf, size: int, where: str) -> None:
 
 
 def stack(gltf: Gltf, outputs: Array, count: int, mode: str, width: int, where: str) -> Array:
-    """Return key values `[C, count, width]` of several accessors, three for each of `count` keys of a
-    spline.
+    """Return key values `[C, count, width]` of several accessors; a spline has three for each of `count`
+    keys.
     """
     count *= 3 if mode == "CUBICSPLINE" else 1
     spend_keys(gltf, len(outputs) * count * width * 4, where)

@@ -1,4 +1,4 @@
-"""What the JSON of a glTF 2.0 file says, as typed values."""
+"""Define the JSON of a glTF 2.0 file as typed values."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Accessor(_Value):
 
 
 class PackedView(_Value):
-    """What EXT_meshopt_compression says of a view."""
+    """The EXT_meshopt_compression extension of a view."""
 
     buffer: Index
     byte_length: Index

@@ -1,5 +1,5 @@
-"""The face of a VRM animation (VRMC_vrm_animation 1.0): each expression has a node, and the x of the node's
-translation is the expression's weight; another node's rotation is where the eyes look.
+"""Find the face of a VRM animation (VRMC_vrm_animation 1.0): each expression has a node, and the x of the
+node's translation is the expression's weight; another node's rotation is where the eyes look.
 """
 
 from __future__ import annotations
@@ -11,8 +11,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class VrmFace:
-    """expressions: node -> the expression that it drives, "aa" or "Smirk". gaze: the node whose rotation is
-    where the eyes look, None for none. Neither is a joint.
+    """The nodes of a VRM animation's face.
+
+    `expressions` has the expression, such as "aa" or "Smirk", that each node drives. `gaze` is the node whose
+    rotation is where the eyes look, None for none. None of these is a joint.
     """
 
     expressions: Mapping[int, str] = field(default_factory=dict)
@@ -20,13 +22,13 @@ class VrmFace:
 
     @property
     def nodes(self) -> frozenset[int]:
-        """Every node that is no joint."""
+        """Return every node that is not a joint."""
         return frozenset(self.expressions) | (frozenset() if self.gaze is None else {self.gaze})
 
 
 def find_vrm_face(extensions: Mapping[str, Any]) -> VrmFace:
-    """Return what a file's extensions say of the face; an empty value where it is no VRM animation. What is
-    of another form than the format's is skipped.
+    """Return the face that a file's extensions describe; an empty value if it is no VRM animation. Values
+    with another form than the format's are skipped.
     """
     stated = _part(extensions, "VRMC_vrm_animation")
     expressions = _part(stated, "expressions")

@@ -32,7 +32,7 @@ from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
-# How far packed files may be off: turns 0.007 degrees, keys of joints 8 micrometres, a mesh 15, texture
+# The errors of packed files: turns 0.007 degrees, keys of joints 8 micrometres, a mesh 15, texture
 # coordinates a sixteenth of a pixel of 2,048.
 TURNS = Packing(filter="QUATERNION", amount=15)
 MOVES = Packing(filter="EXPONENTIAL", amount=-16)
@@ -43,19 +43,19 @@ NORMALS = Packing(filter="OCTAHEDRAL", amount=8)
 AS_THEY_ARE, INDICES = Packing(), Packing("INDICES")
 
 
-TOGETHER = 64  # clips whose keys are chosen together: of a large set not all are in memory twice
-SCENE = "Character"  # what the scene of a GLB that stands in a pose is called
+TOGETHER = 64  # clips whose keys are chosen together, so that a large set is not in memory twice
+SCENE = "Character"  # the name of the scene of a GLB that stands in a pose
 
 
 @dataclass(frozen=True)
 class Keys:
     """How the keys of clips are stored.
 
-    quantize: rotations as normalised 16-bit integers (error below 0.003 degrees). tolerance: how far keys may
-    be thinned out: the largest change of a quaternion component or, in metres, of a translation; by default
-    5e-5 when quantizing, else 0. A rotation that stays the same keeps one key. pose_nodes: joints that stand
-    still, alike in every clip, are posed by their nodes and cost no key at all; the rest pose is then only in
-    the inverse bind matrices, as in many exporters' files.
+    `quantize` stores rotations as normalised 16-bit integers (error below 0.003 degrees). `tolerance` says
+    how far keys may be thinned: the largest change of a quaternion component or, in metres, of a translation;
+    by default 5e-5 when quantizing, else 0. A rotation that stays the same keeps one key. With `pose_nodes`,
+    joints that stand still with the same rotation in every clip are posed by their nodes and need no key; the
+    rest pose is then only in the inverse bind matrices, as in the files of many exporters.
     """
 
     quantize: bool = True
@@ -64,18 +64,18 @@ class Keys:
 
     @property
     def off(self) -> float:
-        """How far thinned keys may be off."""
+        """Return the error that thinned keys may have."""
         return (5e-5 if self.quantize else 0.0) if self.tolerance is None else self.tolerance
 
 
 @dataclass(frozen=True, eq=False)
 class ForEngine:
-    """What a file for an engine has beside clips and a character.
+    """What a file for an engine has besides clips and a character.
 
-    stand: the pose the joints' nodes have, the rest pose when None; the skin stays bound to the rest pose,
-    and the scene gets a name, with which some engines' paths begin. moved: clip name -> the joints it moves,
-    all where None. extensions: of the document, by name. expressions: name -> morph target -> weight, beside
-    the targets' names in the mesh's `extras`.
+    `stand` is the pose of the joints' nodes, None for the rest pose; the skin stays bound to the rest pose,
+    and the scene gets a name, with which paths begin in some engines. `moved` has the joints that each clip
+    moves, by the clip's name; None for all. `extensions` are the document's, by name. `expressions` is name
+    -> morph target -> weight, written beside the targets' names in the mesh's `extras`.
     """
 
     stand: Pose | None = None
@@ -98,10 +98,10 @@ def write_glb(
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
-    clips: all on the same skeleton, which is also the character's. compress: pack the file, by
-    EXT_meshopt_compression and KHR_mesh_quantization, which whoever reads it must know then; and leave out
-    channels that keep a joint as its node is posed. Raises FileError when the file
-    cannot be written, ValueError for mixed skeletons.
+    All `clips` are on the same skeleton, which is also the character's. `compress` packs the file with
+    EXT_meshopt_compression and KHR_mesh_quantization, which readers must then support, and leaves out
+    channels that keep a joint as its node is posed. Raises FileError if the file cannot be written,
+    ValueError for mixed skeletons.
     """
     path = Path(path)
     if not clips and character is None:
@@ -119,7 +119,9 @@ def write_glb(
 
 
 class _File:
-    """A file being put together. mesh_node: what carries the mesh, None without. morphs: its targets."""
+    """A file that is being built. `mesh_node` is the node with the mesh, None without one; `morphs` are its
+    targets.
+    """
 
     def __init__(self, skeleton: Skeleton, keys: Keys, engine: ForEngine, compress: bool) -> None:
         self.skeleton, self.keys, self.engine = skeleton, keys, engine
@@ -131,7 +133,7 @@ class _File:
         self.mesh_node: int | None = None
 
     def add_body(self, character: CharacterMesh | None) -> None:
-        """Add the skin, the mesh of a character, and the scene they stand in."""
+        """Add the skin, the mesh of a character, and the scene with both."""
         roots = [i for i, p in enumerate(self.skeleton.parents) if p < 0]
         # Two roots need a common node above them for the skin to be valid.
         if len(roots) > 1:
@@ -149,7 +151,7 @@ class _File:
         self.document["scenes"] = [{**named, "nodes": roots}]
 
     def add_clips(self, clips: Sequence[Clip]) -> None:
-        """Add clips as animations, the keys of so many chosen together."""
+        """Add clips as animations, choosing the keys of `TOGETHER` clips at once."""
         if not clips:
             return
         off = self.keys.off
@@ -168,7 +170,7 @@ class _File:
         self.document["animations"] = animations
 
     def add_extensions(self, packed_mesh: bool) -> None:
-        """Name the extensions the file has, and what a packed mesh needs."""
+        """List the file's extensions, and those that a packed mesh needs."""
         document, extensions = self.document, self.engine.extensions
         if extensions:
             document["extensionsUsed"] = sorted(extensions)
@@ -207,7 +209,7 @@ def _joint_nodes(skeleton: Skeleton, pose: Pose) -> list[dict[str, Any]]:
 
 
 def _add_character(document: dict[str, Any], body: BinaryChunk, character: CharacterMesh) -> int:
-    """Add mesh, materials and images; return the node that carries the mesh."""
+    """Add mesh, materials and images; return the node with the mesh."""
     weights = np.maximum(np.asarray(character.weights, np.float32), 0)
     total = weights.sum(1, keepdims=True)
     weights = np.where(
@@ -287,7 +289,7 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
 
 
 def _normals(body: BinaryChunk, normals: Array) -> int:
-    """Add normals: floats, or where the file is packed bytes, which have room for what is packed."""
+    """Add normals: floats, or bytes if the file is packed, which have room for the packed values."""
     if not body.compress:
         return body.array(normals, FLOAT, target=ARRAY_BUFFER)
     small = np.rint(normals * 127)
@@ -295,7 +297,7 @@ def _normals(body: BinaryChunk, normals: Array) -> int:
 
 
 def _weights(body: BinaryChunk, weights: Array) -> int:
-    """Add skin weights: floats, or where the file is packed whole numbers that still sum up."""
+    """Add skin weights: floats, or integers with the right sum if the file is packed."""
     if not body.compress:
         return body.array(weights, FLOAT, target=ARRAY_BUFFER)
     whole = np.rint(weights.astype(np.float64) * 65535)
@@ -315,7 +317,7 @@ def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolera
 
 
 class _Animation:
-    """A clip while it becomes an animation. chosen: the joints it moves."""
+    """A clip that is being turned into an animation. `chosen` has the joints it moves."""
 
     def __init__(self, file: _File, clip: Clip) -> None:
         moved = file.engine.moved
@@ -327,13 +329,13 @@ class _Animation:
         self.places: dict[tuple[int, int], int] = {}
 
     def described(self) -> dict[str, Any]:
-        """Return the animation as glTF has it."""
+        """Return the animation in glTF's form."""
         clip = self.clip
         extras = {"fps": clip.fps}
         return {"name": clip.name, "samplers": self.samplers, "channels": self.channels, "extras": extras}
 
     def _add(self, node: int, path: str, kept: Array, values: Array, component: int) -> None:
-        """Add a channel with the values at the frames that are kept."""
+        """Add a channel with the values at the kept frames."""
         body = self.file.body
         packing = TURNS if component == SHORT else AS_THEY_ARE if path == "rotation" else MOVES
         source = body.array(self.times[kept], FLOAT, bounds=True, shared="times")
@@ -344,7 +346,9 @@ class _Animation:
         self.channels.append({"sampler": place, "target": {"node": node, "path": path}})
 
     def add_turns(self, frames: Sequence[Array], posed: frozenset[int]) -> None:
-        """Add the joints' turns. frames: those to keep of each. posed: joints that need none."""
+        """Add the joints' rotations. `frames` are those to keep of each joint; joints in `posed`
+        need none.
+        """
         clip, compress = self.clip, self.file.body.compress
         rotations = clip.rotations.astype(np.float64)
         quantize = self.file.keys.quantize
@@ -360,7 +364,7 @@ class _Animation:
             self._add(joint, "rotation", kept, written[kept, joint], SHORT if quantize else FLOAT)
 
     def add_moves(self, frames: Sequence[Array]) -> None:
-        """Add the joints' translations. frames: those to keep of each that has any."""
+        """Add the joints' translations. `frames` are those to keep of each joint that has any."""
         translations = self.clip.translations.astype(np.float64)
         for column, (joint, kept) in enumerate(zip(self.clip.translated, frames, strict=True)):
             if joint not in self.chosen:
@@ -370,11 +374,11 @@ class _Animation:
             self._add(joint, "translation", kept, translations[kept, column], FLOAT)
 
     def _whole_length(self, kept: Array) -> Array:
-        """Return a joint's frames with which the clip keeps its length, whatever else stands still."""
+        """Return frames of a joint with which the clip keeps its length even if everything stands still."""
         return np.array([0, self.clip.frames - 1]) if self.clip.frames > 1 else kept
 
     def add_weights(self) -> None:
-        """Add the weights of the mesh's morph targets, where the clip has any of them."""
+        """Add the weights of the mesh's morph targets, if the clip has any of them."""
         clip, node = self.clip, self.file.mesh_node
         shared = [clip.morphs.index(name) if name in clip.morphs else -1 for name in self.file.morphs]
         if node is None or clip.weights is None or not any(i >= 0 for i in shared):
@@ -386,5 +390,5 @@ class _Animation:
 
 
 def _as_posed(turn: Array, node: list[float]) -> bool:
-    """Whether a turn is what a node has by itself, which readers take where no channel tells."""
+    """Return whether a rotation equals the node's own, which readers use if there is no channel."""
     return bool(np.minimum(np.abs(turn - node).max(), np.abs(turn + node).max()) < 1e-6)

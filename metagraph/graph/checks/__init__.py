@@ -1,1 +1,1 @@
-"""Checks of one part of a project each; `graph.check` asks them all."""
+"""Check one part of a project each; `graph.check` calls them all."""

@@ -1,4 +1,4 @@
-"""Problems of the base pose."""
+"""Find problems of the base pose."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from metagraph.motion import rotation
 from metagraph.motion.features import pose_distance
 from metagraph.motion.skeleton import Skeleton
 
-FLOATS = 0.06  # of the height: how far the base pose's feet may be from where the stances have them
-TWISTED = np.radians(50)  # how far the base pose's hips may be turned from the stance's
+FLOATS = 0.06  # of the height: how far the base pose's feet may be from the feet of the stances
+TWISTED = np.radians(50)  # how far the base pose's hips may be turned away from the stance's
 
 
 def check_base(project: Project) -> Iterator[Problem]:
-    """Yield what is wrong with the base pose: it is missing, or far from how the character stands."""
+    """Yield the problems of the base pose: it is missing, or far from how the character stands."""
     if project.skeleton is None:
         return
     if project.base.clip is not None:
@@ -59,7 +59,7 @@ def _past_the_end(frame: int, entry: ClipEntry) -> Problem:
 
 
 def _rest_pose(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
-    """Yield whether the rest pose, which is the base pose where none is chosen, is far from the stances."""
+    """Yield a problem if the rest pose, which is the base pose if none is chosen, is far from the stances."""
     first = _first_pose(project, _start_loop(project, "body") or _start_loop(project, "arms"))
     if first is None:
         return
@@ -79,7 +79,9 @@ def _rest_pose(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
 
 
 def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
-    """Yield whether the base pose stands lower, higher or turned beside the stance the body begins in."""
+    """Yield problems if the base pose is lower, higher or turned, compared with the stance that the body
+    begins in.
+    """
     loop = _start_loop(project, "body")
     stance = _first_pose(project, loop)
     if loop is None or stance is None:
@@ -135,6 +137,6 @@ def _first_pose(project: Project, loop: Action | None) -> Any:
 
 
 def stance_name(project: Project, stance: str | None) -> str:
-    """Return a stance's name, "?" where there is none."""
+    """Return a stance's name, "?" if it does not exist."""
     found = project.stance(stance)
     return found.name if found is not None else "?"

@@ -1,5 +1,5 @@
-"""How far a clip's ends are from the stances it leaves and enters, and how far they may be: what everything
-that warns of a pop goes by.
+"""Measure how far a clip's ends are from the stances it leaves and enters, and how far they may be. All
+warnings of visible jumps use these distances.
 """
 
 from __future__ import annotations
@@ -24,17 +24,19 @@ from metagraph.motion.skeleton import Skeleton
 Array = NDArray[Any]
 Edge = Literal["begins", "ends"]
 
-TALL = 1.6  # metres of the figure that the others are for
+TALL = 1.6  # metres: height of the figure that the other constants are for
 FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it shows
-OPEN_LOOP = 0.05  # metres a loop may be open where its seam is not blended
-LONG = 0.4  # seconds of blending, from which on it is a movement of its own and no hidden seam
-UNHURRIED = 1.0  # metres a second, on average, that the farthest joint may go on such a blend
+OPEN_LOOP = 0.05  # metres a loop may be open if its seam is not blended
+LONG = 0.4  # seconds: a longer blend is a movement of its own, not a hidden seam
+UNHURRIED = 1.0  # metres a second: how fast, on average, the farthest joint may move in such a blend
 
 
 @dataclass(frozen=True)
 class EndGap:
-    """edge: of the clip. stance: beside which, by id. metres: of the farthest joint. most: metres that do not
-    show, for how long it blends there.
+    """The gap between an end of a clip and a stance.
+
+    `edge` is the end of the clip, `stance` the stance's id, `metres` the distance of the farthest joint,
+    `most` the distance in metres that does not show with a blend of `blend` seconds.
     """
 
     edge: Edge
@@ -49,12 +51,12 @@ class EndGap:
 
     @property
     def slow(self) -> bool:
-        """Whether a long blend covers it, at an unhurried pace."""
+        """Return whether a long blend covers the gap at an unhurried pace."""
         return self.blend >= LONG and not self.far
 
 
 def describe_gap(gap: EndGap, stance: str) -> str:
-    """Say a gap, in the words of every place that warns of one. stance: its name."""
+    """Describe a gap in the words that all warnings use. `stance` is the stance's name."""
     far = gap.metres * 100
     if gap.edge == "begins":
         return phrase("begins {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
@@ -62,17 +64,19 @@ def describe_gap(gap: EndGap, stance: str) -> str:
 
 
 def hidden(height: float, blend: float) -> float:
-    """Return how many metres a blend of some seconds covers so that nothing pops. height: of the skeleton."""
+    """Return how many metres a blend of `blend` seconds covers without a visible jump. `height` is the
+    skeleton's.
+    """
     return max(FAR, UNHURRIED * blend if blend >= LONG else 0.0) * height / TALL
 
 
 def blend_for(height: float, metres: float) -> float:
-    """Return the shortest blend that covers a distance at an unhurried pace, seconds."""
+    """Return the shortest blend, in seconds, that covers a distance at an unhurried pace."""
     return max(LONG, metres * TALL / height / UNHURRIED)
 
 
 def slow(metres: Array, height: float, blend: float) -> Array:
-    """Return where a long blend of some seconds covers distances, in metres, at an unhurried pace."""
+    """Return where a long blend of `blend` seconds covers distances, in metres, at an unhurried pace."""
     return np.asarray((blend >= LONG) & (metres <= hidden(height, blend)))
 
 
@@ -95,8 +99,8 @@ def distances_to_stance(project: Project, action: Action, times: Array) -> tuple
 
 
 def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[EndGap]:
-    """Return the gaps at both ends of an action that is no loop, on the joints its layer moves; those that
-    can be measured.
+    """Return the gaps at both ends of an action that is not a loop, on the joints its layer moves. Gaps that
+    cannot be measured are left out.
     """
     motion = motion_of(project, action)
     if motion is None or project.skeleton is None or action.kind == "stance":
@@ -118,8 +122,8 @@ def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[En
 
 
 def measure_seam(project: Project, graph: MetaGraph, loop: Action) -> EndGap | None:
-    """Return how far a loop's ends are apart, on the joints its layer moves, against what shows where it is
-    not blended; None where that cannot be measured.
+    """Return the gap between a loop's ends, on the joints its layer moves, with the distance that shows if it
+    is not blended; None if it cannot be measured.
     """
     motion = motion_of(project, loop)
     if motion is None or project.skeleton is None:
@@ -130,7 +134,7 @@ def measure_seam(project: Project, graph: MetaGraph, loop: Action) -> EndGap | N
 
 
 def motion_of(project: Project, action: Action | None) -> Clip | None:
-    """Return an action's clip, if it is there and has the project's skeleton."""
+    """Return an action's clip if it is loaded and has the project's skeleton, else None."""
     entry = project.clips.get(action.clip) if action is not None else None
     motion = entry.motion if entry is not None else None
     return motion if motion is not None and motion.skeleton == project.skeleton else None
@@ -150,15 +154,15 @@ def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, .
 def _reached_by(
     skeleton: Skeleton | None, parts: tuple[Part, ...], weighty: tuple[Part, ...]
 ) -> tuple[int, ...]:
-    """Return the joints of the body parts that a layer moves, but for those that only steer others."""
+    """Return the joints of the body parts that a layer moves, without those that only control others."""
     controls = rig_controls(skeleton) if skeleton is not None else ()
     return tuple(j for j, part in enumerate(parts) if part in weighty and j not in controls)
 
 
 @lru_cache(maxsize=65536)
 def _gap(a: ref[Clip], seconds_a: float, b: ref[Clip], seconds_b: float, joints: tuple[int, ...]) -> float:
-    """Largest distance in metres of the joints, root aside. Clips compare by identity, so edits elsewhere
-    cost nothing; and by `ref`, so that those of a closed project are let go.
+    """Return the largest distance of the joints in metres, without the root. Clips are compared by identity,
+    so other edits take no time, and held by `ref`, so that those of a closed project are freed.
     """
     one, other = a(), b()
     assert one is not None and other is not None

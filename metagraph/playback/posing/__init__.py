@@ -1,1 +1,1 @@
-"""From a plan to poses: layers, weight, contacts and feet."""
+"""Turn plans into poses: layers, weight, contacts and feet."""

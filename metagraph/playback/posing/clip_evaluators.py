@@ -1,5 +1,5 @@
-"""Clips looked at alone, and clips that move a character while a plan says where it looks and what it says:
-evaluators of the same kind as `evaluator.Evaluator`.
+"""Evaluate single clips, and clips that move a character while a plan says where it looks and what it says.
+These have the same methods as `evaluator.Evaluator`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Faces = list[dict[str, float]]
 
 
 class ClipEvaluator:
-    """A clip by itself, on its own skeleton."""
+    """Plays only a clip, on its own skeleton."""
 
     def __init__(self, project: Project, clip: Clip) -> None:
         self._clip = fit_curves_to_face(project, clip)
@@ -42,7 +42,7 @@ class ClipEvaluator:
 
 
 class MovedEvaluator(Evaluator):
-    """A clip that moves the whole body; the plan moves eyes, lids and lips, and breathes."""
+    """Plays a clip that moves the whole body. The plan moves eyes, lids and lips, and breathes."""
 
     def __init__(self, plan: Plan, project: Project, clip: Clip) -> None:
         super().__init__(plan, project)
@@ -61,7 +61,9 @@ class MovedEvaluator(Evaluator):
 
 
 class OverlaidEvaluator(Evaluator):
-    """A plan with live motion over it. over: what lies over it at a time, seconds; None for nothing."""
+    """Plays a plan with live motion over it. `over` returns the overlay at a time in seconds, None
+    for none.
+    """
 
     def __init__(self, plan: Plan, project: Project, over: Callable[[float], Overlay | None]) -> None:
         super().__init__(plan, project)
@@ -81,7 +83,7 @@ class OverlaidEvaluator(Evaluator):
 
 
 class GeneratedEvaluator(Evaluator):
-    """A generated clip: it moves what is above the hips, the plan moves the rest."""
+    """Plays a generated clip. It moves everything above the hips; the plan moves the rest."""
 
     def __init__(self, plan: Plan, project: Project, clip: Clip) -> None:
         super().__init__(plan, project)

@@ -1,4 +1,4 @@
-"""The composer: layers add their offsets from the base pose (Borer et al., section 5).
+"""Compose layers: they add their offsets from the base pose (Borer et al., section 5).
 
 An offset of rotation is `base^-1 * q`, multiplied on the right; an offset of translation is a difference. A
 joint's pose is `base * body^w * arms^w * head^w` over the layers whose weight on its body part is not zero.
@@ -27,10 +27,10 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Offsets:
-    """A clip relative to the base pose, for the joints a layer reaches.
+    """A clip relative to the base pose, for the joints that a layer reaches.
 
-    rotations `[F, n, 4]`, neighbours on the same side; translations `[F, m, 3]` for the places `moved` `[m]`
-    among them; float32.
+    Rotations `[F, n, 4]`, with neighbouring frames on the same side; translations `[F, m, 3]` of the joints
+    that `moved` `[m]` lists, as indices into the n joints; float32.
     """
 
     rotations: Array
@@ -40,7 +40,7 @@ class Offsets:
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """The joints a layer moves `[n]` and its weights on them `[n, 1]`, None where all are 1."""
+    """The joints `[n]` that a layer moves, and its weights on them `[n, 1]`, None if all are 1."""
 
     joints: Array
     weights: Array | None
@@ -51,7 +51,7 @@ class Reach:
 
 
 class Ground:
-    """A skeleton and a base pose, with the offsets of every clip asked for so far."""
+    """A skeleton and a base pose, with the offsets of all clips used so far."""
 
     def __init__(self, skeleton: Skeleton, base: Pose) -> None:
         self.skeleton, self.base = skeleton, base
@@ -59,8 +59,10 @@ class Ground:
         self._offsets: WeakKeyDictionary[Clip, dict[bytes, Offsets]] = WeakKeyDictionary()
 
     def offsets(self, clip: Clip, reach: Reach, keep: bool = True) -> Offsets:
-        """Return a clip's offsets on the joints of a layer. keep: whether they are remembered; not by who
-        asks once. Raises ValueError when the clip has another skeleton.
+        """Return a clip's offsets on the joints of a layer.
+
+        `keep` says whether to remember them; callers that need them once do not. Raises ValueError if the
+        clip has another skeleton.
         """
         known = self._offsets.get(clip)
         if known is None:
@@ -81,14 +83,14 @@ class Ground:
 
 @dataclass(frozen=True, eq=False)
 class ComposerRig:
-    """How layers reach joints."""
+    """The joints that each layer reaches."""
 
     ground: Ground
     reach: Mapping[Layer, Reach]
 
     def compose(self, layers: Mapping[Layer, tuple[Array, Array]], count: int) -> Pose:
-        """Add layers' offsets, each rotations `[count, n, 4]` and translations `[count, n, 3]`, to the base
-        pose.
+        """Add the layers' offsets, rotations `[count, n, 4]` and translations `[count, n, 3]` each, to the
+        base pose.
         """
         base = self.ground.base
         rotations = np.repeat(base.rotations[None], count, 0)
@@ -107,7 +109,7 @@ class ComposerRig:
 
 @lru_cache(maxsize=8)
 def _ground(skeleton: Skeleton, whose: ref[Clip] | None, frame: int) -> Ground:
-    clip = whose() if whose is not None else None  # not kept: its project may be closed
+    clip = whose() if whose is not None else None  # a weak reference, because its project may be closed
     if clip is None:
         rest = skeleton.rest
         return Ground(skeleton, Pose(rest.rotations.astype(np.float32), rest.translations.astype(np.float32)))
@@ -129,8 +131,8 @@ def _rig(
 
 
 def find_composer(project: Project) -> ComposerRig:
-    """Return how a project's layers reach joints; the same object as long as skeleton, base pose, parts and
-    weights stay as they are. Raises ValueError without a skeleton.
+    """Return the joints that a project's layers reach; the same object while skeleton, base pose, parts and
+    weights stay the same. Raises ValueError without a skeleton.
     """
     if project.skeleton is None:
         raise ValueError("a project without clips cannot be posed")
@@ -146,8 +148,8 @@ def find_composer(project: Project) -> ComposerRig:
 
 
 def playable(project: Project, action: Action) -> Clip | None:
-    """Return the motion of an action, its curves on the project's face; None where its clip is missing or
-    has another skeleton.
+    """Return the motion of an action, its curves on the project's face; None if its clip is missing or has
+    another skeleton.
     """
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None

@@ -1,5 +1,5 @@
-"""Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as
-much as shows of it.
+"""Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each
+by how much of it shows.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from metagraph.motion.contact_spans import HANDS, ContactSpan, contact_key, cont
 from metagraph.playback.plan import Cue, LayerPlan, Rest
 from metagraph.playback.posing.cue_times import cue_seconds, cue_weight, ease
 
-LEAST = 1e-6  # of a hand: what shows less than this is not solved
+LEAST = 1e-6  # of a hand: goals with less weight are not solved
 
 
 def layer_goals(
@@ -25,8 +25,10 @@ def layer_goals(
     time: float,
     strength: float,
 ) -> list[HandGoal]:
-    """Return what a layer wants of the hands at a time. cue: the one that plays, if it has motion. place: of
-    the rest that is in force, -1 for none. strength: how much of the arms the layer moves, 0..1.
+    """Return where a layer wants the hands at a time.
+
+    `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none.
+    `strength` is how much of the arms the layer moves, 0..1.
     """
     out: list[HandGoal] = []
     shown = [0.0, 0.0]
@@ -55,7 +57,7 @@ def _loop_goals(
     strength: float,
     shown: Sequence[float],
 ) -> list[HandGoal]:
-    """Return what a loop wants, less what shows of the cue above it."""
+    """Return where a loop wants the hands, less what the cue above it covers."""
     out: list[HandGoal] = []
     action = rest.action
     if len(action.contacts) == 0:
@@ -82,8 +84,8 @@ def _loop_goals(
 def _goals(
     rig: ContactRig, project: Project, action: Action, seconds: float, shares: Sequence[float]
 ) -> list[HandGoal]:
-    """Return the goals of an action at clip seconds. shares: how much of it shows at the left hand, the
-    right.
+    """Return the goals of an action at a second of its clip. `shares` says how much of it shows at the left
+    and the right hand.
     """
     out: list[HandGoal] = []
     start, end = project.span(action)
@@ -104,7 +106,7 @@ def _arm(span: ContactSpan) -> int:
 
 
 def _moves(rig: ContactRig, action: Action, arm: int, hand: str) -> bool:
-    """Whether an action moves a hand, and does not leave it to its stance."""
+    """Return whether an action moves a hand, instead of leaving it in the stance."""
     if action.limb not in ("both", hand):
         return False
     return len(action.joints) == 0 or rig.hands[arm] in action.joints

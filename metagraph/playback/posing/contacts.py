@@ -1,6 +1,7 @@
-"""Hands that stay where they touch, and out of the body: what contacts and the guard make of composed poses.
+"""Keep hands where they touch the body, and outside it: apply contacts and the guard to composed poses.
 
-The rules are `motion.contact_solve`'s and `contact_goals`', which all runtimes share; here they meet arrays.
+The rules are those of `motion.contact_solve` and `contact_goals`, which all runtimes share; this module
+applies them to arrays.
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ FEW = 2  # poses
 
 
 def find_body_parts(project: Project, character: CharacterMesh | None = None) -> tuple[BodyPart, ...]:
-    """Return the parts of a project's body: as it says, else found from its skeleton, or from the mesh of a
-    character on that.
+    """Return the parts of a project's body: those it lists, else those found from its skeleton or from a
+    character's mesh on it.
     """
     if project.touch.parts or project.skeleton is None:
         return project.touch.parts
@@ -54,7 +55,7 @@ def find_body_parts(project: Project, character: CharacterMesh | None = None) ->
 
 
 def find_contact_rig(project: Project) -> ContactRig | None:
-    """Return what contacts need of a project, None of one without two arms."""
+    """Return the rig that contacts of a project need, None if it does not have two arms."""
     skeleton, roles, targets = project.skeleton, anatomy.project_roles(project), sorted(project.touched)
     arms = [[roles.get(f"{s}_{p}") for p in ("upper_arm", "lower_arm", "hand")] for s in SIDES]
     if skeleton is None or any(j is None for arm in arms for j in arm):
@@ -76,7 +77,7 @@ def rig_on(
     project: Project,
 ) -> ContactRig | None:
     """Return a rig of some joints of a skeleton: those of the arms (upper, lower, hand), of the parts, those
-    that contacts are with, and all above them. None where an arm's joints are not one below the other.
+    that contacts touch, and all their ancestors. Return None if an arm's joints are not one below the other.
     """
     if any(
         lower not in skeleton.descendants(upper) or upper == lower
@@ -139,22 +140,23 @@ def goals_at(plan: Plan, project: Project, rig: ContactRig, time: float) -> list
 
 
 def has_contacts(project: Project) -> bool:
-    """Whether a project has the guard on, or contacts that are on."""
+    """Return whether a project has the guard on, or has contacts and has them on."""
     touch = project.touch
     return project.skeleton is not None and (touch.guard or (touch.contacts and bool(project.touched)))
 
 
 class ContactStage:
-    """Keeps the hands of a plan in contact, and out of the body."""
+    """Keeps the hands of a plan in contact, and outside the body."""
 
     def __init__(self, plan: Plan, project: Project, rig: ContactRig | None) -> None:
         self._plan, self._project = plan, project
         self._rig = rig if has_contacts(project) else None
 
     def run(self, pose: Pose, times: Array, shown: Array | None = None) -> Pose:
-        """Return composed poses `[N, J]` with hands kept in contact and out of the body at `times [N]`; the
-        very same arrays where nothing is to be done. shown `[N]`: how much of what the plan does with arms is
-        seen, 0..1; None for all.
+        """Return composed poses `[N, J]` with hands kept in contact and outside the body at `times [N]`; the
+        same arrays if nothing changes.
+
+        `shown` `[N]` is how much of the plan's arm motion is seen, 0..1; None for all.
         """
         rig = self._rig
         if rig is None or not len(times):
@@ -171,11 +173,11 @@ class ContactStage:
 
 
 def pose_with_contacts(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
-    """Return poses `[N, J]` with hands at their goals, and out of the body where the rig's guard is on."""
+    """Return poses `[N, J]` with hands at their goals, and outside the body if the rig's guard is on."""
     busy = np.array([bool(g) for g in goals])
     if rig.guard and not busy.all():
         idle = np.flatnonzero(~busy)
-        # For a few, arrays are not worth their while: they are gone through one by one.
+        # A few poses are solved one by one, because setting up arrays takes longer.
         few = len(idle) <= FEW
         busy[idle] = few or inside(rig, Pose(pose.rotations[idle], pose.translations[idle]))
     if not busy.any():
@@ -203,8 +205,8 @@ def inside(rig: ContactRig, pose: Pose) -> Array:
 
 
 def contact_depths(rig: ContactRig, pose: Pose) -> Array:
-    """Return `[N, P]` how deep forearms and hands are inside other parts, metres, below 0 where outside, for
-    every pair of them.
+    """Return `[N, P]` how deep forearms and hands are inside other parts, in metres, negative outside, for
+    every pair.
     """
     first, second, _ = capsule_pairs(rig)
     a, b = ends(rig, pose)
@@ -214,7 +216,9 @@ def contact_depths(rig: ContactRig, pose: Pose) -> Array:
 
 
 def capsule_pairs(rig: ContactRig) -> tuple[list[int], list[int], list[tuple[int, int]]]:
-    """Return the places of capsules that are kept out of each other: those pushed, the others, and both."""
+    """Return the indices of capsules that are kept apart: those that are pushed, the others, and
+    the pairs.
+    """
     both = [
         (i, k)
         for i, mine in enumerate(rig.capsules)
@@ -246,8 +250,8 @@ def ends(rig: ContactRig, pose: Pose) -> tuple[Array, Array]:
 
 
 def nearest_between_lines(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
-    """Return the shortest ways `[..., 3]` from lines from c to d to those from a to b, `[..., 3]` each, and
-    how far along the latter they end, 0..1: `contact_solve.apart` for arrays.
+    """Return the shortest vectors `[..., 3]` from lines c-d to lines a-b, points `[..., 3]` each, and how far
+    along a-b they end, 0..1: `contact_solve.apart` for arrays.
     """
     u, v, w = b - a, d - c, a - c
     uu, uv, vv = (u * u).sum(-1), (u * v).sum(-1), (v * v).sum(-1)

@@ -1,5 +1,5 @@
-"""What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds`
-have it for arrays.
+"""Compute what of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and
+`Cue.clip_seconds` do the same with arrays.
 """
 
 from __future__ import annotations
@@ -13,9 +13,11 @@ from metagraph.playback.plan import Cue, Rest
 
 @dataclass(frozen=True, slots=True)
 class LoopSpot:
-    """Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone
-    from there to here, 1 where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin
-    and end.
+    """Where a loop is.
+
+    `seconds` is the time in its clip, `other` the time on the other side of its seam. `over` is how far it
+    has blended from there to here, 1 if no seam shows. `leaves` and `meets` are the clip seconds at which the
+    two sides of the seam begin and end.
     """
 
     seconds: float
@@ -26,7 +28,7 @@ class LoopSpot:
 
 
 def loop_spot(project: Project, rest: Rest, time: float) -> LoopSpot:
-    """Return where a stance's loop is at a time, as `player.loop_seconds` has it."""
+    """Return where a stance's loop is at a time, as `player.loop_seconds` does."""
     action = rest.action
     start, end = project.span(action)
     seam = min(max(0.0, action.timing.blend_in), (end - start) / 2.0)
@@ -61,6 +63,6 @@ def cue_seconds(cue: Cue, time: float) -> float:
 
 
 def ease(x: float) -> float:
-    """Return 3 x^2 - 2 x^3 of x within 0..1."""
+    """Return 3 x^2 - 2 x^3 of x clamped to 0..1."""
     x = min(max(x, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)

@@ -1,6 +1,7 @@
-"""Where the feet of a project's clips are and when they stand, and where a plan wants them at a time.
+"""Find where the feet of a project's clips are and when they stand, and where a plan wants them at a time.
 
-The rules are `planted_feet`'s and `motion.feet_solve`'s, which all runtimes share; here they meet arrays.
+The rules are those of `planted_feet` and `motion.feet_solve`, which all runtimes share; this module applies
+them to arrays.
 """
 
 from __future__ import annotations
@@ -24,14 +25,13 @@ from metagraph.playback.posing.planted_feet import FOOT_NUMBERS, FOOT_RATE, FOOT
 Array = NDArray[Any]
 Rows = Sequence[Sequence[float]]
 
-STANDS = 0.03  # of the height a second: a foot whose joints are slower stands
-SAME = 10  # units of a row: what moves less all along needs one row
-# How fast joints are is told over as long as two rows are apart: from one frame to the next, clips that are
-# stored in 16 bits tremble.
+STANDS = 0.03  # of the height, a second: a foot whose joints are slower stands
+SAME = 10  # units of a row: a clip that moves less all along needs only one row
+# Speeds are measured over the time between two rows: from frame to frame, clips stored in 16 bits tremble.
 
 
 def moves_legs_alone(project: Project, rig: WeightRig) -> bool:
-    """Whether the body's layer alone moves the joints from the root to the feet, as much as it was made:
+    """Return whether only the body's layer moves the joints from the root to the feet, with full weight. The
     feet are then where its clips have them.
     """
     parts = anatomy.project_parts(project)
@@ -46,7 +46,7 @@ def moves_legs_alone(project: Project, rig: WeightRig) -> bool:
 
 
 def _leads(rig: WeightRig, place: int) -> bool:
-    """Whether a place lies above a leg."""
+    """Return whether a joint is above a leg."""
     for leg in rig.body.arms:
         here = leg.upper
         while here >= 0:
@@ -84,14 +84,14 @@ def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
 
 
 class FeetOfPlan:
-    """Where the feet should be in a plan."""
+    """Says where the feet should be in a plan."""
 
     def __init__(self, rows: Any, height: float) -> None:
         self.rows, self.height = rows, height
         self.tracks: dict[str, FootTrack] = {}
 
     def goals(self, plan: Plan, project: Project, time: float) -> list[FootGoal]:
-        """Return where both should be at a time, nothing where nothing blends."""
+        """Return where both feet should be at a time; an empty list if nothing blends."""
         layer = plan.layers["body"]
         if not layer.rests:
             return []

@@ -1,7 +1,8 @@
-"""What the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+"""Compute what the arms of a plan weigh at a time: how far a gesture has carried their mass away from its
+stance.
 
-The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline
-through their places at four fixed times before it: smooth, and a function of plan and time alone.
+The body answers with a delay, so it follows not the arms' place at one time but a cubic B-spline through
+their places at four fixed times before it. This is smooth, and a function of plan and time only.
 """
 
 from __future__ import annotations
@@ -14,19 +15,21 @@ from metagraph.graph.model import Action, Project
 from metagraph.playback.plan import Cue, LayerPlan, Rest
 from metagraph.playback.posing.cue_times import cue_seconds, cue_weight, ease, loop_spot
 
-STEP = 0.08  # seconds between the times that are looked at; the answer comes two of them late
-OFFSET = 0.0111  # seconds that they lie beside whole steps, where cues begin and end
+STEP = 0.08  # seconds between the sampled times; the answer comes two of them late
+OFFSET = 0.0111  # seconds by which they are shifted from whole steps, where cues begin and end
 KNOTS = 4
 RATE = 10.0  # rows of a track in a second of its clip
-UNIT = 1e-5  # metres, or radians, that 1 in a row stands for
+UNIT = 1e-5  # metres, or radians, of 1 in a row
 NUMBERS = 8  # in a row
 
 
 @dataclass(frozen=True, slots=True)
 class ArmTrack:
-    """What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much
-    the left arm shifts the centre of mass of the whole body to the left, up and ahead, the right arm the
-    same, and how far each collar bone lags behind its arm; in units of `UNIT`.
+    """What a clip's arms do.
+
+    `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left
+    arm shifts the centre of mass of the whole body to the left, up and ahead, the same for the right arm, and
+    how far each collar bone lags behind its arm; in units of `UNIT`.
     """
 
     clip: str
@@ -34,12 +37,12 @@ class ArmTrack:
 
 
 def knot_before(time: float) -> int:
-    """Return the number of the last time that is looked at for a pose at `time`."""
+    """Return the number of the last sampled time for a pose at `time`."""
     return floor((time - OFFSET) / STEP)
 
 
 def knot_time(number: int) -> float:
-    """Return when a time that is looked at is, seconds."""
+    """Return the time of a sample, in seconds."""
     return number * STEP + OFFSET
 
 
@@ -55,11 +58,12 @@ def arm_sway(
     body_place: int,
     time: float,
 ) -> list[float]:
-    """Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+    """Return how far the arms are from their stance at a time, as a row of a track, in metres and radians.
 
-    tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion;
-    place: of the rest in force, -1 for none; of the body's layer the same. A cue of the very clip that the
-    body's layer shows, too, brings its own hips and counts for nothing.
+    `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has
+    motion, and `place` the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same
+    for the body's layer. A cue of the clip that the body's layer also shows brings its own hips and does not
+    count.
     """
     out = [0.0 for n in range(NUMBERS)]
     if cue is None:
@@ -85,8 +89,8 @@ def arm_sway(
 
 
 def driven(sways: Sequence[Sequence[float]], time: float) -> list[float]:
-    """Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of
-    the last `KNOTS` times before it.
+    """Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the
+    rows of the last `KNOTS` times before it.
     """
     u = (time - OFFSET) / STEP
     u = u - floor(u)
@@ -112,7 +116,7 @@ def driven(sways: Sequence[Sequence[float]], time: float) -> list[float]:
 
 
 def _moves(action: Action, side: str, hand: str) -> bool:
-    """Whether an action moves an arm, and does not leave it to its stance."""
+    """Return whether an action moves an arm, instead of leaving it in the stance."""
     if action.limb not in ("both", side):
         return False
     return len(action.joints) == 0 or hand in action.joints
@@ -149,7 +153,7 @@ def _is_of(tracks: Mapping[str, ArmTrack], action: Action, clip: str) -> bool:
 def _stance(
     project: Project, tracks: Mapping[str, ArmTrack], plan: LayerPlan, place: int, time: float
 ) -> list[float]:
-    """Return the row of the stance that lies under the cues."""
+    """Return the row of the stance under the cues."""
     if place < 0:
         return [0.0 for n in range(NUMBERS)]
     rest = plan.rests[place]
@@ -162,7 +166,7 @@ def _stance(
 
 
 def _loop(project: Project, tracks: Mapping[str, ArmTrack], rest: Rest, time: float) -> list[float]:
-    """Return the row of a loop, its end faded into its beginning."""
+    """Return the row of a loop, with its end blended into its beginning."""
     track = tracks.get(rest.action.id)
     if track is None or len(track.rows) == 0:
         return [0.0 for n in range(NUMBERS)]
@@ -176,7 +180,7 @@ def _loop(project: Project, tracks: Mapping[str, ArmTrack], rest: Rest, time: fl
 
 
 def _row(track: ArmTrack, seconds: float) -> list[float]:
-    """Return a track's row at clip seconds, on the straight line between its rows."""
+    """Return a track's row at a second of the clip, interpolated linearly."""
     last = len(track.rows) - 1
     at = min(max(seconds * RATE, 0.0), float(last))
     low = min(floor(at), max(0, last - 1))

@@ -1,7 +1,7 @@
-"""Whether feet stay where they stand: which foot is held, steps or is in the air at a time, and how fast one
-that stands slides. What the window marks and what `tests/benchmarks` counts is measured here.
+"""Measure whether feet stay where they stand: which foot is held, steps or is in the air at a time, and how
+fast a standing foot slides. The window's marks and the counts of `tests/benchmarks` come from here.
 
-A foot is two joints where a skeleton has toes, ankle and toes: one that rolls over its toes still stands.
+A foot is two joints if the skeleton has toes, ankle and toes: a foot that rolls over its toes still stands.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ from metagraph.playback.posing.weight import foot_rows_of, has_planted_feet
 Array = NDArray[Any]
 
 SIDES = ("left", "right")
-# Slides are told over a quarter of a second: from one frame to the next, clips that are stored in 16 bits
-# tremble by a tenth of a millimetre, which is 3 mm/s that lead nowhere and nobody sees.
+# Slides are measured over a quarter of a second: from frame to frame, clips stored in 16 bits tremble by a
+# tenth of a millimetre, which is 3 mm/s that nobody sees.
 WINDOW = 0.25
-RATE = 24.0  # samples a second of `FeetSeen`: six of them are a window
+RATE = 24.0  # samples a second of `FeetSeen`; six of them make a window
 HALF = round(WINDOW * RATE) // 2  # samples of half a window
-SLIDES = 0.010  # metres a second from which a foot that stands is said to slide; ours
-STEPS = 0.0005  # metres a step has a foot higher than it would be
-CLEAR = 0.02  # of the height: a foot of which everything is that much above where it stands is in the air
-KEPT = 20_000  # samples that are remembered
-STILL = 64  # frames of a clip of which the lowest tell where its feet stand
+SLIDES = 0.010  # metres a second from which a standing foot counts as sliding; our choice
+STEPS = 0.0005  # metres by which a step lifts a foot higher than it would be
+CLEAR = 0.02  # of the height: a foot with all joints that much above where it stands is in the air
+KEPT = 20_000  # samples that are kept
+STILL = 64  # frames of a clip; the lowest of them show where its feet stand
 
 
 class FootState(IntEnum):
-    """HELD: stands. STEPPING: on its way, near the ground. LIFTED: in the air."""
+    """HELD: the foot stands. STEPPING: it moves near the ground. LIFTED: it is in the air."""
 
     HELD = 0
     STEPPING = 1
@@ -51,8 +51,10 @@ class FootState(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class FeetSeen:
-    """Both feet over times. states `[N, 2]`: a `FootState`, left and right. slides `[N, 2]`: metres a second
-    over a window round the time, of feet that stand, else 0. places `[N, 2, 3]`: where a foot is, metres.
+    """Both feet over times.
+
+    `states` `[N, 2]` has a `FootState` for left and right. `slides` `[N, 2]` has metres a second over a
+    window around the time for standing feet, else 0. `places` `[N, 2, 3]` says where a foot is, in metres.
     """
 
     times: Array
@@ -61,29 +63,29 @@ class FeetSeen:
     places: Array
 
     def sliding(self, least: float = SLIDES) -> Array:
-        """Return which feet slide `[N, 2]`."""
+        """Return which feet slide faster than `least` metres a second, `[N, 2]`."""
         return np.asarray(self.slides > least)
 
 
 def feet_joints(project: Project) -> list[list[int]]:
-    """Return the joints of the left and the right foot; nothing of who has not both."""
+    """Return the joints of the left and the right foot; an empty list if a foot is missing."""
     roles = anatomy.project_roles(project)
     out = [[roles[f"{s}_{p}"] for p in ("foot", "toes") if f"{s}_{p}" in roles] for s in SIDES]
     return out if all(out) else []
 
 
 def slide_speeds(places: Array, rate: float) -> Array:
-    """Return how fast places `[N, ..., 3]`, so many a second, move `[N - w, ...]` in the window that begins
-    at each, metres a second: from its beginning to its end.
+    """Return how fast places `[N, ..., 3]`, `rate` a second, move `[N - w, ...]` in the window that begins at
+    each, in metres a second, from its beginning to its end.
     """
     window = max(1, round(WINDOW * rate))
     return np.asarray(np.linalg.norm(places[window:] - places[:-window], axis=-1) / (window / rate))
 
 
 def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Array]:
-    """Return what of the body's layer plays at each time `[N]`, in words, and how fast its clips themselves
-    move the feet's joints `[N, F]` in the window that begins there, metres a second: the faster of two that
-    blend. times: ascending.
+    """Return what the body's layer plays at each time `[N]`, as words, and how fast its clips themselves move
+    the joints of the feet `[N, F]` in the window that begins there, in metres a second. Of two that blend,
+    the faster one counts. `times` ascend.
     """
     layer, skeleton = plan.layers["body"], project.skeleton
     assert skeleton is not None
@@ -125,9 +127,10 @@ def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Arra
 
 
 class FeetWatch:
-    """Watches the feet of what plays, and remembers it. places_at: joints' places `[N, J, 3]` at times
-    `[N]`. plan: whose clips tell when a foot stands; None where the motion itself does, as of a clip alone.
-    clip: that one.
+    """Watches the feet of what plays, and remembers them.
+
+    `places_at` returns the joints' places `[N, J, 3]` at times `[N]`. `plan` has the clips that say when a
+    foot stands; None if the motion itself says it, as for a single clip, which is `clip`.
     """
 
     def __init__(
@@ -148,11 +151,11 @@ class FeetWatch:
         steps = plan is not None and has_planted_feet(project) and rig is not None
         self._goals = FeetOfPlan(partial(foot_rows_of, weight), self._height) if steps and weight else None
         self._floor: Array | None = None
-        self._known: dict[int, tuple[Array, Array, Array]] = {}  # of a sample: places, clips' speeds, steps
+        self._known: dict[int, tuple[Array, Array, Array]] = {}  # by sample: places, clips' speeds, steps
 
     def look(self, numbers: range, most: int | None = None) -> bool:
-        """See what is not known yet of the times `number / RATE`, so many poses at most, from the first on;
-        return whether all is known.
+        """Look at the times `number / RATE` that are not known yet, at most `most` poses from the first on.
+        Return whether all are known.
         """
         missing = [n for n in _widened(numbers) if n not in self._known] if self._joints else []
         if len(self._known) + len(missing) > KEPT:
@@ -169,7 +172,7 @@ class FeetWatch:
         return len(some) == len(missing)
 
     def at(self, numbers: range) -> FeetSeen:
-        """Return both feet at the times `number / RATE`; all of them are looked at."""
+        """Return both feet at the times `number / RATE`, looking at all that are not known yet."""
         self.look(numbers)
         times = np.array(numbers) / RATE
         if not self._joints or not len(times):
@@ -177,11 +180,11 @@ class FeetWatch:
             return FeetSeen(times[:0], none.astype(int), none, np.zeros((0, 2, 3)))
         rows = [self._known[n] for n in _widened(numbers)]
         at, own, steps = (np.array(part) for part in zip(*rows, strict=True))
-        speed = slide_speeds(at, RATE)  # of windows that begin at each sample
+        speed = slide_speeds(at, RATE)  # of the windows that begin at each sample
         if self.plan is None:
             own = speed
         count = len(times)
-        # A foot stands where it does in the windows before, round and after the time, and steps in none.
+        # A foot stands if it stands in the windows before, around and after the time, and steps in none.
         own = np.max([own[k : k + count] for k in (0, HALF, 2 * HALF)], axis=0)
         still = own < HELD_BELOW * self._height
         near = np.any([steps[k : k + count] for k in range(HALF, 3 * HALF + 1)], axis=0)
@@ -196,14 +199,14 @@ class FeetWatch:
             held = still[:, side].any(1) & ~air & ~steps[:, n]
             states[air, n] = int(FootState.LIFTED)
             states[held, n] = int(FootState.HELD)
-            # What turns about its heel or its toes does not slide: its slower end tells.
+            # A foot that turns about its heel or its toes does not slide: its slower end counts.
             slides[:, n] = np.where(held & ~near[:, n], round_it[:, side].min(1), 0.0)
             places[:, n] = here[:, side].mean(1)
         return FeetSeen(times, states, slides, places)
 
     def floor(self) -> Array:
-        """Return how high each of the feet's joints is where it stands `[F]`, metres: the lowest of what the
-        clip has, or the loop a performance begins with.
+        """Return how high each joint of the feet is while standing `[F]`, in metres: the lowest in the clip,
+        or in the loop that the performance begins with.
         """
         if self._floor is None:
             assert self.project.skeleton is not None
@@ -220,7 +223,7 @@ class FeetWatch:
         return self._floor
 
     def _stepping(self, times: Array) -> Array:
-        """Return which feet are taken over in a step where poses blend `[N, 2]`."""
+        """Return which feet are moved by a step where poses blend, `[N, 2]`."""
         out = np.zeros((len(times), 2), bool)
         if self._goals is None or self.plan is None:
             return out
@@ -231,12 +234,12 @@ class FeetWatch:
 
 
 def _widened(numbers: range) -> range:
-    """Return which samples tell about others: a window before them and after."""
+    """Return the samples that are needed for others: also a window before and after."""
     return range(numbers.start - 2 * HALF, numbers.stop + 2 * HALF)
 
 
 def worst_slide(seen: FeetSeen) -> tuple[float, int, float] | None:
-    """Return time, side and speed, metres a second, of the fastest slide there is; None of none."""
+    """Return time, side and speed, in metres a second, of the fastest slide; None if there is none."""
     if not len(seen.times) or not seen.sliding().any():
         return None
     n, side = np.unravel_index(int(np.argmax(seen.slides)), seen.slides.shape)

@@ -1,4 +1,4 @@
-"""Which hands contacts keep where at a time, and how far they are from there."""
+"""Find where contacts keep the hands at a time, and how far the hands are from there."""
 
 from __future__ import annotations
 
@@ -18,14 +18,17 @@ from metagraph.playback.posing.rigs import rigs_of
 
 Array = NDArray[Any]
 
-WHOLE = 0.99  # weight from which on a contact is one that should be met
-MISSED = 0.01  # metres from which on a hand is away from where its contact wants it
+WHOLE = 0.99  # weight from which on a contact should be met
+MISSED = 0.01  # metres from which on a hand misses its contact
 
 
 @dataclass(frozen=True, slots=True)
 class HandTouch:
-    """A hand that a contact keeps somewhere. side: 0 left, 1 right. hand, to: joints, of it and of what it
-    touches. weight: how much of the contact shows, 0..1. away: metres of the wrist from where it should be.
+    """A hand that a contact keeps somewhere.
+
+    `side` is 0 for left, 1 for right. `hand` and `to` are the joints of the hand and of what it touches.
+    `weight` is how much of the contact shows, 0..1. `away` is the distance of the wrist from where it should
+    be, in metres.
     """
 
     side: int
@@ -36,12 +39,12 @@ class HandTouch:
 
     @property
     def held(self) -> bool:
-        """Whether it has come and not yet begun to leave."""
+        """Return whether the hand has arrived and not yet begun to leave."""
         return self.weight >= WHOLE
 
     @property
     def missed(self) -> bool:
-        """Whether the hand should be there and is not."""
+        """Return whether the hand should be there and is not."""
         return self.held and self.away >= MISSED
 
 
@@ -50,8 +53,8 @@ def hand_touches(
 ) -> list[HandTouch]:
     """Return the contacts of a plan at a time, left hand first, one for each hand and joint it touches.
 
-    rotations, positions: `[J, 4]` and `[J, 3]` in model space, metres, of the pose that is seen then. None
-    where a project has its contacts off, or no two arms.
+    `rotations` `[J, 4]` and `positions` `[J, 3]` are the visible pose in model space, in metres. The list is
+    empty if the project has its contacts off, or does not have two arms.
     """
     rig = rigs_of(project).contacts if project.skeleton is not None else None
     if rig is None or not rig.contacts:
@@ -71,8 +74,8 @@ def _touch(rig: ContactRig, goals: Sequence[HandGoal], rotations: Array, positio
 
 
 def plan_of_clip(project: Project, clip: str) -> Plan:
-    """Return a plan of the first use with contacts of a clip on each layer, that plays it as itself: seconds
-    are the clip's.
+    """Return a plan that plays the first use with contacts of a clip on each layer unchanged: its seconds are
+    the clip's.
     """
     layers: dict[Layer, LayerPlan] = {layer: LayerPlan(layer) for layer in LAYERS}
     length = project.clips[clip].duration

@@ -1,5 +1,5 @@
-"""What the layers of a plan add to the base pose, at a time or at many: clips played, faded, and led in from
-and out to their stances.
+"""Compute what the layers of a plan add to the base pose, at one or many times: clips are played, faded, and
+led in from and out to their stances.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ Array = NDArray[Any]
 Sample = tuple[Array, Array]
 
 _RESTING, _ENTERING, _FULL, _LEAVING = range(4)  # a cue's phases
-Met = tuple[int, bool, int, int]  # the place of the rest, whether it fades in, that of the cue, its phase
+Met = tuple[int, bool, int, int]  # index of the rest, whether it fades in, index of the cue, the cue's phase
 
 
 class LayersStage:
-    """The layers of a plan, composed."""
+    """Composes the layers of a plan."""
 
     def __init__(self, plan: Plan, project: Project, rig: ComposerRig) -> None:
         self._rig = rig
@@ -56,13 +56,13 @@ class _LayerStage:
             inf,
             inf,
             (0, False, 0, 0),
-        )  # from when until when, what is met
+        )  # start and end of a time span, and what plays in it
 
     def offsets(self, times: Array) -> Sample:
         """Return the layer's offsets at `times [N]`."""
         if len(times) == 1:
             return self._together(times, *self._meets(float(times[0])))
-        alike: dict[Met, list[int]] = {}  # what is met -> places among the times
+        alike: dict[Met, list[int]] = {}  # what plays -> indices of the times
         for n, time in enumerate(times.tolist()):
             alike.setdefault(self._meets(time), []).append(n)
         if len(alike) == 1:
@@ -74,7 +74,7 @@ class _LayerStage:
         return out
 
     def _meets(self, time: float) -> Met:
-        """Return what a time meets."""
+        """Return what plays at a time."""
         begin, until, met = self._lately
         if begin <= time < until:
             return met
@@ -94,7 +94,7 @@ class _LayerStage:
         return met
 
     def _together(self, times: Array, current: int, fading: bool, playing: int, phase: int) -> Sample:
-        """Return offsets at `times [N]` that all meet the same rest and the same phase of the same cue."""
+        """Return offsets at `times [N]` that all have the same rest and the same phase of the same cue."""
         project, plan, reach = self._project, self._plan, self._reach
         cue = plan.cues[playing] if phase != _RESTING else None
         motion = playable(project, cue.action) if cue is not None else None
@@ -116,7 +116,7 @@ class _LayerStage:
         return shown
 
     def _stance(self, times: Array, current: int, fading: bool) -> Sample:
-        """Return the offsets of the stance that lies under the cues."""
+        """Return the offsets of the stance under the cues."""
         rest = self._plan.rests[current]
         found = self._rest(rest, times)
         if not fading:
@@ -137,12 +137,12 @@ class _LayerStage:
 
 
 def zero_offsets(count: int, joints: int) -> Sample:
-    """Return offsets that leave the base pose as it is."""
+    """Return offsets that leave the base pose unchanged."""
     return rotation.identity_rotations((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
 
 
 def ease_blend(x: Array) -> Array:
-    """The blending curve: 3x^2 - 2x^3 of x clamped to 0..1."""
+    """Return the blending curve: 3x^2 - 2x^3 of x clamped to 0..1."""
     x = np.clip(x, 0.0, 1.0)
     return np.asarray(x * x * (3 - 2 * x))
 
@@ -168,9 +168,9 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
     """Return for seconds since a loop began: clip seconds, clip seconds of the seam's other side, and how
     much of that shows.
 
-    With a seam of x seconds the loop's last x seconds fade into its first, and its period is x shorter.
-    Before its beginning a loop runs as if it had gone on for ever; one with a seam waits in its first pose,
-    so that it starts without a jump.
+    With a seam of x seconds, the loop's last x seconds fade into its first, and its period is x shorter.
+    Before its beginning, a loop runs as if it had always been running; one with a seam waits in its first
+    pose, so that it starts without a jump.
     """
     start, end = project.span(action)
     length = end - start
@@ -187,8 +187,8 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
 
 
 def keep_to(shown: Sample, rest: Sample, moved: Array) -> None:
-    """Change a sample in place where joints move only in part, or not at all: how far, `moved [n]` 0..1, they
-    go from where they rest to where they are shown.
+    """Change a sample in place for joints that move in part, or not at all. `moved [n]`, 0..1, is how far
+    they go from the rest to the sample.
     """
     still, soft = np.flatnonzero(moved == 0), np.flatnonzero((moved > 0) & (moved < 1))
     for part, other in zip(shown, rest, strict=True):
@@ -201,7 +201,7 @@ def keep_to(shown: Sample, rest: Sample, moved: Array) -> None:
 
 
 def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sample:
-    """Play a sample larger or smaller round its stance. scales `[2, n]`: as `anatomy.scales`."""
+    """Play a sample larger or smaller around its stance. `scales [2, n]` is as in `anatomy.scales`."""
     share = (extent - 1) * scales[0 if extent > 1 else 1]
     apart = rotation.multiply(rotation.conjugate(stance[0]), shown[0])
     factor = 1 + share * ease_blend((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent
@@ -210,11 +210,11 @@ def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sa
 
 
 def _lead(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:
-    """Lead a clip in from, or out to, its stance: add `weight [N]` of what the stance differs from the clip's
-    pose at that edge.
+    """Lead a clip in from, or out to, its stance: add `weight [N]` of the difference between the stance and
+    the clip's pose at that edge.
 
-    A plain crossfade would hold the clip back and then hurry it, up to 1.7 times as fast as it was made; this
-    way the clip keeps its own speed, and where it begins in its stance there is next to nothing to add.
+    A plain crossfade would hold the clip back and then hurry it, up to 1.7 times as fast as it was made. This
+    way the clip keeps its own speed, and if it begins in its stance, there is almost nothing to add.
     """
     w = weight.astype(np.float32)[:, None, None]
     apart = rotation.multiply(rotation.conjugate(edge[0]), stance[0])
@@ -234,7 +234,7 @@ def _unit(q: Array) -> Array:
 
 
 def crossfade(a: Sample, b: Sample, weight: Array) -> Sample:
-    """Crossfade two samples, `weight [N]` of the second."""
+    """Crossfade two samples, with `weight [N]` of the second."""
     w = weight.astype(np.float32)[:, None]
     return rotation.nlerp(a[0], b[0], np.broadcast_to(w, b[0].shape[:-1])), a[1] + (b[1] - a[1]) * w[
         ..., None
@@ -242,7 +242,7 @@ def crossfade(a: Sample, b: Sample, weight: Array) -> Sample:
 
 
 def sample_offsets(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
-    """Return a clip's offsets at clip seconds `[N]`; the arrays are the caller's."""
+    """Return a clip's offsets at clip seconds `[N]`. The arrays belong to the caller."""
     offsets = ground.offsets(clip, reach)
     low, high, part = clip.locate(seconds)
     w = part[:, None, None]

@@ -1,8 +1,8 @@
-"""Motion laid over a plan: arms, head and spine as something else says, a learned model for one; legs and
-root stay with the body's layer.
+"""Lay motion over a plan, for example that of a learned model: it moves arms, head and spine; legs and root
+stay with the body's layer.
 
-It takes the place of the arms' and the head's layers, so it is added to what the body's layer does, as they
-are: somebody who shifts the weight while gesturing shifts it here, too.
+It replaces the layers of the arms and the head, so it is added to the body's layer as they are: a character
+that shifts its weight while gesturing also does so here.
 """
 
 from __future__ import annotations
@@ -31,9 +31,11 @@ MOVED: tuple[Part, ...] = ("spine", "arms", "head")
 
 @dataclass(frozen=True, eq=False)
 class Overlay:
-    """What is laid over a plan at times `[N]`. joints `[n]`, and their offsets from the base pose `turns [N,
-    n, 4]`. weight `[N]`: how much of it shows, 0..1. arms, head `[N]`: how much of what those layers play
-    shows instead, 0..1; a gesture takes the head along, a nod the head alone.
+    """Motion over a plan at times `[N]`.
+
+    `joints` `[n]` are moved by `turns` `[N, n, 4]`, offsets from the base pose. `weight` `[N]` is how much of
+    it shows, 0..1. `arms` and `head` `[N]` say how much of those layers shows instead, 0..1; a gesture takes
+    the head along, a nod only the head.
     """
 
     joints: Array
@@ -44,8 +46,8 @@ class Overlay:
 
 
 def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample], over: Overlay) -> Pose:
-    """Return the pose `[N, J]` of the body's layer with the other two, and the overlay in their place.
-    layers: what each adds.
+    """Return the pose `[N, J]` of the body's layer with the overlay in place of the other two layers, as far
+    as it shows. `layers` has what each layer adds.
     """
     count = len(over.weight)
     pose = rig.compose({"body": layers["body"]} if "body" in layers else {}, count)
@@ -61,7 +63,7 @@ def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample],
     turns[:, over.joints] = over.turns
     rotations = rotation.multiply(rotations, rotation.nlerp(turned, turns, share))
     translations = translations + away * (1 - share[..., None])
-    # The head's layer has no part of its own in the overlay: what is not asked of it, is not to be seen.
+    # The overlay has nothing for the head's layer itself, so where the overlay shows, that layer is hidden.
     share = np.zeros((count, size), np.float32)
     share[:, over.joints] = (over.weight * (1 - both))[:, None]
     turned, away = _whole(rig, layers, "head", count)
@@ -88,13 +90,13 @@ def _reach(parts: tuple[Part, ...]) -> Reach:
 
 
 def find_overlaid_joints(project: Project) -> Array:
-    """Return the joints `[n]` that are laid over: spine, arms, neck and head; not the face."""
+    """Return the joints `[n]` that overlays move: spine, arms, neck and head, not the face."""
     return _reach(anatomy.project_parts(project)).joints
 
 
 def clip_overlay(project: Project, clip: Clip, times: Array) -> Overlay:
-    """Return a clip laid over a plan from its beginning on, at `times [N]`: it comes and goes within BLEND
-    seconds, half of it for a short one. Raises ValueError for a clip of another skeleton.
+    """Return a clip as an overlay from its beginning on, at `times [N]`. It fades in and out within BLEND
+    seconds, or half the length of a short clip. Raises ValueError for a clip of another skeleton.
     """
     reach = _reach(anatomy.project_parts(project))
     turns, _ = sample_offsets(find_composer(project).ground, reach, clip, np.clip(times, 0.0, clip.duration))

@@ -1,8 +1,8 @@
-"""Where the feet of a standing body should be while the body's layer blends: not gliding from one pose to the
-other, but held, and taken over one after the other in a step.
+"""Find where the feet of a standing body should be while the body's layer blends: they do not glide from one
+pose to the other but are held, and moved one after the other in a step.
 
-A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each
-step's time, order and height follow from the two poses it leads between.
+A clip says where its feet are, and when they stand. A pose is a function of plan and time only, so each
+step's time, order and height follow from the two poses that it joins.
 """
 
 from __future__ import annotations
@@ -18,22 +18,24 @@ from metagraph.playback.plan import Cue, LayerPlan, Rest
 from metagraph.playback.posing.cue_times import cue_seconds, ease, loop_spot
 
 FOOT_RATE = 10.0  # rows of a track in a second of its clip
-FOOT_UNIT = 1e-5  # what 1 in a row stands for
-FOOT_NUMBERS = 8  # in a row, of each foot
-STEPPING = 0.5  # seconds that two steps take where a cue leaves them time
-LEAST_PART = 0.15  # of that time for the foot that has the shorter way
-NEARBY = 0.015  # metres: feet with less way than that are taken over together, slowly
-WAITS = 0.12  # of a step's time: before it goes ahead a foot is lifted, and lowered after it
-LIFT = 0.25  # how high a foot is lifted for a short step, of its way
-MOST_LIFT = 0.08  # metres that it is never lifted to
-FAR = 0.25  # of the height: no foot steps that much farther than
+FOOT_UNIT = 1e-5  # the value of 1 in a row
+FOOT_NUMBERS = 8  # in a row, for each foot
+STEPPING = 0.5  # seconds that two steps take if a cue leaves them time
+LEAST_PART = 0.15  # of that time for the foot with the shorter way
+NEARBY = 0.015  # metres: feet with a shorter way move together, slowly
+WAITS = 0.12  # of a step's time: the foot is lifted before it moves and lowered after it
+LIFT = 0.25  # how high a foot is lifted for a short step, as a share of its way
+MOST_LIFT = 0.08  # metres: the limit that no foot reaches
+FAR = 0.25  # of the height: no foot steps that much farther
 TOO_FAR = 0.1
 
 
 @dataclass(frozen=True, slots=True)
 class FootTrack:
-    """Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it
-    stands (0 to 1), its joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+    """Where a clip's feet are.
+
+    `rows` has a row for each tenth of a second, with the left foot and then the right: whether it stands (0
+    to 1), its joint's position and rotation in the character's space; in units of `FOOT_UNIT`.
     """
 
     rows: Sequence[Sequence[float]]
@@ -48,10 +50,10 @@ def foot_goals(
     place: int,
     time: float,
 ) -> list[FootGoal]:
-    """Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+    """Return where both feet should be at a time; an empty list if nothing blends or it is unknown.
 
-    tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has
-    motion; place: of the rest in force, -1 for none.
+    `tracks` are by action. `height` is the figure's. `plan` is the body's layer. `cue` is the one that plays,
+    if it has motion, and `place` the index of the rest in force, -1 for none.
     """
     if place < 0:
         return []
@@ -82,7 +84,7 @@ def foot_goals(
 
 
 def _entering(track: FootTrack, cue: Cue) -> float:
-    """Return how long the feet take to come into a cue: its blend, and longer while it stands."""
+    """Return how long the feet take to enter a cue: its blend, and longer while it stands."""
     return _lasting(track, cue, cue.blend_in, cue.start, 1.0)
 
 
@@ -116,8 +118,8 @@ def _stepped(
     last: Sequence[FootGoal],
     u: float,
 ) -> list[FootGoal]:
-    """Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are
-    when it begins and ends, from which order and size of the steps follow.
+    """Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last`
+    say where they are when it begins and ends, which gives the order and size of the steps.
     """
     if len(before) == 0 or len(after) == 0 or len(first) == 0 or len(last) == 0:
         return []
@@ -125,7 +127,7 @@ def _stepped(
     part = 0.5
     if ways[0] + ways[1] > 0.0:
         part = min(max(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1.0 - LEAST_PART)
-    # To the left the left foot goes first: the other would have to pass it.
+    # To the left, the left foot goes first: the right foot would have to pass it.
     moved = plus(minus(last[0].at, first[0].at), minus(last[1].at, first[1].at))
     left_first = dot(moved, minus(first[0].at, first[1].at)) >= -1e-9
     longer = max(ways[0], ways[1])
@@ -155,7 +157,7 @@ def _mixed(a: FootGoal, b: FootGoal, x: float, air: float, share: float) -> Foot
 
 
 def _resting(plan: LayerPlan, place: int, time: float) -> int:
-    """Return the place of the rest in force at a time, near another."""
+    """Return the index of the rest in force at a time, searching from another."""
     while place > 0 and plan.rests[place].fade_start > time:
         place -= 1
     while place + 1 < len(plan.rests) and plan.rests[place + 1].fade_start <= time:
@@ -169,7 +171,7 @@ def _fades(plan: LayerPlan, place: int, time: float) -> bool:
 
 
 def _changes(project: Project, plan: LayerPlan, place: int, time: float) -> bool:
-    """Whether a stance is not one loop at one place of it."""
+    """Return whether a stance blends: between two rests, or at a loop's seam."""
     rest = plan.rests[place]
     if _fades(plan, place, time):
         return True
@@ -179,7 +181,7 @@ def _changes(project: Project, plan: LayerPlan, place: int, time: float) -> bool
 def _stance(
     project: Project, tracks: Mapping[str, FootTrack], height: float, plan: LayerPlan, place: int, time: float
 ) -> list[FootGoal]:
-    """Return where the stance's feet are that lies under the cues at a time."""
+    """Return where the feet of the stance under the cues are at a time."""
     place = _resting(plan, place, time)
     rest = plan.rests[place]
     goals = _loop(project, tracks, height, rest, time)
@@ -200,7 +202,7 @@ def _stance(
 def _loop(
     project: Project, tracks: Mapping[str, FootTrack], height: float, rest: Rest, time: float
 ) -> list[FootGoal]:
-    """Return where the feet of a loop are, taken from its end to its beginning in steps, too."""
+    """Return where the feet of a loop are. They also go from its end to its beginning in steps."""
     track = tracks.get(rest.action.id)
     if track is None or len(track.rows) == 0:
         return []
@@ -214,7 +216,7 @@ def _loop(
 
 
 def _row(track: FootTrack, seconds: float) -> list[FootGoal]:
-    """Return where a clip's feet are at clip seconds, on the straight line between rows."""
+    """Return where a clip's feet are at a second of the clip, interpolated linearly."""
     last = len(track.rows) - 1
     at = min(max(seconds * FOOT_RATE, 0.0), float(last))
     low = min(floor(at), max(0, last - 1))

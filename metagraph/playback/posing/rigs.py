@@ -1,4 +1,4 @@
-"""What of a project its poses are worked out with: found once, and kept as long as nothing it depends on
+"""Find the rigs that a project's poses need. They are found once and kept until something they depend on
 changes.
 """
 
@@ -18,8 +18,10 @@ from metagraph.playback.posing.weight import Weight, find_weight
 
 @dataclass(frozen=True, eq=False)
 class Rigs:
-    """composer: how layers reach joints. contacts: the arms and the body's parts, None without two arms.
-    weight: what answers the arms. body: what breathes and looks.
+    """The rigs of a project.
+
+    `composer` says how layers reach joints. `contacts` has the arms and the body's parts, None without two
+    arms. `weight` answers the arms. `body` breathes and looks.
     """
 
     composer: ComposerRig
@@ -30,7 +32,7 @@ class Rigs:
 
 @dataclass(frozen=True)
 class ResolvedProject(Project):
-    """A project as an export has it: its rigs are given, as runtimes have them, instead of found."""
+    """A project as an export has it: its rigs are given, as in runtimes, instead of found."""
 
     body: Body = field(default=LIFELESS, compare=False, repr=False)
     contact_rig: ContactRig | None = field(default=None, compare=False, repr=False)
@@ -41,8 +43,8 @@ _known: Remembered[Rigs] = Remembered(parts_for_face)
 
 
 def rigs_of(project: Project) -> Rigs:
-    """Return the rigs of a project; the same object as long as nothing they depend on changes. Raises
-    ValueError without a skeleton.
+    """Return the rigs of a project; the same object until something they depend on changes. Raises ValueError
+    without a skeleton.
     """
     if isinstance(project, ResolvedProject):
         return Rigs(find_composer(project), project.contact_rig, project.weight, project.body)

@@ -1,8 +1,8 @@
-"""Hips, spine and legs that answer the arms, and feet that stay planted: what of a skeleton does, what its
-clips' arms weigh, and what comes of it at a time.
+"""Make hips, spine and legs answer the arms, and keep feet planted: find which joints of a skeleton do so,
+what its clips' arms weigh, and the result at a time.
 
-The rules are `follow_through`'s, `planted_feet`'s and those of `motion`'s solvers, which all runtimes share;
-here they meet arrays.
+The rules are those of `follow_through`, `planted_feet` and the solvers of `motion`, which all runtimes share;
+this module applies them to arrays.
 """
 
 from __future__ import annotations
@@ -45,25 +45,27 @@ Array = NDArray[Any]
 Vector = tuple[float, float, float]
 
 SIDES = ("left", "right")
-# What of a body's mass upper arm, lower arm and hand are, and where along them it lies (de Leva 1996, the
-# mean of women and men; the hand is taken to be at its wrist).
+# The share of the body's mass that upper arm, lower arm and hand are, and where along them it lies (de Leva
+# 1996, the mean of women and men; the hand is taken to be at its wrist).
 MASSES = ((0.0263, 0.577), (0.0150, 0.457), (0.0059, 0.0))
-# How the spine undoes the hips' turn, by who is there; it goes a little farther, which the neck undoes.
+# How the joints of the spine undo the hips' turn; together they go a little farther, which the neck undoes.
 UNDOING = {"spine": 0.3, "chest": 0.4, "upper_chest": 0.3}
 FARTHER = 0.35
 # How far a collar bone rises with its arm: from RISES_FROM to RISES_TO (angles between arm and down) up to
-# LIFT. The shoulder girdle of people gives about a third of an arm's elevation, most of it the shoulder
-# blade, which skeletons of characters do not have (Inman et al. 1944); how much of it looks right is ours.
+# LIFT. The shoulder girdle of people gives about a third of an arm's elevation, most of it by the shoulder
+# blade, which skeletons of characters do not have (Inman et al. 1944). How much of it looks right is our
+# choice.
 RISES_FROM, RISES_TO, LIFT = np.radians(30.0), np.radians(150.0), np.radians(14.0)
 REACH_AHEAD = 0.1  # of the height: how far ahead of the shoulders gestures are made
-LOOKS_BACK = KNOTS * STEP  # seconds before it that a pose depends on
-KEPT = 4096  # times that are remembered of a plan
+LOOKS_BACK = KNOTS * STEP  # how many seconds back a pose depends on the plan
+KEPT = 4096  # times of a plan that are kept
 
 
 @dataclass(frozen=True, eq=False)
 class Weight:
-    """What of a project's body answers its arms. rows: by clip, as far as found: an `ArmTrack`'s. feet: the
-    same of a `FootTrack`.
+    """The part of a project's body that answers its arms.
+
+    `rows` has the rows of `ArmTrack`s found so far, by clip, and `feet` those of `FootTrack`s.
     """
 
     rig: WeightRig | None
@@ -72,14 +74,14 @@ class Weight:
 
 
 def find_weight(project: Project) -> Weight:
-    """Return what of a project answers its arms."""
+    """Return the part of a project's body that answers its arms."""
     arms = project.graphs["arms"]
     strength = min(1.0, arms.weight("arms")) * max(0.0, 1.0 - arms.weight("legs"))
     return Weight(_rig(project, strength), {}, {})
 
 
 def _rig(project: Project, strength: float) -> WeightRig | None:
-    """Return the rig of a project; None of one without hips, two legs that hang from them, and two arms."""
+    """Return the rig of a project; None if it does not have hips, two legs below them, and two arms."""
     skeleton, roles = project.skeleton, anatomy.project_roles(project)
     needed = ["hips", *(f"{s}_{p}" for s in SIDES for p in ("upper_leg", "lower_leg", "foot"))]
     needed += [f"{s}_{p}" for s in SIDES for p in ("upper_arm", "lower_arm", "hand")]
@@ -108,7 +110,7 @@ def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: f
     def place(joint: int) -> int:
         if joint not in joints:
             joints.append(joint)
-            parents.append(-1)  # only turned in its own space
+            parents.append(-1)  # it only turns in its own space
         return joints.index(joint)
 
     def bend(joint: int, share: float) -> WeightBend:
@@ -123,7 +125,7 @@ def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: f
     shares = {roles[r]: -(1.0 + farther) * share / whole for r, share in there.items()}
     if above is not None and shares:
         shares[above] = farther
-    if not shares:  # a stiff trunk would throw its arms about
+    if not shares:  # a stiff trunk would throw the arms around
         bends[0] = WeightBend(bends[0].place, bends[0].left, bends[0].up, bends[0].ahead, 0.0)
     bends += [bend(j, share) for j, share in shares.items()]
     collars = []
@@ -157,7 +159,7 @@ def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: f
 
 
 def arm_track_rows(weight: Weight, project: Project, clip: str) -> Rows:
-    """Return the rows of a clip's `ArmTrack`; none of one that is missing, or of another skeleton."""
+    """Return the rows of a clip's `ArmTrack`; empty if the clip is missing or has another skeleton."""
     found = weight.rows.get(clip)
     if found is None:
         entry = project.clips.get(clip)
@@ -169,8 +171,8 @@ def arm_track_rows(weight: Weight, project: Project, clip: str) -> Rows:
 
 
 def foot_rows_of(weight: Weight, project: Project, clip: str) -> Rows:
-    """Return the rows of a clip's `FootTrack`; none of one that is missing, of another skeleton, or where
-    more than the body's layer moves the legs.
+    """Return the rows of a clip's `FootTrack`; empty if the clip is missing, has another skeleton, or if
+    other layers than the body's move the legs.
     """
     found = weight.feet.get(clip)
     if found is None:
@@ -211,7 +213,7 @@ def _rows(project: Project, clip: Clip) -> tuple[tuple[float, ...], ...]:
 def _along(
     skeleton: Skeleton, line: Sequence[int], rotations: Array, moved: Array, turned: Array, at: Array
 ) -> dict[int, Array]:
-    """Return where the joints of an arm are `[F, 3]` on a trunk that stands as in the base pose."""
+    """Return the positions `[F, 3]` of an arm's joints on a trunk that stands as in the base pose."""
     parent = int(skeleton.parents[line[0]])
     turn = np.broadcast_to(turned[parent] if parent >= 0 else rotation.IDENTITY, (len(rotations), 4))
     here = np.broadcast_to(at[parent] if parent >= 0 else np.zeros(3), (len(rotations), 3))
@@ -224,7 +226,7 @@ def _along(
 
 
 def _moment(places: Mapping[int, Array], joints: Sequence[int]) -> Array:
-    """Return `[F, 3]`: the mass of an arm, as a share of the body's, times where it is."""
+    """Return `[F, 3]`: the mass of an arm, as a share of the body's, times its position."""
     ends = [*joints, joints[-1]]
     parts = []
     for (mass, part), a, b in zip(MASSES, ends[:-1], ends[1:], strict=True):
@@ -233,38 +235,38 @@ def _moment(places: Mapping[int, Array], joints: Sequence[int]) -> Array:
 
 
 def _steep(way: Array, axes: Array) -> Array:
-    """Return how far directions `[F, 3]` rise above the level, radians."""
+    """Return how far directions `[F, 3]` rise above the horizontal, in radians."""
     return np.asarray(
         np.arcsin(np.clip(way @ axes[1] / np.maximum(np.linalg.norm(way, axis=-1), 1e-9), -1, 1))
     )
 
 
 def _raised(places: Mapping[int, Array], joints: Sequence[int], axes: Array) -> Array:
-    """Return how far a collar bone would rise with its arm `[F]`, radians."""
+    """Return how far a collar bone would rise with its arm `[F]`, in radians."""
     angle = _steep(places[joints[1]] - places[joints[0]], axes) + np.pi / 2
     x = np.clip((angle - RISES_FROM) / (RISES_TO - RISES_FROM), 0.0, 1.0)
     return np.asarray(LIFT * x * x * (3 - 2 * x))
 
 
 def has_sway(project: Project) -> bool:
-    """Whether the bodies of a project answer their arms."""
+    """Return whether the bodies of a project answer their arms."""
     life = project.life
     return life.on and life.stillness < 1 and (life.follow_through > 0 or life.shoulder_lift > 0)
 
 
 def has_planted_feet(project: Project) -> bool:
-    """Whether the feet of a project stay planted in blends."""
+    """Return whether the feet of a project stay planted in blends."""
     return project.life.on and project.life.planted_feet > 0
 
 
 def has_weight(project: Project) -> bool:
-    """Whether the bodies of a project answer their arms, or keep their feet where they are."""
+    """Return whether the bodies of a project answer their arms, or keep their feet planted."""
     return has_sway(project) or has_planted_feet(project)
 
 
 class WeightStage:
-    """Keeps the feet of a plan planted, and lets the body answer its arms. What the arms do at a time is
-    worked out once.
+    """Keeps the feet of a plan planted, and makes the body answer its arms. What the arms do at a time is
+    computed once.
     """
 
     def __init__(self, plan: Plan, project: Project, weight: Weight) -> None:
@@ -281,8 +283,9 @@ class WeightStage:
 
     def run(self, pose: Pose, times: Array, shown: Array | None = None) -> Pose:
         """Return composed poses `[N, J]` at `times [N]` in which feet stay planted and the body answers its
-        arms; the very same arrays where nothing moves them. shown `[N]`: how much of what the plan does with
-        arms is seen, 0..1; None for all.
+        arms; the same arrays if nothing moves them.
+
+        `shown` `[N]` is how much of the plan's arm motion is seen, 0..1; None for all.
         """
         rig, life, feet = self._weight.rig, self._project.life, self._feet
         if rig is None or not (self._answers or feet) or not len(times):
@@ -341,8 +344,8 @@ class WeightStage:
         return out
 
     def _playing(self, of: LayerPlan, time: float, whole: bool) -> tuple[Any, int]:
-        """Return the cue with motion that plays in a layer, and the place of its rest; their tracks are made.
-        whole: with rows.
+        """Return the cue with motion that plays in a layer, and the index of its rest. Their tracks are made;
+        with `whole`, these have rows.
         """
         cue = of.cue_at(time)
         if cue is not None and motion_of(self._project, cue.action) is None:

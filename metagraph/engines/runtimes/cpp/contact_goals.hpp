@@ -1,5 +1,5 @@
-// Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as
-// shows of it.
+// Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much
+// of it shows.
 //
 // Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
 #pragma once
@@ -17,7 +17,7 @@ namespace metagraph {
 
 namespace contact_goals {
 
-inline constexpr double LEAST = 1e-06; // of a hand: what shows less than this is not solved
+inline constexpr double LEAST = 1e-06; // of a hand: goals with less weight are not solved
 inline List<Ref<HandGoal>> layer_goals(
     const Ref<ContactRig>& rig,
     const Ref<Project>& project,
@@ -49,8 +49,10 @@ inline bool _moves(const Ref<ContactRig>& rig, const Ref<Action>& action, int ar
 
 namespace contact_goals {
 
-/// Return what a layer wants of the hands at a time. cue: the one that plays, if it has motion. place: of the rest that
-/// is in force, -1 for none. strength: how much of the arms the layer moves, 0..1.
+/// Return where a layer wants the hands at a time.
+///
+/// `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is
+/// how much of the arms the layer moves, 0..1.
 inline List<Ref<HandGoal>> layer_goals(
     const Ref<ContactRig>& rig,
     const Ref<Project>& project,
@@ -103,7 +105,7 @@ inline List<Ref<HandGoal>> layer_goals(
     return out;
 }
 
-/// Return what a loop wants, less what shows of the cue above it.
+/// Return where a loop wants the hands, less what the cue above it covers.
 inline List<Ref<HandGoal>> _loop_goals(
     const Ref<ContactRig>& rig,
     const Ref<Project>& project,
@@ -150,7 +152,8 @@ inline List<Ref<HandGoal>> _loop_goals(
     return out;
 }
 
-/// Return the goals of an action at clip seconds. shares: how much of it shows at the left hand, the right.
+/// Return the goals of an action at a second of its clip. `shares` says how much of it shows at the left and the right
+/// hand.
 inline List<Ref<HandGoal>> _goals(
     const Ref<ContactRig>& rig,
     const Ref<Project>& project,
@@ -179,7 +182,7 @@ inline int _arm(const Ref<ContactSpan>& span) {
     return span->hand == "left" ? 0 : 1;
 }
 
-/// Whether an action moves a hand, and does not leave it to its stance.
+/// Return whether an action moves a hand, instead of leaving it in the stance.
 inline bool _moves(const Ref<ContactRig>& rig, const Ref<Action>& action, int arm, const std::string& hand) {
     if (!lang::contains(List<std::string>{"both", hand}, action->limb)) {
         return false;

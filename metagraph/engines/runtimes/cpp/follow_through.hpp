@@ -1,7 +1,7 @@
-// What the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+// Compute what the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
 //
-// The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through
-// their places at four fixed times before it: smooth, and a function of plan and time alone.
+// The body answers with a delay, so it follows not the arms' place at one time but a cubic B-spline through their
+// places at four fixed times before it. This is smooth, and a function of plan and time only.
 //
 // Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
 #pragma once
@@ -18,11 +18,12 @@ struct ArmTrack;
 
 namespace follow_through {
 
-inline constexpr double STEP = 0.08; // seconds between the times that are looked at; the answer comes two of them late
-inline constexpr double OFFSET = 0.0111; // seconds that they lie beside whole steps, where cues begin and end
+inline constexpr double STEP = 0.08; // seconds between the sampled times; the answer comes two of them late
+// seconds by which they are shifted from whole steps, where cues begin and end
+inline constexpr double OFFSET = 0.0111;
 inline constexpr int KNOTS = 4;
 inline constexpr double RATE = 10.0; // rows of a track in a second of its clip
-inline constexpr double UNIT = 1e-05; // metres, or radians, that 1 in a row stands for
+inline constexpr double UNIT = 1e-05; // metres, or radians, of 1 in a row
 inline constexpr int NUMBERS = 8; // in a row
 inline int knot_before(double time);
 inline double knot_time(int number);
@@ -66,8 +67,10 @@ inline List<double> _row(const Ref<ArmTrack>& track, double seconds);
 
 }  // namespace follow_through
 
-/// What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much the left arm
-/// shifts the centre of mass of the whole body to the left, up and ahead, the right arm the same, and how far each
+/// What a clip's arms do.
+///
+/// `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left arm
+/// shifts the centre of mass of the whole body to the left, up and ahead, the same for the right arm, and how far each
 /// collar bone lags behind its arm; in units of `UNIT`.
 struct ArmTrack {
     std::string clip;
@@ -79,21 +82,21 @@ struct ArmTrack {
 
 namespace follow_through {
 
-/// Return the number of the last time that is looked at for a pose at `time`.
+/// Return the number of the last sampled time for a pose at `time`.
 inline int knot_before(double time) {
     return static_cast<int>(std::floor((time - follow_through::OFFSET) / follow_through::STEP));
 }
 
-/// Return when a time that is looked at is, seconds.
+/// Return the time of a sample, in seconds.
 inline double knot_time(int number) {
     return number * follow_through::STEP + follow_through::OFFSET;
 }
 
-/// Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+/// Return how far the arms are from their stance at a time, as a row of a track, in metres and radians.
 ///
-/// tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion; place: of the
-/// rest in force, -1 for none; of the body's layer the same. A cue of the very clip that the body's layer shows, too,
-/// brings its own hips and counts for nothing.
+/// `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has motion,
+/// and `place` the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's
+/// layer. A cue of the clip that the body's layer also shows brings its own hips and does not count.
 inline List<double> arm_sway(
     const Ref<Project>& project,
     const Map<std::string, Ref<ArmTrack>>& tracks,
@@ -143,7 +146,7 @@ inline List<double> arm_sway(
     return out;
 }
 
-/// Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of the last
+/// Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the rows of the last
 /// `KNOTS` times before it.
 inline List<double> driven(const List<List<double>>& sways, double time) {
     double u = (time - follow_through::OFFSET) / follow_through::STEP;
@@ -175,7 +178,7 @@ inline List<double> driven(const List<List<double>>& sways, double time) {
     return out;
 }
 
-/// Whether an action moves an arm, and does not leave it to its stance.
+/// Return whether an action moves an arm, instead of leaving it in the stance.
 inline bool _moves(const Ref<Action>& action, const std::string& side, const std::string& hand) {
     if (!lang::contains(List<std::string>{"both", side}, action->limb)) {
         return false;
@@ -222,7 +225,7 @@ inline bool _is_of(const Map<std::string, Ref<ArmTrack>>& tracks, const Ref<Acti
     return track != nullptr && track->clip == clip;
 }
 
-/// Return the row of the stance that lies under the cues.
+/// Return the row of the stance under the cues.
 inline List<double> _stance(
     const Ref<Project>& project,
     const Map<std::string, Ref<ArmTrack>>& tracks,
@@ -251,7 +254,7 @@ inline List<double> _stance(
     return row;
 }
 
-/// Return the row of a loop, its end faded into its beginning.
+/// Return the row of a loop, with its end blended into its beginning.
 inline List<double> _loop(
     const Ref<Project>& project,
     const Map<std::string, Ref<ArmTrack>>& tracks,
@@ -280,7 +283,7 @@ inline List<double> _loop(
     return row;
 }
 
-/// Return a track's row at clip seconds, on the straight line between its rows.
+/// Return a track's row at a second of the clip, interpolated linearly.
 inline List<double> _row(const Ref<ArmTrack>& track, double seconds) {
     int last = lang::len(track->rows) - 1;
     double at = std::min(std::max(seconds * follow_through::RATE, 0.0), static_cast<double>(last));

@@ -1,8 +1,8 @@
-// Where the feet of a standing body should be while the body's layer blends: not gliding from one pose to the other,
-// but held, and taken over one after the other in a step.
+// Find where the feet of a standing body should be while the body's layer blends: they do not glide from one pose to
+// the other but are held, and moved one after the other in a step.
 //
-// A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each step's
-// time, order and height follow from the two poses it leads between.
+// A clip says where its feet are, and when they stand. A pose is a function of plan and time only, so each step's time,
+// order and height follow from the two poses that it joins.
 //
 // Translated from metagraph/playback/posing/planted_feet.py; change that, and translate anew.
 #pragma once
@@ -21,15 +21,15 @@ struct FootTrack;
 namespace planted_feet {
 
 inline constexpr double FOOT_RATE = 10.0; // rows of a track in a second of its clip
-inline constexpr double FOOT_UNIT = 1e-05; // what 1 in a row stands for
-inline constexpr int FOOT_NUMBERS = 8; // in a row, of each foot
-inline constexpr double STEPPING = 0.5; // seconds that two steps take where a cue leaves them time
-inline constexpr double LEAST_PART = 0.15; // of that time for the foot that has the shorter way
-inline constexpr double NEARBY = 0.015; // metres: feet with less way than that are taken over together, slowly
-inline constexpr double WAITS = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
-inline constexpr double LIFT = 0.25; // how high a foot is lifted for a short step, of its way
-inline constexpr double MOST_LIFT = 0.08; // metres that it is never lifted to
-inline constexpr double FAR = 0.25; // of the height: no foot steps that much farther than
+inline constexpr double FOOT_UNIT = 1e-05; // the value of 1 in a row
+inline constexpr int FOOT_NUMBERS = 8; // in a row, for each foot
+inline constexpr double STEPPING = 0.5; // seconds that two steps take if a cue leaves them time
+inline constexpr double LEAST_PART = 0.15; // of that time for the foot with the shorter way
+inline constexpr double NEARBY = 0.015; // metres: feet with a shorter way move together, slowly
+inline constexpr double WAITS = 0.12; // of a step's time: the foot is lifted before it moves and lowered after it
+inline constexpr double LIFT = 0.25; // how high a foot is lifted for a short step, as a share of its way
+inline constexpr double MOST_LIFT = 0.08; // metres: the limit that no foot reaches
+inline constexpr double FAR = 0.25; // of the height: no foot steps that much farther
 inline constexpr double TOO_FAR = 0.1;
 inline List<Ref<FootGoal>> foot_goals(
     const Ref<Project>& project,
@@ -75,8 +75,10 @@ inline List<Ref<FootGoal>> _row(const Ref<FootTrack>& track, double seconds);
 
 }  // namespace planted_feet
 
-/// Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it stands (0 to
-/// 1), its joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+/// Where a clip's feet are.
+///
+/// `rows` has a row for each tenth of a second, with the left foot and then the right: whether it stands (0 to 1), its
+/// joint's position and rotation in the character's space; in units of `FOOT_UNIT`.
 struct FootTrack {
     List<List<double>> rows;
 
@@ -86,10 +88,10 @@ struct FootTrack {
 
 namespace planted_feet {
 
-/// Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+/// Return where both feet should be at a time; an empty list if nothing blends or it is unknown.
 ///
-/// tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has motion; place:
-/// of the rest in force, -1 for none.
+/// `tracks` are by action. `height` is the figure's. `plan` is the body's layer. `cue` is the one that plays, if it has
+/// motion, and `place` the index of the rest in force, -1 for none.
 inline List<Ref<FootGoal>> foot_goals(
     const Ref<Project>& project,
     const Map<std::string, Ref<FootTrack>>& tracks,
@@ -136,7 +138,7 @@ inline List<Ref<FootGoal>> foot_goals(
     return planted_feet::_stepped(height, here, after, first, last, (time - goes) / (cue->end - goes));
 }
 
-/// Return how long the feet take to come into a cue: its blend, and longer while it stands.
+/// Return how long the feet take to enter a cue: its blend, and longer while it stands.
 inline double _entering(const Ref<FootTrack>& track, const Ref<Cue>& cue) {
     return planted_feet::_lasting(track, cue, cue->blend_in, cue->start, 1.0);
 }
@@ -166,8 +168,8 @@ inline bool _stands(const Ref<FootTrack>& track, double seconds) {
     return lang::at(goals, 0)->planted >= 1.0 && lang::at(goals, 1)->planted >= 1.0;
 }
 
-/// Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are when it
-/// begins and ends, from which order and size of the steps follow.
+/// Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they
+/// are when it begins and ends, which gives the order and size of the steps.
 inline List<Ref<FootGoal>> _stepped(
     double height,
     const List<Ref<FootGoal>>& before,
@@ -190,7 +192,7 @@ inline List<Ref<FootGoal>> _stepped(
             1.0 - planted_feet::LEAST_PART
         );
     }
-    // To the left the left foot goes first: the other would have to pass it.
+    // To the left, the left foot goes first: the right foot would have to pass it.
     std::tuple<double, double, double> moved = plain_vectors::plus(
         plain_vectors::minus(lang::at(last, 0)->at, lang::at(first, 0)->at),
         plain_vectors::minus(lang::at(last, 1)->at, lang::at(first, 1)->at)
@@ -234,7 +236,7 @@ inline Ref<FootGoal> _mixed(const Ref<FootGoal>& a, const Ref<FootGoal>& b, doub
     return lang::made<FootGoal>(at, turn, share * a->planted * b->planted, a->lift * rest + b->lift * x + air);
 }
 
-/// Return the place of the rest in force at a time, near another.
+/// Return the index of the rest in force at a time, searching from another.
 inline int _resting(const Ref<LayerPlan>& plan, int place, double time) {
     while (place > 0 && lang::at(plan->rests, place)->fade_start > time) {
         place -= 1;
@@ -250,7 +252,7 @@ inline bool _fades(const Ref<LayerPlan>& plan, int place, double time) {
     return place > 0 && rest->fade_start + rest->fade > time;
 }
 
-/// Whether a stance is not one loop at one place of it.
+/// Return whether a stance blends: between two rests, or at a loop's seam.
 inline bool _changes(const Ref<Project>& project, const Ref<LayerPlan>& plan, int place, double time) {
     Ref<Rest> rest = lang::at(plan->rests, place);
     if (planted_feet::_fades(plan, place, time)) {
@@ -259,7 +261,7 @@ inline bool _changes(const Ref<Project>& project, const Ref<LayerPlan>& plan, in
     return cue_times::loop_spot(project, rest, time)->over < 1.0;
 }
 
-/// Return where the stance's feet are that lies under the cues at a time.
+/// Return where the feet of the stance under the cues are at a time.
 inline List<Ref<FootGoal>> _stance(
     const Ref<Project>& project,
     const Map<std::string, Ref<FootTrack>>& tracks,
@@ -286,7 +288,7 @@ inline List<Ref<FootGoal>> _stance(
     );
 }
 
-/// Return where the feet of a loop are, taken from its end to its beginning in steps, too.
+/// Return where the feet of a loop are. They also go from its end to its beginning in steps.
 inline List<Ref<FootGoal>> _loop(
     const Ref<Project>& project,
     const Map<std::string, Ref<FootTrack>>& tracks,
@@ -313,7 +315,7 @@ inline List<Ref<FootGoal>> _loop(
     );
 }
 
-/// Return where a clip's feet are at clip seconds, on the straight line between rows.
+/// Return where a clip's feet are at a second of the clip, interpolated linearly.
 inline List<Ref<FootGoal>> _row(const Ref<FootTrack>& track, double seconds) {
     int last = lang::len(track->rows) - 1;
     double at = std::min(std::max(seconds * planted_feet::FOOT_RATE, 0.0), static_cast<double>(last));

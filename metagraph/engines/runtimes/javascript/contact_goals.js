@@ -1,6 +1,6 @@
 /**
- * Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as shows
- * of it.
+ * Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much of
+ * it shows.
  *
  * Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
  */
@@ -9,11 +9,13 @@ import { HandGoal } from "./contact_solve.js";
 import { HANDS, contactKey, contactWeight } from "./contact_spans.js";
 import { cueSeconds, cueWeight, ease } from "./cue_times.js";
 
-export const LEAST = 1e-06; // of a hand: what shows less than this is not solved
+export const LEAST = 1e-06; // of a hand: goals with less weight are not solved
 
 /**
- * Return what a layer wants of the hands at a time. cue: the one that plays, if it has motion. place: of the rest that is in
- * force, -1 for none. strength: how much of the arms the layer moves, 0..1.
+ * Return where a layer wants the hands at a time.
+ *
+ * `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is how
+ * much of the arms the layer moves, 0..1.
  * @param {ContactRig} rig
  * @param {Project} project
  * @param {LayerPlan} plan
@@ -50,7 +52,7 @@ export function layerGoals(rig, project, plan, cue, place, time, strength) {
 }
 
 /**
- * Return what a loop wants, less what shows of the cue above it.
+ * Return where a loop wants the hands, less what the cue above it covers.
  * @param {ContactRig} rig
  * @param {Project} project
  * @param {Rest} rest
@@ -88,7 +90,7 @@ function _loopGoals(rig, project, rest, time, strength, shown) {
 }
 
 /**
- * Return the goals of an action at clip seconds. shares: how much of it shows at the left hand, the right.
+ * Return the goals of an action at a second of its clip. `shares` says how much of it shows at the left and the right hand.
  * @param {ContactRig} rig
  * @param {Project} project
  * @param {Action} action
@@ -123,7 +125,7 @@ function _arm(span) {
 }
 
 /**
- * Whether an action moves a hand, and does not leave it to its stance.
+ * Return whether an action moves a hand, instead of leaving it in the stance.
  * @param {ContactRig} rig
  * @param {Action} action
  * @param {number} arm

@@ -1,14 +1,17 @@
 /**
- * What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for
- * arrays.
+ * Compute what of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and `Cue.clip_seconds` do the
+ * same with arrays.
  *
  * Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
  */
 
 
 /**
- * Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone from there to here,
- * 1 where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin and end.
+ * Where a loop is.
+ *
+ * `seconds` is the time in its clip, `other` the time on the other side of its seam. `over` is how far it has blended from
+ * there to here, 1 if no seam shows. `leaves` and `meets` are the clip seconds at which the two sides of the seam begin and
+ * end.
  *
  * seconds: number; other: number; over: number; leaves: number; meets: number.
  */
@@ -23,7 +26,7 @@ export class LoopSpot {
 }
 
 /**
- * Return where a stance's loop is at a time, as `player.loop_seconds` has it.
+ * Return where a stance's loop is at a time, as `player.loop_seconds` does.
  * @param {Project} project
  * @param {Rest} rest
  * @param {number} time
@@ -77,7 +80,7 @@ export function cueSeconds(cue, time) {
 }
 
 /**
- * Return 3 x^2 - 2 x^3 of x within 0..1.
+ * Return 3 x^2 - 2 x^3 of x clamped to 0..1.
  * @param {number} x
  * @returns {number}
  */

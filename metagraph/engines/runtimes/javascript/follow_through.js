@@ -1,8 +1,8 @@
 /**
- * What the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+ * Compute what the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
  *
- * The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through their
- * places at four fixed times before it: smooth, and a function of plan and time alone.
+ * The body answers with a delay, so it follows not the arms' place at one time but a cubic B-spline through their places at
+ * four fixed times before it. This is smooth, and a function of plan and time only.
  *
  * Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
  */
@@ -10,17 +10,19 @@
 import { cueSeconds, cueWeight, ease, loopSpot } from "./cue_times.js";
 import { range } from "./basics.js";
 
-export const STEP = 0.08; // seconds between the times that are looked at; the answer comes two of them late
-export const OFFSET = 0.0111; // seconds that they lie beside whole steps, where cues begin and end
+export const STEP = 0.08; // seconds between the sampled times; the answer comes two of them late
+export const OFFSET = 0.0111; // seconds by which they are shifted from whole steps, where cues begin and end
 export const KNOTS = 4;
 export const RATE = 10; // rows of a track in a second of its clip
-export const UNIT = 1e-05; // metres, or radians, that 1 in a row stands for
+export const UNIT = 1e-05; // metres, or radians, of 1 in a row
 export const NUMBERS = 8; // in a row
 
 /**
- * What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much the left arm
- * shifts the centre of mass of the whole body to the left, up and ahead, the right arm the same, and how far each collar
- * bone lags behind its arm; in units of `UNIT`.
+ * What a clip's arms do.
+ *
+ * `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left arm shifts the
+ * centre of mass of the whole body to the left, up and ahead, the same for the right arm, and how far each collar bone lags
+ * behind its arm; in units of `UNIT`.
  *
  * clip: string; rows: number[][].
  */
@@ -32,7 +34,7 @@ export class ArmTrack {
 }
 
 /**
- * Return the number of the last time that is looked at for a pose at `time`.
+ * Return the number of the last sampled time for a pose at `time`.
  * @param {number} time
  * @returns {number}
  */
@@ -41,7 +43,7 @@ export function knotBefore(time) {
 }
 
 /**
- * Return when a time that is looked at is, seconds.
+ * Return the time of a sample, in seconds.
  * @param {number} number
  * @returns {number}
  */
@@ -50,11 +52,11 @@ export function knotTime(number) {
 }
 
 /**
- * Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+ * Return how far the arms are from their stance at a time, as a row of a track, in metres and radians.
  *
- * tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion; place: of the rest in
- * force, -1 for none; of the body's layer the same. A cue of the very clip that the body's layer shows, too, brings its own
- * hips and counts for nothing.
+ * `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has motion, and
+ * `place` the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's layer. A cue
+ * of the clip that the body's layer also shows brings its own hips and does not count.
  * @param {Project} project
  * @param {Map<string, ArmTrack>} tracks
  * @param {string[]} hands
@@ -97,8 +99,8 @@ export function armSway(project, tracks, hands, arms, cue, place, body, bodyCue,
 }
 
 /**
- * Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of the last `KNOTS`
- * times before it.
+ * Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the rows of the last
+ * `KNOTS` times before it.
  * @param {number[][]} sways
  * @param {number} time
  * @returns {number[]}
@@ -125,7 +127,7 @@ export function driven(sways, time) {
 }
 
 /**
- * Whether an action moves an arm, and does not leave it to its stance.
+ * Return whether an action moves an arm, instead of leaving it in the stance.
  * @param {Action} action
  * @param {string} side
  * @param {string} hand
@@ -186,7 +188,7 @@ function _isOf(tracks, action, clip) {
 }
 
 /**
- * Return the row of the stance that lies under the cues.
+ * Return the row of the stance under the cues.
  * @param {Project} project
  * @param {Map<string, ArmTrack>} tracks
  * @param {LayerPlan} plan
@@ -209,7 +211,7 @@ function _stance(project, tracks, plan, place, time) {
 }
 
 /**
- * Return the row of a loop, its end faded into its beginning.
+ * Return the row of a loop, with its end blended into its beginning.
  * @param {Project} project
  * @param {Map<string, ArmTrack>} tracks
  * @param {Rest} rest
@@ -232,7 +234,7 @@ function _loop(project, tracks, rest, time) {
 }
 
 /**
- * Return a track's row at clip seconds, on the straight line between its rows.
+ * Return a track's row at a second of the clip, interpolated linearly.
  * @param {ArmTrack} track
  * @param {number} seconds
  * @returns {number[]}

@@ -1,20 +1,20 @@
 /**
- * The values a project is made of. All are frozen; mappings in them are never changed in place.
+ * Define the values that a project is made of. All are frozen, and their mappings never change in place.
  *
- * Ids are made once from the project's counter and never change; names are free text for people.
+ * Ids are made once from the content they are for and never change. Names are free text for people.
  *
  * Translated from metagraph/graph/model.py; change that, and translate anew.
  */
 
 
 /**
- * When an action plays within its clip; seconds of the clip.
+ * When an action plays within its clip. All times are seconds of the clip.
  *
- * start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to the
- * stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
- * earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment. ready,
- * stroke_end, relax: where a gesture's preparation, stroke and hold end (its retraction ends with it); None as found from
- * the motion (`playback.timing.phases`).
+ * `start` and `end` bound the part that plays; an `end` of None is the clip's end. `blend_in` and `blend_out` are the
+ * seconds of blending from and to the stance, inside that part. For a looping stance, `blend_in` is the overlap at the
+ * loop's seam. `loop` repeats the part. From `earliest_exit` on the action may be left; None plays it through. `stroke` is
+ * its most telling moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation, stroke and hold; its
+ * retraction ends with the action. None takes the times found from the motion (`playback.timing.phases`).
  *
  * start: number; end: ?number; blendIn: number; blendOut: number; loop: boolean; earliestExit: ?number; stroke: ?number;
  * ready: ?number; strokeEnd: ?number; relax: ?number.
@@ -58,14 +58,14 @@ export class Stance {
 }
 
 /**
- * A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
+ * A first-order model over (limb, kind) that writes meta actions when there are no requests (Borer et al., 7.3).
  *
- * matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive, negative: share
- * of gestures asked for with that tag, where tags are not part of the states. tags: one text a state, the tags (blanks
- * between them) it asks for; empty when tags are not part of the states. lengths: (mean, standard deviation) seconds of each
- * state's actions; empty where that is not known. modes: what is performed of what it writes while one is said to idle, to
- * listen and to talk, a row each: shares of gestures, fidgets and transitions, 0..1; empty where the mode makes no
- * difference.
+ * `matrix` has rows of probabilities, each of which sums to 1. `gap` is the mean rest between two actions, in seconds.
+ * `positive` and `negative` are the shares of gestures that ask for that tag, if tags are not part of the states. `tags` has
+ * one text for each state, the tags it asks for with blanks between them; it is empty if tags are not part of the states.
+ * `lengths` has the mean and standard deviation of each state's actions, in seconds; it is empty if they are unknown.
+ * `modes` has one row each for idling, listening and talking: the shares, 0 to 1, of the written gestures, fidgets and
+ * transitions that are performed in that mode. It is empty if the mode makes no difference.
  *
  * layer: string; states: [string, string][]; matrix: number[][]; gap: number; positive: number; negative: number; tags:
  * string[]; lengths: [number, number][]; modes: number[][].
@@ -83,19 +83,20 @@ export class Markov {
     this.modes = modes;
   }
 
-  /** Return the tags a state asks for, "" for none. */
+  /** Return the tags that a state asks for, "" for none. */
   tag(state) {
     return this.tags.length > 0 ? this.tags[state] : "";
   }
 }
 
 /**
- * Planner constants. alpha: how quickly a used action becomes unlikely (4 in the paper). seed: 32-bit.
+ * The planner's constants.
  *
- * never_twice: an action is not played twice in a row where there is another. shortest: seconds below which the remainder of
- * a cut meta action is not worth keeping. wait: how late, in seconds, a request may start. memory: seconds after which a use
- * no longer counts, 0 for never (as in the paper). rest: least seconds in the stance between two actions of a layer.
- * lookahead: seconds ahead of now in which a running plan is not changed any more.
+ * `alpha` says how quickly a used action becomes unlikely (4 in the paper). `seed` has 32 bits. With `never_twice`, an
+ * action is not played twice in a row if there is another. `shortest` is the least number of seconds for which the remainder
+ * of a cut meta action is kept. `wait` is how many seconds late a request may start. `memory` is the number of seconds after
+ * which a use no longer counts, 0 for never (as in the paper). `rest` is the least number of seconds in the stance between
+ * two actions of a layer. A running plan is not changed for the next `lookahead` seconds.
  *
  * alpha: number; seed: number; neverTwice: boolean; shortest: number; wait: number; memory: number; rest: number; lookahead:
  * number.

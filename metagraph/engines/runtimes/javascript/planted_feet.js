@@ -1,9 +1,9 @@
 /**
- * Where the feet of a standing body should be while the body's layer blends: not gliding from one pose to the other, but
- * held, and taken over one after the other in a step.
+ * Find where the feet of a standing body should be while the body's layer blends: they do not glide from one pose to the
+ * other but are held, and moved one after the other in a step.
  *
- * A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each step's time,
- * order and height follow from the two poses it leads between.
+ * A clip says where its feet are, and when they stand. A pose is a function of plan and time only, so each step's time,
+ * order and height follow from the two poses that it joins.
  *
  * Translated from metagraph/playback/posing/planted_feet.py; change that, and translate anew.
  */
@@ -14,20 +14,22 @@ import { cueSeconds, ease, loopSpot } from "./cue_times.js";
 import { range } from "./basics.js";
 
 export const FOOT_RATE = 10; // rows of a track in a second of its clip
-export const FOOT_UNIT = 1e-05; // what 1 in a row stands for
-export const FOOT_NUMBERS = 8; // in a row, of each foot
-export const STEPPING = 0.5; // seconds that two steps take where a cue leaves them time
-export const LEAST_PART = 0.15; // of that time for the foot that has the shorter way
-export const NEARBY = 0.015; // metres: feet with less way than that are taken over together, slowly
-export const WAITS = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
-export const LIFT = 0.25; // how high a foot is lifted for a short step, of its way
-export const MOST_LIFT = 0.08; // metres that it is never lifted to
-export const FAR = 0.25; // of the height: no foot steps that much farther than
+export const FOOT_UNIT = 1e-05; // the value of 1 in a row
+export const FOOT_NUMBERS = 8; // in a row, for each foot
+export const STEPPING = 0.5; // seconds that two steps take if a cue leaves them time
+export const LEAST_PART = 0.15; // of that time for the foot with the shorter way
+export const NEARBY = 0.015; // metres: feet with a shorter way move together, slowly
+export const WAITS = 0.12; // of a step's time: the foot is lifted before it moves and lowered after it
+export const LIFT = 0.25; // how high a foot is lifted for a short step, as a share of its way
+export const MOST_LIFT = 0.08; // metres: the limit that no foot reaches
+export const FAR = 0.25; // of the height: no foot steps that much farther
 export const TOO_FAR = 0.1;
 
 /**
- * Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it stands (0 to 1), its
- * joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+ * Where a clip's feet are.
+ *
+ * `rows` has a row for each tenth of a second, with the left foot and then the right: whether it stands (0 to 1), its
+ * joint's position and rotation in the character's space; in units of `FOOT_UNIT`.
  *
  * rows: number[][].
  */
@@ -38,10 +40,10 @@ export class FootTrack {
 }
 
 /**
- * Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+ * Return where both feet should be at a time; an empty list if nothing blends or it is unknown.
  *
- * tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has motion; place: of the
- * rest in force, -1 for none.
+ * `tracks` are by action. `height` is the figure's. `plan` is the body's layer. `cue` is the one that plays, if it has
+ * motion, and `place` the index of the rest in force, -1 for none.
  * @param {Project} project
  * @param {Map<string, FootTrack>} tracks
  * @param {number} height
@@ -90,7 +92,7 @@ export function footGoals(project, tracks, height, plan, cue, place, time) {
 }
 
 /**
- * Return how long the feet take to come into a cue: its blend, and longer while it stands.
+ * Return how long the feet take to enter a cue: its blend, and longer while it stands.
  * @param {FootTrack} track
  * @param {Cue} cue
  * @returns {number}
@@ -142,8 +144,8 @@ function _stands(track, seconds) {
 }
 
 /**
- * Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are when it begins and
- * ends, from which order and size of the steps follow.
+ * Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they are
+ * when it begins and ends, which gives the order and size of the steps.
  * @param {number} height
  * @param {FootGoal[]} before
  * @param {FootGoal[]} after
@@ -161,7 +163,7 @@ function _stepped(height, before, after, first, last, u) {
   if (ways[0] + ways[1] > 0) {
     part = Math.min(Math.max(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1 - LEAST_PART);
   }
-  // To the left the left foot goes first: the other would have to pass it.
+  // To the left, the left foot goes first: the right foot would have to pass it.
   const moved = plus(minus(last[0].at, first[0].at), minus(last[1].at, first[1].at));
   const leftFirst = dot(moved, minus(first[0].at, first[1].at)) >= -1e-09;
   const longer = Math.max(ways[0], ways[1]);
@@ -200,7 +202,7 @@ function _mixed(a, b, x, air, share) {
 }
 
 /**
- * Return the place of the rest in force at a time, near another.
+ * Return the index of the rest in force at a time, searching from another.
  * @param {LayerPlan} plan
  * @param {number} place
  * @param {number} time
@@ -228,7 +230,7 @@ function _fades(plan, place, time) {
 }
 
 /**
- * Whether a stance is not one loop at one place of it.
+ * Return whether a stance blends: between two rests, or at a loop's seam.
  * @param {Project} project
  * @param {LayerPlan} plan
  * @param {number} place
@@ -244,7 +246,7 @@ function _changes(project, plan, place, time) {
 }
 
 /**
- * Return where the stance's feet are that lies under the cues at a time.
+ * Return where the feet of the stance under the cues are at a time.
  * @param {Project} project
  * @param {Map<string, FootTrack>} tracks
  * @param {number} height
@@ -273,7 +275,7 @@ function _stance(project, tracks, height, plan, place, time) {
 }
 
 /**
- * Return where the feet of a loop are, taken from its end to its beginning in steps, too.
+ * Return where the feet of a loop are. They also go from its end to its beginning in steps.
  * @param {Project} project
  * @param {Map<string, FootTrack>} tracks
  * @param {number} height
@@ -295,7 +297,7 @@ function _loop(project, tracks, height, rest, time) {
 }
 
 /**
- * Return where a clip's feet are at clip seconds, on the straight line between rows.
+ * Return where a clip's feet are at a second of the clip, interpolated linearly.
  * @param {FootTrack} track
  * @param {number} seconds
  * @returns {FootGoal[]}

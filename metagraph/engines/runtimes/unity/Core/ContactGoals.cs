@@ -6,16 +6,18 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as shows
-    /// of it.
+    /// Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much of
+    /// it shows.
     /// </summary>
     public static class ContactGoalsRules
     {
-        public const double Least = 1e-06; // of a hand: what shows less than this is not solved
+        public const double Least = 1e-06; // of a hand: goals with less weight are not solved
 
         /// <summary>
-        /// Return what a layer wants of the hands at a time. cue: the one that plays, if it has motion. place: of the rest that
-        /// is in force, -1 for none. strength: how much of the arms the layer moves, 0..1.
+        /// Return where a layer wants the hands at a time.
+        ///
+        /// `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is
+        /// how much of the arms the layer moves, 0..1.
         /// </summary>
         public static List<HandGoal> LayerGoals(
             ContactRig rig,
@@ -66,7 +68,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return what a loop wants, less what shows of the cue above it.</summary>
+        /// <summary>Return where a loop wants the hands, less what the cue above it covers.</summary>
         private static List<HandGoal> LoopGoals(
             ContactRig rig,
             Graph project,
@@ -110,7 +112,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the goals of an action at clip seconds. shares: how much of it shows at the left hand, the right.
+        /// Return the goals of an action at a second of its clip. `shares` says how much of it shows at the left and the right
+        /// hand.
         /// </summary>
         private static List<HandGoal> Goals(
             ContactRig rig,
@@ -147,7 +150,7 @@ namespace Metagraph
             return span.Hand == "left" ? 0 : 1;
         }
 
-        /// <summary>Whether an action moves a hand, and does not leave it to its stance.</summary>
+        /// <summary>Return whether an action moves a hand, instead of leaving it in the stance.</summary>
         private static bool Moves(ContactRig rig, GraphAction action, int arm, string hand)
         {
             if (!new List<string> { "both", hand }.Contains(action.Limb))

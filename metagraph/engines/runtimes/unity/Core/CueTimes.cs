@@ -6,8 +6,11 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone from there to here,
-    /// 1 where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin and end.
+    /// Where a loop is.
+    ///
+    /// `seconds` is the time in its clip, `other` the time on the other side of its seam. `over` is how far it has blended from
+    /// there to here, 1 if no seam shows. `leaves` and `meets` are the clip seconds at which the two sides of the seam begin and
+    /// end.
     /// </summary>
     public sealed class LoopSpot
     {
@@ -29,7 +32,7 @@ namespace Metagraph
 
     public static class CueTimesRules
     {
-        /// <summary>Return where a stance's loop is at a time, as `player.loop_seconds` has it.</summary>
+        /// <summary>Return where a stance's loop is at a time, as `player.loop_seconds` does.</summary>
         public static LoopSpot LoopSpot(Graph project, Rest rest, double time)
         {
             var action = rest.Action;
@@ -75,7 +78,7 @@ namespace Metagraph
             return cue.Entry + elapsed - held + more + held * ((cue.HoldTo - cue.HoldFrom) / cue.Hold);
         }
 
-        /// <summary>Return 3 x^2 - 2 x^3 of x within 0..1.</summary>
+        /// <summary>Return 3 x^2 - 2 x^3 of x clamped to 0..1.</summary>
         public static double Ease(double x)
         {
             x = Math.Min(Math.Max(x, 0.0), 1.0);

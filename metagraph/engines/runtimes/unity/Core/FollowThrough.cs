@@ -6,9 +6,11 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much the left arm
-    /// shifts the centre of mass of the whole body to the left, up and ahead, the right arm the same, and how far each collar
-    /// bone lags behind its arm; in units of `UNIT`.
+    /// What a clip's arms do.
+    ///
+    /// `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left arm shifts the
+    /// centre of mass of the whole body to the left, up and ahead, the same for the right arm, and how far each collar bone lags
+    /// behind its arm; in units of `UNIT`.
     /// </summary>
     public sealed class ArmTrack
     {
@@ -24,31 +26,31 @@ namespace Metagraph
 
     public static class FollowThroughRules
     {
-        public const double Step = 0.08; // seconds between the times that are looked at; the answer comes two of them late
-        public const double Offset = 0.0111; // seconds that they lie beside whole steps, where cues begin and end
+        public const double Step = 0.08; // seconds between the sampled times; the answer comes two of them late
+        public const double Offset = 0.0111; // seconds by which they are shifted from whole steps, where cues begin and end
         public const int Knots = 4;
         public const double Rate = 10.0; // rows of a track in a second of its clip
-        public const double Unit = 1e-05; // metres, or radians, that 1 in a row stands for
+        public const double Unit = 1e-05; // metres, or radians, of 1 in a row
         public const int Numbers = 8; // in a row
 
-        /// <summary>Return the number of the last time that is looked at for a pose at `time`.</summary>
+        /// <summary>Return the number of the last sampled time for a pose at `time`.</summary>
         public static int KnotBefore(double time)
         {
             return (int)Math.Floor((time - Offset) / Step);
         }
 
-        /// <summary>Return when a time that is looked at is, seconds.</summary>
+        /// <summary>Return the time of a sample, in seconds.</summary>
         public static double KnotTime(int number)
         {
             return number * Step + Offset;
         }
 
         /// <summary>
-        /// Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+        /// Return how far the arms are from their stance at a time, as a row of a track, in metres and radians.
         ///
-        /// tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion; place: of the
-        /// rest in force, -1 for none; of the body's layer the same. A cue of the very clip that the body's layer shows, too,
-        /// brings its own hips and counts for nothing.
+        /// `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has motion, and
+        /// `place` the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's layer. A
+        /// cue of the clip that the body's layer also shows brings its own hips and does not count.
         /// </summary>
         public static List<double> ArmSway(
             Graph project,
@@ -97,7 +99,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of the last
+        /// Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the rows of the last
         /// `KNOTS` times before it.
         /// </summary>
         public static List<double> Driven(List<List<double>> sways, double time)
@@ -129,7 +131,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Whether an action moves an arm, and does not leave it to its stance.</summary>
+        /// <summary>Return whether an action moves an arm, instead of leaving it in the stance.</summary>
         private static bool Moves(GraphAction action, string side, string hand)
         {
             if (!new List<string> { "both", side }.Contains(action.Limb))
@@ -186,7 +188,7 @@ namespace Metagraph
             return track != null && track.Clip == clip;
         }
 
-        /// <summary>Return the row of the stance that lies under the cues.</summary>
+        /// <summary>Return the row of the stance under the cues.</summary>
         private static List<double> Stance(
             Graph project,
             Dictionary<string, ArmTrack> tracks,
@@ -210,7 +212,7 @@ namespace Metagraph
             return row;
         }
 
-        /// <summary>Return the row of a loop, its end faded into its beginning.</summary>
+        /// <summary>Return the row of a loop, with its end blended into its beginning.</summary>
         private static List<double> Loop(Graph project, Dictionary<string, ArmTrack> tracks, Rest rest, double time)
         {
             var track = PlainMaps.Get(tracks, rest.Action.Id);
@@ -229,7 +231,7 @@ namespace Metagraph
             return row;
         }
 
-        /// <summary>Return a track's row at clip seconds, on the straight line between its rows.</summary>
+        /// <summary>Return a track's row at a second of the clip, interpolated linearly.</summary>
         private static List<double> Row(ArmTrack track, double seconds)
         {
             var last = track.Rows.Count - 1;

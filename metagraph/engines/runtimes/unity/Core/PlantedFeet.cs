@@ -6,8 +6,10 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it stands (0 to 1), its
-    /// joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+    /// Where a clip's feet are.
+    ///
+    /// `rows` has a row for each tenth of a second, with the left foot and then the right: whether it stands (0 to 1), its
+    /// joint's position and rotation in the character's space; in units of `FOOT_UNIT`.
     /// </summary>
     public sealed class FootTrack
     {
@@ -22,22 +24,22 @@ namespace Metagraph
     public static class PlantedFeetRules
     {
         public const double FootRate = 10.0; // rows of a track in a second of its clip
-        public const double FootUnit = 1e-05; // what 1 in a row stands for
-        public const int FootNumbers = 8; // in a row, of each foot
-        public const double Stepping = 0.5; // seconds that two steps take where a cue leaves them time
-        public const double LeastPart = 0.15; // of that time for the foot that has the shorter way
-        public const double Nearby = 0.015; // metres: feet with less way than that are taken over together, slowly
-        public const double Waits = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
-        public const double Lift = 0.25; // how high a foot is lifted for a short step, of its way
-        public const double MostLift = 0.08; // metres that it is never lifted to
-        public const double Far = 0.25; // of the height: no foot steps that much farther than
+        public const double FootUnit = 1e-05; // the value of 1 in a row
+        public const int FootNumbers = 8; // in a row, for each foot
+        public const double Stepping = 0.5; // seconds that two steps take if a cue leaves them time
+        public const double LeastPart = 0.15; // of that time for the foot with the shorter way
+        public const double Nearby = 0.015; // metres: feet with a shorter way move together, slowly
+        public const double Waits = 0.12; // of a step's time: the foot is lifted before it moves and lowered after it
+        public const double Lift = 0.25; // how high a foot is lifted for a short step, as a share of its way
+        public const double MostLift = 0.08; // metres: the limit that no foot reaches
+        public const double Far = 0.25; // of the height: no foot steps that much farther
         public const double TooFar = 0.1;
 
         /// <summary>
-        /// Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+        /// Return where both feet should be at a time; an empty list if nothing blends or it is unknown.
         ///
-        /// tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has motion; place: of
-        /// the rest in force, -1 for none.
+        /// `tracks` are by action. `height` is the figure's. `plan` is the body's layer. `cue` is the one that plays, if it has
+        /// motion, and `place` the index of the rest in force, -1 for none.
         /// </summary>
         public static List<FootGoal> FootGoals(
             Graph project,
@@ -92,7 +94,7 @@ namespace Metagraph
             return Stepped(height, here, after, first, last, (time - goes) / (cue.End - goes));
         }
 
-        /// <summary>Return how long the feet take to come into a cue: its blend, and longer while it stands.</summary>
+        /// <summary>Return how long the feet take to enter a cue: its blend, and longer while it stands.</summary>
         private static double Entering(FootTrack track, Cue cue)
         {
             return Lasting(track, cue, cue.BlendIn, cue.Start, 1.0);
@@ -128,8 +130,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are when it begins
-        /// and ends, from which order and size of the steps follow.
+        /// Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they
+        /// are when it begins and ends, which gives the order and size of the steps.
         /// </summary>
         private static List<FootGoal> Stepped(
             double height,
@@ -150,7 +152,7 @@ namespace Metagraph
             {
                 part = Math.Min(Math.Max(ways[0] / (ways[0] + ways[1]), LeastPart), 1.0 - LeastPart);
             }
-            // To the left the left foot goes first: the other would have to pass it.
+            // To the left, the left foot goes first: the right foot would have to pass it.
             var moved = PlainVectorsRules.Plus(
                 PlainVectorsRules.Minus(last[0].At, first[0].At),
                 PlainVectorsRules.Minus(last[1].At, first[1].At)
@@ -195,7 +197,7 @@ namespace Metagraph
             return new FootGoal(at, turn, share * a.Planted * b.Planted, a.Lift * rest + b.Lift * x + air);
         }
 
-        /// <summary>Return the place of the rest in force at a time, near another.</summary>
+        /// <summary>Return the index of the rest in force at a time, searching from another.</summary>
         private static int Resting(LayerPlan plan, int place, double time)
         {
             while (place > 0 && plan.Rests[place].FadeStart > time)
@@ -215,7 +217,7 @@ namespace Metagraph
             return place > 0 && rest.FadeStart + rest.Fade > time;
         }
 
-        /// <summary>Whether a stance is not one loop at one place of it.</summary>
+        /// <summary>Return whether a stance blends: between two rests, or at a loop's seam.</summary>
         private static bool Changes(Graph project, LayerPlan plan, int place, double time)
         {
             var rest = plan.Rests[place];
@@ -226,7 +228,7 @@ namespace Metagraph
             return CueTimesRules.LoopSpot(project, rest, time).Over < 1.0;
         }
 
-        /// <summary>Return where the stance's feet are that lies under the cues at a time.</summary>
+        /// <summary>Return where the feet of the stance under the cues are at a time.</summary>
         private static List<FootGoal> Stance(
             Graph project,
             Dictionary<string, FootTrack> tracks,
@@ -255,7 +257,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return where the feet of a loop are, taken from its end to its beginning in steps, too.</summary>
+        /// <summary>Return where the feet of a loop are. They also go from its end to its beginning in steps.</summary>
         private static List<FootGoal> Loop(
             Graph project,
             Dictionary<string, FootTrack> tracks,
@@ -278,7 +280,7 @@ namespace Metagraph
             return Stepped(height, Row(track, spot.Other), here, Row(track, spot.Leaves), Row(track, spot.Meets), spot.Over);
         }
 
-        /// <summary>Return where a clip's feet are at clip seconds, on the straight line between rows.</summary>
+        /// <summary>Return where a clip's feet are at a second of the clip, interpolated linearly.</summary>
         private static List<FootGoal> Row(FootTrack track, double seconds)
         {
             var last = track.Rows.Count - 1;

@@ -1,4 +1,5 @@
-# Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as shows of it.
+# Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much of it
+# shows.
 #
 # Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
 
@@ -6,11 +7,13 @@ const ContactSolve = preload("contact_solve.gd")
 const ContactSpans = preload("contact_spans.gd")
 const CueTimes = preload("cue_times.gd")
 const Util = preload("util.gd")
-const LEAST = 1e-06  # of a hand: what shows less than this is not solved
+const LEAST = 1e-06  # of a hand: goals with less weight are not solved
 
 
-# Return what a layer wants of the hands at a time. cue: the one that plays, if it has motion. place: of the rest that is in
-# force, -1 for none. strength: how much of the arms the layer moves, 0..1.
+# Return where a layer wants the hands at a time.
+#
+# `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is how much of
+# the arms the layer moves, 0..1.
 static func layer_goals(rig, project, plan, cue, place, time, strength):
 	var out = []
 	var shown = [0.0, 0.0]
@@ -35,7 +38,7 @@ static func layer_goals(rig, project, plan, cue, place, time, strength):
 	return out
 
 
-# Return what a loop wants, less what shows of the cue above it.
+# Return where a loop wants the hands, less what the cue above it covers.
 static func _loop_goals(rig, project, rest, time, strength, shown):
 	var out = []
 	var action = rest.action
@@ -70,7 +73,7 @@ static func _loop_goals(rig, project, rest, time, strength, shown):
 	return out
 
 
-# Return the goals of an action at clip seconds. shares: how much of it shows at the left hand, the right.
+# Return the goals of an action at a second of its clip. `shares` says how much of it shows at the left and the right hand.
 static func _goals(rig, project, action, seconds, shares):
 	var out = []
 	var both = project.span(action)
@@ -92,7 +95,7 @@ static func _arm(span):
 	return 0 if span.hand == "left" else 1
 
 
-# Whether an action moves a hand, and does not leave it to its stance.
+# Return whether an action moves a hand, instead of leaving it in the stance.
 static func _moves(rig, action, arm, hand):
 	if not ["both", hand].has(action.limb):
 		return false

@@ -1,12 +1,15 @@
-# What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays.
+# Compute what of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and `Cue.clip_seconds` do the same
+# with arrays.
 #
 # Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
 
 const Util = preload("util.gd")
 
 
-# Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone from there to here, 1
-# where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin and end.
+# Where a loop is.
+#
+# `seconds` is the time in its clip, `other` the time on the other side of its seam. `over` is how far it has blended from there
+# to here, 1 if no seam shows. `leaves` and `meets` are the clip seconds at which the two sides of the seam begin and end.
 class LoopSpot:
 	var seconds
 	var other
@@ -22,7 +25,7 @@ class LoopSpot:
 		self.meets = meets_
 
 
-# Return where a stance's loop is at a time, as `player.loop_seconds` has it.
+# Return where a stance's loop is at a time, as `player.loop_seconds` does.
 static func loop_spot(project, rest, time):
 	var action = rest.action
 	var both = project.span(action)
@@ -59,7 +62,7 @@ static func cue_seconds(cue, time):
 	return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
 
 
-# Return 3 x^2 - 2 x^3 of x within 0..1.
+# Return 3 x^2 - 2 x^3 of x clamped to 0..1.
 static func ease_(x):
 	x = Util.least(Util.most(x, 0.0), 1.0)
 	return x * x * (3.0 - 2.0 * x)

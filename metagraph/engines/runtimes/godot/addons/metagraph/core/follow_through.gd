@@ -1,22 +1,24 @@
-# What the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+# Compute what the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
 #
-# The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through their places
-# at four fixed times before it: smooth, and a function of plan and time alone.
+# The body answers with a delay, so it follows not the arms' place at one time but a cubic B-spline through their places at four
+# fixed times before it. This is smooth, and a function of plan and time only.
 #
 # Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
 
 const CueTimes = preload("cue_times.gd")
 const Util = preload("util.gd")
-const STEP = 0.08  # seconds between the times that are looked at; the answer comes two of them late
-const OFFSET = 0.0111  # seconds that they lie beside whole steps, where cues begin and end
+const STEP = 0.08  # seconds between the sampled times; the answer comes two of them late
+const OFFSET = 0.0111  # seconds by which they are shifted from whole steps, where cues begin and end
 const KNOTS = 4
 const RATE = 10.0  # rows of a track in a second of its clip
-const UNIT = 1e-05  # metres, or radians, that 1 in a row stands for
+const UNIT = 1e-05  # metres, or radians, of 1 in a row
 const NUMBERS = 8  # in a row
 
 
-# What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much the left arm shifts the
-# centre of mass of the whole body to the left, up and ahead, the right arm the same, and how far each collar bone lags behind its
+# What a clip's arms do.
+#
+# `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left arm shifts the centre
+# of mass of the whole body to the left, up and ahead, the same for the right arm, and how far each collar bone lags behind its
 # arm; in units of `UNIT`.
 class ArmTrack:
 	var clip
@@ -27,21 +29,21 @@ class ArmTrack:
 		self.rows = rows_
 
 
-# Return the number of the last time that is looked at for a pose at `time`.
+# Return the number of the last sampled time for a pose at `time`.
 static func knot_before(time):
 	return int(floor((time - OFFSET) / STEP))
 
 
-# Return when a time that is looked at is, seconds.
+# Return the time of a sample, in seconds.
 static func knot_time(number):
 	return number * STEP + OFFSET
 
 
-# Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+# Return how far the arms are from their stance at a time, as a row of a track, in metres and radians.
 #
-# tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion; place: of the rest in
-# force, -1 for none; of the body's layer the same. A cue of the very clip that the body's layer shows, too, brings its own hips
-# and counts for nothing.
+# `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has motion, and `place`
+# the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's layer. A cue of the clip
+# that the body's layer also shows brings its own hips and does not count.
 static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, body_place, time):
 	var out = []
 	for n2 in range(NUMBERS):
@@ -71,8 +73,8 @@ static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, b
 	return out
 
 
-# Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of the last `KNOTS` times
-# before it.
+# Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the rows of the last `KNOTS`
+# times before it.
 static func driven(sways, time):
 	var u = (time - OFFSET) / STEP
 	u = u - int(floor(u))
@@ -94,7 +96,7 @@ static func driven(sways, time):
 	return out
 
 
-# Whether an action moves an arm, and does not leave it to its stance.
+# Return whether an action moves an arm, instead of leaving it in the stance.
 static func _moves(action, side, hand):
 	if not ["both", side].has(action.limb):
 		return false
@@ -127,7 +129,7 @@ static func _is_of(tracks, action, clip):
 	return track != null and track.clip == clip
 
 
-# Return the row of the stance that lies under the cues.
+# Return the row of the stance under the cues.
 static func _stance(project, tracks, plan, place, time):
 	if place < 0:
 		var found = []
@@ -146,7 +148,7 @@ static func _stance(project, tracks, plan, place, time):
 	return row
 
 
-# Return the row of a loop, its end faded into its beginning.
+# Return the row of a loop, with its end blended into its beginning.
 static func _loop(project, tracks, rest, time):
 	var track = tracks.get(rest.action.id)
 	if track == null or track.rows.size() == 0:
@@ -166,7 +168,7 @@ static func _loop(project, tracks, rest, time):
 	return row
 
 
-# Return a track's row at clip seconds, on the straight line between its rows.
+# Return a track's row at a second of the clip, interpolated linearly.
 static func _row(track, seconds):
 	var last = track.rows.size() - 1
 	var at = Util.least(Util.most(seconds * RATE, 0.0), float(last))

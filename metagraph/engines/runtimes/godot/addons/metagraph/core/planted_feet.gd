@@ -1,8 +1,8 @@
-# Where the feet of a standing body should be while the body's layer blends: not gliding from one pose to the other, but held, and
-# taken over one after the other in a step.
+# Find where the feet of a standing body should be while the body's layer blends: they do not glide from one pose to the other but
+# are held, and moved one after the other in a step.
 #
-# A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each step's time, order and
-# height follow from the two poses it leads between.
+# A clip says where its feet are, and when they stand. A pose is a function of plan and time only, so each step's time, order and
+# height follow from the two poses that it joins.
 #
 # Translated from metagraph/playback/posing/planted_feet.py; change that, and translate anew.
 
@@ -11,20 +11,22 @@ const PlainVectors = preload("plain_vectors.gd")
 const CueTimes = preload("cue_times.gd")
 const Util = preload("util.gd")
 const FOOT_RATE = 10.0  # rows of a track in a second of its clip
-const FOOT_UNIT = 1e-05  # what 1 in a row stands for
-const FOOT_NUMBERS = 8  # in a row, of each foot
-const STEPPING = 0.5  # seconds that two steps take where a cue leaves them time
-const LEAST_PART = 0.15  # of that time for the foot that has the shorter way
-const NEARBY = 0.015  # metres: feet with less way than that are taken over together, slowly
-const WAITS = 0.12  # of a step's time: before it goes ahead a foot is lifted, and lowered after it
-const LIFT = 0.25  # how high a foot is lifted for a short step, of its way
-const MOST_LIFT = 0.08  # metres that it is never lifted to
-const FAR = 0.25  # of the height: no foot steps that much farther than
+const FOOT_UNIT = 1e-05  # the value of 1 in a row
+const FOOT_NUMBERS = 8  # in a row, for each foot
+const STEPPING = 0.5  # seconds that two steps take if a cue leaves them time
+const LEAST_PART = 0.15  # of that time for the foot with the shorter way
+const NEARBY = 0.015  # metres: feet with a shorter way move together, slowly
+const WAITS = 0.12  # of a step's time: the foot is lifted before it moves and lowered after it
+const LIFT = 0.25  # how high a foot is lifted for a short step, as a share of its way
+const MOST_LIFT = 0.08  # metres: the limit that no foot reaches
+const FAR = 0.25  # of the height: no foot steps that much farther
 const TOO_FAR = 0.1
 
 
-# Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it stands (0 to 1), its
-# joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+# Where a clip's feet are.
+#
+# `rows` has a row for each tenth of a second, with the left foot and then the right: whether it stands (0 to 1), its joint's
+# position and rotation in the character's space; in units of `FOOT_UNIT`.
 class FootTrack:
 	var rows
 
@@ -32,10 +34,10 @@ class FootTrack:
 		self.rows = rows_
 
 
-# Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+# Return where both feet should be at a time; an empty list if nothing blends or it is unknown.
 #
-# tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has motion; place: of the rest
-# in force, -1 for none.
+# `tracks` are by action. `height` is the figure's. `plan` is the body's layer. `cue` is the one that plays, if it has motion, and
+# `place` the index of the rest in force, -1 for none.
 static func foot_goals(project, tracks, height, plan, cue, place, time):
 	if place < 0:
 		return []
@@ -68,7 +70,7 @@ static func foot_goals(project, tracks, height, plan, cue, place, time):
 	return _stepped(height, here, after, first, last, (time - goes) / (cue.end - goes))
 
 
-# Return how long the feet take to come into a cue: its blend, and longer while it stands.
+# Return how long the feet take to enter a cue: its blend, and longer while it stands.
 static func _entering(track, cue):
 	return _lasting(track, cue, cue.blend_in, cue.start, 1.0)
 
@@ -95,8 +97,8 @@ static func _stands(track, seconds):
 	return goals[0].planted >= 1.0 and goals[1].planted >= 1.0
 
 
-# Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are when it begins and ends,
-# from which order and size of the steps follow.
+# Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they are when it
+# begins and ends, which gives the order and size of the steps.
 static func _stepped(height, before, after, first, last, u):
 	if before.size() == 0 or after.size() == 0 or first.size() == 0 or last.size() == 0:
 		return []
@@ -106,7 +108,7 @@ static func _stepped(height, before, after, first, last, u):
 	var part = 0.5
 	if ways[0] + ways[1] > 0.0:
 		part = Util.least(Util.most(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1.0 - LEAST_PART)
-	# To the left the left foot goes first: the other would have to pass it.
+	# To the left, the left foot goes first: the right foot would have to pass it.
 	var moved = PlainVectors.plus(PlainVectors.minus(last[0].at, first[0].at), PlainVectors.minus(last[1].at, first[1].at))
 	var left_first = PlainVectors.dot(moved, PlainVectors.minus(first[0].at, first[1].at)) >= -1e-09
 	var longer = Util.most(ways[0], ways[1])
@@ -143,7 +145,7 @@ static func _mixed(a, b, x, air, share):
 	return FeetSolve.FootGoal.new(at, turn, share * a.planted * b.planted, a.lift * rest + b.lift * x + air)
 
 
-# Return the place of the rest in force at a time, near another.
+# Return the index of the rest in force at a time, searching from another.
 static func _resting(plan, place, time):
 	while place > 0 and plan.rests[place].fade_start > time:
 		place -= 1
@@ -157,7 +159,7 @@ static func _fades(plan, place, time):
 	return place > 0 and rest.fade_start + rest.fade > time
 
 
-# Whether a stance is not one loop at one place of it.
+# Return whether a stance blends: between two rests, or at a loop's seam.
 static func _changes(project, plan, place, time):
 	var rest = plan.rests[place]
 	if _fades(plan, place, time):
@@ -165,7 +167,7 @@ static func _changes(project, plan, place, time):
 	return CueTimes.loop_spot(project, rest, time).over < 1.0
 
 
-# Return where the stance's feet are that lies under the cues at a time.
+# Return where the feet of the stance under the cues are at a time.
 static func _stance(project, tracks, height, plan, place, time):
 	place = _resting(plan, place, time)
 	var rest = plan.rests[place]
@@ -184,7 +186,7 @@ static func _stance(project, tracks, height, plan, place, time):
 	)
 
 
-# Return where the feet of a loop are, taken from its end to its beginning in steps, too.
+# Return where the feet of a loop are. They also go from its end to its beginning in steps.
 static func _loop(project, tracks, height, rest, time):
 	var track = tracks.get(rest.action.id)
 	if track == null or track.rows.size() == 0:
@@ -196,7 +198,7 @@ static func _loop(project, tracks, height, rest, time):
 	return _stepped(height, _row(track, spot.other), here, _row(track, spot.leaves), _row(track, spot.meets), spot.over)
 
 
-# Return where a clip's feet are at clip seconds, on the straight line between rows.
+# Return where a clip's feet are at a second of the clip, interpolated linearly.
 static func _row(track, seconds):
 	var last = track.rows.size() - 1
 	var at = Util.least(Util.most(seconds * FOOT_RATE, 0.0), float(last))
