@@ -147,6 +147,7 @@ def import_files(
     bodies = [clip for _, _, clip in report.clips if not is_face_take(clip)]
     skeleton = project.skeleton or _skeleton_of_most(bodies)
     faces: list[Loaded] = []
+    lost: list[tuple[Path, int, Clip]] = []  # with notes on what their skeletons have and the project's not
     loaded: list[Loaded] = []
     foreign: dict[str, list[Loaded]] = {}
     reasons: dict[str, str] = {}
@@ -165,7 +166,9 @@ def import_files(
             continue
         assert skeleton is not None
         try:
-            loaded.append((name, take, digests[path], adopt(clip, skeleton)))
+            own = adopt(clip, skeleton)
+            loaded.append((name, take, digests[path], own))
+            lost.append((path, take, replace(own, notes=own.notes[len(clip.notes) :])))
             key = clip.skeleton.fingerprint
             if key not in apart:
                 apart[key] = (bone_difference(clip.skeleton, skeleton), [])
@@ -188,7 +191,7 @@ def import_files(
         character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
         if character is not None and character.path in still:  # it is useful without a motion
             failures.remove(still[character.path].words)
-    notes = (*_together(report.clips), *_other_bones(list(apart.values())))
+    notes = (*_together(report.clips), *_together(lost), *_other_bones(list(apart.values())))
     if character is not None:
         notes = (*notes, *character.notes)
     result = Imported(tuple(loaded), tuple(failures), notes, report.cancelled, character, stand_ins)

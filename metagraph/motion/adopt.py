@@ -5,16 +5,21 @@ not.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton
+from metagraph.motion.skeleton import Pose, Skeleton
+
+Array = NDArray[Any]
 
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
+_BETWEEN = 4  # joints that one skeleton may have between shared ones and the other not
 _NOTABLE = 0.03  # of the figure's size: shorter bones are fingers and faces
 
 
@@ -25,39 +30,55 @@ class SkeletonMismatchError(ValueError):
 def difference(clip: Skeleton, project: Skeleton) -> str | None:
     """Return in words why a clip on skeleton `clip` cannot play on `project`, or None when it can.
 
-    A clip may lack joints (a face-only file), but not bring its own, and the bones it shares must be as long.
-    Names may differ by what all joints of a file bear before or behind them (`mixamorig1:`).
+    A clip may lack joints (a face-only file), bring ends of its own (a jaw, finger tips), and have up to
+    `_BETWEEN` joints more or fewer between shared ones (a second chest, an armature above the hips). The
+    bones between shared joints must be as long. Names may differ by what all joints of a file bear before or
+    behind them (`mixamorig1:`).
     """
     clip = _called_alike(clip, project)
     extra = [name for name in clip.names if name not in project]
     shared = [name for name in clip.names if name in project]
     if len(shared) < max(1, len(clip) // 2):
         return f"its joints have other names (it has '{extra[0]}', the project has '{project.names[0]}')"
-    if extra:
-        more = f" and {len(extra) - 1} more" if len(extra) > 1 else ""
-        return f"the project's skeleton has no joint '{extra[0]}'{more}"
-    for i, name in enumerate(clip.names):
-        parent = clip.parents[i]
-        if parent < 0:
-            continue
-        above = project.parents[project.index(name)]
-        if above < 0 or project.names[above] != clip.names[parent]:
-            return (
-                f"joint '{name}' hangs on '{clip.names[parent]}' instead of "
-                f"'{project.names[above] if above >= 0 else 'nothing'}'"
-            )
-    ours = np.linalg.norm(project.rest_translations[[project.index(n) for n in clip.names]], axis=-1)
-    theirs = np.linalg.norm(clip.rest_translations, axis=-1)
-    inner = clip.parents >= 0
-    if inner.any():
-        ratio = (
-            np.median(theirs[inner & (ours > 1e-3)] / ours[inner & (ours > 1e-3)])
-            if (inner & (ours > 1e-3)).any()
-            else 1.0
-        )
-        if not 0.7 < ratio < 1.4:
-            return f"its bones are {ratio:.3g} times as long"
+    own, ours = _chains(clip, project), _chains(project, clip)
+    for name, chain in own.items():
+        above, here = clip.parents[chain[0]], project.parents[ours[name][0]]
+        one = clip.names[above] if above >= 0 else "nothing"
+        other = project.names[here] if here >= 0 else "nothing"
+        if one != other:
+            return f"joint '{name}' hangs on '{one}' instead of '{other}'"
+    between = sum(len(chain) - 1 for chains in (own, ours) for chain in chains.values())
+    if between > _BETWEEN:
+        return f"{between} joints between those of the same names are there in one skeleton alone"
+    theirs, mine = _lengths(clip, own), _lengths(project, ours)
+    inner = np.array([clip.parents[chain[0]] >= 0 for chain in own.values()]) & (mine > 1e-3)
+    ratio = float(np.median(theirs[inner] / mine[inner])) if inner.any() else 1.0
+    if not 0.7 < ratio < 1.4:
+        return f"its bones are {ratio:.3g} times as long"
     return None
+
+
+def _chains(skeleton: Skeleton, other: Skeleton) -> dict[str, list[int]]:
+    """Return, for each joint that another skeleton has, by name: the joints from below the nearest one above
+    it that is shared, down to itself.
+    """
+    out = {}
+    for joint, name in enumerate(skeleton.names):
+        if name not in other:
+            continue
+        chain, above = [joint], int(skeleton.parents[joint])
+        while above >= 0 and skeleton.names[above] not in other:
+            chain.insert(0, above)
+            above = int(skeleton.parents[above])
+        out[name] = chain
+    return dict(sorted(out.items()))
+
+
+def _lengths(skeleton: Skeleton, chains: Mapping[str, Sequence[int]]) -> Array:
+    """Return how far each chain leads at rest, metres."""
+    _, places = skeleton.globals(skeleton.rest)
+    ends = [(chain[-1], int(skeleton.parents[chain[0]])) for chain in chains.values()]
+    return np.array([np.linalg.norm(places[end] - (places[top] if top >= 0 else 0)) for end, top in ends])
 
 
 def _called_alike(clip: Skeleton, project: Skeleton) -> Skeleton:
@@ -102,16 +123,18 @@ def bone_difference(clip: Skeleton, project: Skeleton) -> float:
     for skeletons between which there is no `difference`.
     """
     clip = _called_alike(clip, project)
-    ours = np.linalg.norm(project.rest_translations[[project.index(n) for n in clip.names]], axis=-1)
-    theirs = np.linalg.norm(clip.rest_translations, axis=-1)
-    below = np.array([len(clip.descendants(j)) for j in range(len(clip))])
-    bones = (clip.parents >= 0) & (ours > _NOTABLE * project.height) & (below <= len(clip) / 2)
+    own = _chains(clip, project)
+    theirs, ours = _lengths(clip, own), _lengths(project, _chains(project, clip))
+    below = np.array([len(clip.descendants(chain[-1])) for chain in own.values()])
+    inner = np.array([clip.parents[chain[0]] >= 0 for chain in own.values()])
+    bones = inner & (ours > _NOTABLE * project.height) & (below <= len(clip) / 2)
     return float(np.abs(theirs[bones] / ours[bones] - 1).max(initial=0.0))
 
 
 def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the
-    clip has them.
+    clip has them. A note names the joints whose motion is lost; that of joints between shared ones is handed
+    down.
 
     Raises SkeletonMismatchError when the skeletons are not of the same character.
     """
@@ -123,14 +146,22 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     if why is not None:
         raise SkeletonMismatchError(why)
     alike = _called_alike(clip.skeleton, skeleton)
-    places = np.array([skeleton.index(name) for name in alike.names])
+    own, chains = _chains(alike, skeleton), _chains(skeleton, alike)
     source = clip.poses()
     rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
     translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(
         np.float32
     )
-    rotations[:, places] = source.rotations
-    translations[:, places] = source.translations
+    plain = [name for name in own if len(own[name]) == len(chains[name]) == 1]
+    here, there = [skeleton.index(name) for name in plain], [alike.index(name) for name in plain]
+    rotations[:, here], translations[:, here] = source.rotations[:, there], source.translations[:, there]
+    for name in own.keys() - set(plain):
+        turn, place = _along(source, own[name])
+        above = Pose(skeleton.rest_rotations[None], skeleton.rest_translations[None])
+        base_turn, base_place = _along(above, chains[name][:-1])
+        back = rotation.conjugate(base_turn)
+        rotations[:, chains[name][-1]] = rotation.multiply(back, turn)
+        translations[:, chains[name][-1]] = rotation.rotate_vectors(back, place - base_place)
     rest = skeleton.rest_translations.astype(np.float32)
     moved = np.flatnonzero(np.abs(translations - rest).max(axis=(0, 2)) > MOVED)
     translated = tuple(sorted({0, *(int(j) for j in moved)}))
@@ -140,4 +171,27 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
         rotations=rotation.continuous(rotations),
         translations=translations[:, list(translated)],
         translated=translated,
+        notes=(*clip.notes, *_lost(alike, skeleton)),
     )
+
+
+def _along(pose: Pose, chain: Sequence[int]) -> tuple[Array, Array]:
+    """Return the turn `[F, 4]` and place `[F, 3]` of a chain's end in the space above it; of no joints,
+    none.
+    """
+    turn = np.tile([0.0, 0, 0, 1], (len(pose.rotations), 1))
+    place = np.zeros((len(pose.rotations), 3))
+    for joint in chain:
+        place = place + rotation.rotate_vectors(turn, pose.translations[:, joint].astype(float))
+        turn = rotation.multiply(turn, pose.rotations[:, joint].astype(float))
+    return turn, place
+
+
+def _lost(clip: Skeleton, project: Skeleton) -> tuple[str, ...]:
+    """Return a note on the joints of a clip whose motion the project's skeleton has no joints for."""
+    kept = {joint for chain in _chains(clip, project).values() for joint in chain}
+    names = [name for joint, name in enumerate(clip.names) if joint not in kept]
+    if not names:
+        return ()
+    more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return (f"the motion of its joint '{names[0]}'{more} was left out: the project's skeleton has none such",)

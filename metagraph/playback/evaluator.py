@@ -49,6 +49,7 @@ class Evaluator:
         self.rigs = rigs if rigs is not None else rigs_of(project)
         self._lives = project.life.on and plan.life.end > 0
         self._layers = LayersStage(plan, project, self.rigs.composer)
+        self._still = _first_picture(plan, project)
         self._weight = WeightStage(plan, project, self.rigs.weight)
         self._life = LifeStage(project, plan.life, plan.track, self.rigs.body)
         self._contacts = ContactStage(plan, project, self.rigs.contacts)
@@ -81,12 +82,17 @@ class Evaluator:
         return Evaluator(plan, project, self.rigs if project is self.project else None)
 
     def layered(self, times: Array) -> Pose:
-        """Return what only the layers compose at `times [N]`."""
-        return self._layers.run(times)
+        """Return what only the layers compose at `times [N]`; the first clip's first frame while no layer has
+        a stance to rest in.
+        """
+        if self._still is None:
+            return self._layers.run(times)
+        still, count = self._still, (len(times), 1, 1)
+        return Pose(np.tile(still.rotations, count), np.tile(still.translations, count))
 
     def before_life(self, times: Array) -> Pose:
         """Return the poses at `times [N]` before life is added."""
-        return self._weight.run(self._layers.run(times), times)
+        return self._weight.run(self.layered(times), times)
 
     def morphs_at(self, seconds: float, alive: bool = True, composed: Pose | None = None) -> dict[str, float]:
         """Return morph target weights, 0..1, at one time: the sums of the layers and, with `alive`, life's on
@@ -115,7 +121,7 @@ class Evaluator:
 
     def _composed(self, times: Array, overlay: Overlay | None) -> Pose:
         if overlay is None or not overlay.weight.any():
-            return self._layers.run(times)
+            return self.layered(times)
         return lay_over(self.project, self.rigs.composer, self._layers.offsets(times), overlay)
 
     def _before_life_at(self, seconds: float) -> Pose:
@@ -162,3 +168,15 @@ def add_life(out: dict[str, float], found: Mapping[str, float]) -> None:
     for name, value in found.items():
         played = out.get(name, 0.0)
         out[name] = played + value * (1 - min(1.0, max(0.0, played)))
+
+
+def _first_picture(plan: Plan, project: Project) -> Pose | None:
+    """Return the pose to show while nothing plays and nobody has chosen a base pose: the first frame of the
+    first clip, since a rest pose may be anything, such as a heap on the floor. None if something plays.
+    """
+    if project.base.clip or any(of.rests or of.cues for of in plan.layers.values()):
+        return None
+    motions = (entry.motion for entry in project.clips.values())
+    fitting = (m for m in motions if m is not None and m.skeleton == project.skeleton and m.frames)
+    first = next(fitting, None)
+    return first.pose_at(0.0) if first is not None else None

@@ -75,14 +75,69 @@ def test_another_scale_is_named(scale: float) -> None:
         adopt(clip(skeleton(scale=scale)), skeleton())
 
 
-def test_a_joint_of_its_own_is_named() -> None:
-    more = Skeleton(
+def with_tail() -> Skeleton:
+    return Skeleton(
         (*NAMES, "tail"),
         np.array([*PARENTS, 0]),
         np.tile([0.0, 0, 0, 1], (7, 1)),
         np.concatenate([OFFSETS, [[0, 0, -0.3]]]),
     )
-    assert "'tail'" in difference(more, skeleton())
+
+
+def test_the_motion_of_an_end_of_its_own_is_left_out_and_named() -> None:
+    assert difference(with_tail(), skeleton()) is None
+    adopted = adopt(clip(with_tail()), skeleton())
+    assert adopted.skeleton == skeleton() and any("'tail'" in note for note in adopted.notes)
+    assert not adopt(clip(skeleton()), with_tail()).notes
+
+
+def with_chest() -> Skeleton:
+    """The skeleton with a chest between the spine and what hangs on it."""
+    names = ("armature", "hips", "spine", "chest", "head", "arm", "hand", "leg")
+    offsets = np.array([[0.1, 0, 0], *OFFSETS[:2], [0, 0.1, 0], *OFFSETS[2:]])
+    offsets[1, 0] = -0.1
+    offsets[[4, 5], 1] -= 0.1
+    parents = np.array([-1, 0, 1, 2, 3, 3, 5, 1])
+    return Skeleton(names, parents, np.tile([0.0, 0, 0, 1], (8, 1)), offsets)
+
+
+def bent(on: Skeleton) -> Clip:
+    """A clip that turns every joint of a skeleton, and moves its root."""
+    rng = np.random.default_rng(1)
+    rotations = rotation.normalize(rng.normal(size=(4, len(on), 4)) * 0.2 + [0, 0, 0, 1.0])
+    return Clip("bent", on, 30.0, rotations, rng.normal(size=(4, 1, 3)))
+
+
+@pytest.mark.parametrize("more", [True, False])
+def test_a_joint_between_shared_ones_is_no_other_skeleton_and_all_stand_where_they_stood(more: bool) -> None:
+    source, target = (with_chest(), skeleton()) if more else (skeleton(), with_chest())
+    assert difference(source, target) is None and bone_difference(source, target) == pytest.approx(0)
+    before = bent(source)
+    adopted = adopt(before, target)
+    _, places = source.globals(before.poses())
+    _, found = target.globals(adopted.poses())
+    for name in NAMES:
+        assert np.allclose(found[:, target.index(name)], places[:, source.index(name)], atol=1e-5), name
+
+
+def test_many_joints_between_shared_ones_are_another_skeleton() -> None:
+    ours = skeleton()
+    names, parents, offsets = list(NAMES), list(PARENTS), [*OFFSETS]
+    for joint in range(1, 6):  # a helper above each joint
+        names.append(f"helper of {NAMES[joint]}")
+        parents.append(PARENTS[joint])
+        offsets.append(np.zeros(3))
+        parents[joint] = len(names) - 1
+    order = [0, *(n for k in (1, 2, 3, 4, 5) for n in (5 + k, k))]
+    new = {old: n for n, old in enumerate(order)}
+    above = np.array([-1 if parents[o] < 0 else new[parents[o]] for o in order])
+    other = Skeleton(
+        tuple(names[o] for o in order),
+        above,
+        np.tile([0.0, 0, 0, 1], (11, 1)),
+        np.array([offsets[o] for o in order]),
+    )
+    assert "5 joints between" in str(difference(other, ours))
 
 
 def test_other_names_are_said_to_be_other_names() -> None:
