@@ -22,6 +22,8 @@ from metagraph.graph.problem import Problem, Severity
 
 Array = NDArray[Any]
 
+SEEN = 0.2  # of an action, that is to play without a blend
+
 
 def check_project(project: Project) -> list[Problem]:
     """Return every problem, errors first, otherwise in the order of the project."""
@@ -316,6 +318,21 @@ class _ActionCheck:
                     length=end - timing.start,
                 ),
                 phrase("Shorten its blends."),
+            )
+        elif (
+            self.action.kind in ("gesture", "fidget")
+            and entry.frames > 1
+            and blends > (1 - SEEN) * (end - timing.start)
+        ):
+            yield self.at(
+                "warning",
+                "hardly-seen",
+                phrase(
+                    "is hardly seen: {blends:.2f} of its {length:.2f} s are blends",
+                    blends=blends,
+                    length=end - timing.start,
+                ),
+                phrase("Shorten its blends, or use a clip that plays the movement several times."),
             )
 
     def blends(self) -> Iterator[Problem]:

@@ -328,3 +328,14 @@ def test_joints_an_action_leaves_alone_may_be_far_from_the_stance(healthy: Proje
     ident = toy.id(healthy, "up beat")
     project = edits.move_actions(healthy, [ident], "gesture", toy.id(healthy, "rest"))
     assert codes(edits.update_actions(project, [ident], joints=("Head",))) == []
+
+
+@pytest.mark.parametrize(("blends", "seen"), [((0.5, 0.4), False), ((0.3, 0.3), True)])
+def test_a_gesture_that_is_almost_all_blends_is_hardly_seen(
+    toy: Any, blends: tuple[float, float], seen: bool
+) -> None:
+    project = toy.project()
+    wave = toy.id(project, "rest beat lf")  # 0.9 s
+    timing = {"blend_in": blends[0] - 0.05, "blend_out": blends[1]}
+    found = check_project(edits.update_actions(project, [wave], timing=timing))
+    assert [p.code for p in found if p.action == wave] == ([] if seen else ["hardly-seen"])
