@@ -134,5 +134,6 @@ def _near(plan: Plan, since: float) -> Iterator[Item]:
             if item.start < since:
                 break
             yield item
-    lasting: tuple[LookAt | Speech, ...] = (*track.looks, *track.speeches)
+    latest = {speech.id: speech for speech in track.speeches}  # an earlier one of the id was cut short
+    lasting: tuple[LookAt | Speech, ...] = (*track.looks, *latest.values())
     yield from (x for x in lasting if x.end >= since)

@@ -16,6 +16,7 @@ from typing import Any
 
 import msgspec
 
+from metagraph.common.wording import phrase
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
@@ -71,6 +72,7 @@ from metagraph.playback.planning.running_plan import CUT, RunningPlan
 from metagraph.playback.posing.overlay import Overlay
 from metagraph.playback.posing.weight import LOOKS_BACK
 from metagraph.playback.timing.phases import phases
+from metagraph.speech.spoken_text import read_spoken_line
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two clean-ups of what is over
@@ -232,10 +234,18 @@ class LiveSession:
             return self._withdraw(client, ident, ask, work)
         if isinstance(ask, a.Bml):
             return self._block(client, Open(place, ident, key), ask, work)
+        notes: tuple[str, ...] = ()
+        if isinstance(ask, a.Say) and ask.text:
+            text, left_out = read_spoken_line(ask.text)
+            notes = tuple(phrase("left out: {what}", what=what) for what in left_out)
+            if not text and not (ask.words or ask.visemes or ask.audio or ask.line):
+                silent = phrase("nothing of the text is to be said")
+                return Reply(id=ident, state="refused", why=silent, notes=notes)
+            ask = msgspec.structs.replace(ask, text=text)
         why = self._admit(client, ident, key, ask, work)
         if why:
-            return Reply(id=ident, state="refused", why=why)
-        work.open[key] = Open(place, ident, key)
+            return Reply(id=ident, state="refused", why=why, notes=notes)
+        work.open[key] = Open(place, ident, key, notes=notes)
         return None
 
     def _partner(self, client: Client, message: Partner, work: TickWork, place: int) -> Reply | bytes | None:
@@ -469,7 +479,8 @@ class LiveSession:
                 self._tell_changed(key, ask, found.get(key, FoundAnswer()), out)
         for open_ in work.open.values():
             if open_.parts is None:
-                out.replies[open_.place] = self._settle(open_.key, found.get(open_.key, FoundAnswer()))
+                reply = self._settle(open_.key, found.get(open_.key, FoundAnswer()))
+                out.replies[open_.place] = msgspec.structs.replace(reply, notes=open_.notes)
             else:
                 out.replies[open_.place] = self._settle_block(open_, found)
 

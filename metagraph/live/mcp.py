@@ -17,6 +17,7 @@ from metagraph import __version__
 from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES, tools
 from metagraph.live.stdio import StdioLine
+from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.text_gestures import gesture_requests, gesture_words_for, propose_gestures, timed_words
 
 VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
@@ -127,6 +128,8 @@ class McpLine(StdioLine):
             request["in"] = given["after"]  # as the session calls it
         alone = name == "say" and request.get("gestures", True) is True and not request.get("line")
         text = request.get("text") if alone else None
+        if isinstance(text, str):
+            text, _ = read_spoken_line(text)
         self._calls.append(_Call(ident, text if isinstance(text, str) else "", request.get("words")))
         self._ask(msgspec.json.encode({**request, "do": name}))
         return True

@@ -24,6 +24,7 @@ from metagraph.playback.planning.hashing import Bits
 from metagraph.speech import word_gestures
 from metagraph.speech.language_detection import detect_language
 from metagraph.speech.language_packs import list_language_packs
+from metagraph.speech.spoken_text import SpokenPart, SpokenText
 from metagraph.speech.word_gestures import (
     GestureRule,
     GestureWords,
@@ -170,6 +171,7 @@ class TextStream:
         self.tags, self.lexicon, self.seed, self.name = tags, lexicon, seed, name
         self._heard = ""
         self.free = 0.0  # seconds of the session, from which on nothing is said yet
+        self._spoken = SpokenText()
         self._text = ""
         self._count = 0
 
@@ -177,13 +179,23 @@ class TextStream:
         """Take in what comes next at `now` seconds of the session; return requests for the sentences that are
         whole. over: whether the text ends here.
         """
-        self._text += piece
         out: list[dict[str, Any]] = []
-        while (end := sentence_end(ALPHABET, self._text, over)) > 0:
-            said, self._text = self._text[:end].strip(), self._text[end:]
-            if telling(ALPHABET, said):
-                out += self._said(said, now)
+        parts = self._spoken.take(piece, over)
+        for n, part in enumerate(parts or [SpokenPart("")]):
+            self._text += part.text
+            ends = part.pause > 0 or (over and n >= len(parts) - 1)
+            while (end := sentence_end(ALPHABET, self._text, ends)) > 0:
+                said, self._text = self._text[:end].strip(), self._text[end:]
+                if telling(ALPHABET, said):
+                    out += self._said(said, now)
+            if part.pause > 0:
+                self.free = max(self.free, now + START) + part.pause
         return out
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What of the text so far was not said: thinking, code, addresses, pictures."""
+        return tuple(self._spoken.left_out)
 
     def _said(self, text: str, now: float) -> list[dict[str, Any]]:
         self._count += 1

@@ -140,6 +140,19 @@ def test_the_same_id_again_replaces_what_was_asked(session: LiveSession) -> None
     assert [c.start for c in session.plan.layers["head"].cues] == [6.0]
 
 
+def test_a_line_after_one_that_was_withdrawn_under_its_id_begins_when_the_reply_says(
+    session: LiveSession,
+) -> None:
+    words = [["my", 0.0, 0.3], ["mother", 0.4, 2.0]]
+    first = one(session, {"do": "say", "id": "turn", "words": words})
+    session.tick(first["at"] + 0.5)
+    ask(session, {"do": "withdraw", "what": "turn"})
+    told = one(session, {"do": "say", "id": "turn", "words": [["please", 0.0, 0.4], ["open", 0.5, 0.9]]})
+    speech = session.plan.track.speeches[-1]
+    assert told["at"] == pytest.approx(speech.start, abs=1e-3) and told["actions"] == ["speech"]
+    assert told["at"] > first["at"]
+
+
 @pytest.mark.parametrize(
     "ident", ["a.1", "a+1", "c2/x", "", " ", "x" * 200, "Ünïcode", "\u0000", "#1", "~", "'"]
 )

@@ -10,7 +10,14 @@ from dataclasses import dataclass, replace
 
 from metagraph.graph.requests import Point
 from metagraph.graph.words import Layer, Mode
-from metagraph.playback.life.line_timing import LineTiming, alike_timings, extended, timed_seconds, told_text
+from metagraph.playback.life.line_timing import (
+    LineTiming,
+    alike_timings,
+    extended,
+    tells_on,
+    timed_seconds,
+    told_text,
+)
 from metagraph.playback.life.spots import Spot, same_spot
 from metagraph.playback.planning.mood import MoodFrom
 
@@ -124,6 +131,8 @@ def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
     if old is None or old.timing is None or new.timing is None or old.length is not None:
         return new
     if max(old.start, new.start) > now and old.start != new.start:
+        return new
+    if old.end <= now and not tells_on(old.timing, new.timing):
         return new
     timing = extended(old.timing, new.timing, max(now - old.start, 0.0))
     length = max(timed_seconds(timing, None), new.end - new.start)

@@ -219,6 +219,29 @@ def test_what_comes_too_late_takes_nothing_back(sample: Project) -> None:
     assert speech.timing is not None and [w.text for w in speech.timing.words] == ["one", "two"]
 
 
+def test_a_line_that_is_over_is_said_anew_under_its_id(sample: Project) -> None:
+    running = RunningPlan(sample, idle=False)
+    running.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": WORDS})])
+    again = [["please", 0.0, 0.4], ["open", 0.5, 0.8], ["both", 0.9, 4.0]]
+    running.hear(5.0, [a.request_from({"do": "say", "id": "s", "words": again})])
+    last = running.plan.track.last_speech("s")
+    assert last is not None and last.start == pytest.approx(5.0 + sample.settings.lookahead)
+    assert last.text == "please open both"
+    assert shown(running.plan, last.start + np.linspace(0.9, 3.9, 50)).sum(1).max() > 0.7
+
+
+@pytest.mark.parametrize("more", [[["again", 2.5, 3.2]], [*WORDS, ["again", 2.5, 3.2]]])
+def test_words_that_come_after_a_line_has_run_out_still_belong_to_it(
+    sample: Project, more: list[Any]
+) -> None:
+    running = RunningPlan(sample, idle=False)
+    running.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": WORDS})])
+    (first,) = running.plan.track.speeches
+    running.hear(first.end + 0.2, [a.request_from({"do": "say", "id": "s", "words": more})])
+    last = running.plan.track.last_speech("s")
+    assert last is not None and last.start == first.start and last.text == "Hello there again"
+
+
 def test_another_line_is_another_line(sample: Project) -> None:
     running = RunningPlan(sample, idle=False)
     running.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 4.0]]})])

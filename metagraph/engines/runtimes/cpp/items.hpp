@@ -191,6 +191,9 @@ inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, dou
     if (std::max(old->start, new_->start) > now && old->start != new_->start) {
         return new_;
     }
+    if (old->end <= now && !line_timing::tells_on(old->timing, new_->timing)) {
+        return new_;
+    }
     Ref<LineTiming> timing = line_timing::extended(old->timing, new_->timing, std::max(now - old->start, 0.0));
     double length = std::max(line_timing::timed_seconds(timing, std::nullopt), new_->end - new_->start);
     bool more = new_->text == "" || new_->text == line_timing::told_text(new_->timing);

@@ -5,7 +5,7 @@
  * Translated from metagraph/playback/life/items.py; change that, and translate anew.
  */
 
-import { alikeTimings, extended, timedSeconds, toldText } from "./line_timing.js";
+import { alikeTimings, extended, tellsOn, timedSeconds, toldText } from "./line_timing.js";
 import { sameSpot } from "./spots.js";
 import { but, zip } from "./basics.js";
 
@@ -151,6 +151,9 @@ export function goingOn(old, new_, now) {
     return new_;
   }
   if (Math.max(old.start, new_.start) > now && old.start !== new_.start) {
+    return new_;
+  }
+  if (old.end <= now && !tellsOn(old.timing, new_.timing)) {
     return new_;
   }
   const timing = extended(old.timing, new_.timing, Math.max(now - old.start, 0));

@@ -196,6 +196,10 @@ namespace Metagraph
             {
                 return new_;
             }
+            if (old.End <= now && !LineTimingRules.TellsOn(old.Timing, new_.Timing))
+            {
+                return new_;
+            }
             var timing = LineTimingRules.Extended(old.Timing, new_.Timing, Math.Max(now - old.Start, 0.0));
             var length = Math.Max(LineTimingRules.TimedSeconds(timing, null), new_.End - new_.Start);
             var more = new_.Text == "" || new_.Text == LineTimingRules.ToldText(new_.Timing);

@@ -57,6 +57,8 @@ namespace Metagraph
         public const double Letter = 0.07; // and for each of its letters
         public const double Shape = 0.2; // seconds the last shape of a line stays
         public const double Farthest = 3600.0; // seconds of a line
+        // seconds before the end of what was told, from which on what is told later belongs to it
+        public const double Again = 0.1;
         public const double Slack = 0.05; // seconds by which times may be past the end they are told with
         // What each viseme of a set shows of the mouth shapes, and how fully.
         public static readonly Dictionary<string, string> Oculus = new Dictionary<string, string> {
@@ -420,6 +422,49 @@ namespace Metagraph
                 out_.Add(end);
             }
             return out_.AsEnumerable().Reverse().ToList().ToList();
+        }
+
+        /// <summary>
+        /// Return whether what is told of a line after its end is of the same line: it begins where that ended, or tells it again
+        /// with more behind it. Else somebody says something else under the same id.
+        /// </summary>
+        public static bool TellsOn(LineTiming old, LineTiming new_)
+        {
+            var first = FirstTold(new_);
+            var last = 0.0;
+            foreach (SpokenWord word in old.Words)
+            {
+                last = Math.Max(last, word.End == null ? word.Start : word.End.Value);
+            }
+            foreach (VisemeMark mark in old.Marks)
+            {
+                last = Math.Max(last, mark.At);
+            }
+            if (first >= last - Again)
+            {
+                return true;
+            }
+            if (new_.Words.Count > 0 && old.Words.Count > 0)
+            {
+                var same = new_.Words[0].Text == old.Words[0].Text && new_.Words[0].Start == old.Words[0].Start;
+                return same && new_.Words.Count > old.Words.Count;
+            }
+            return first == FirstTold(old) && new_.Marks.Count > old.Marks.Count;
+        }
+
+        /// <summary>Return when the first word or shape of a line comes.</summary>
+        public static double FirstTold(LineTiming timing)
+        {
+            var first = Farthest;
+            if (timing.Words.Count > 0)
+            {
+                first = timing.Words[0].Start;
+            }
+            if (timing.Marks.Count > 0)
+            {
+                first = Math.Min(first, timing.Marks[0].At);
+            }
+            return first;
         }
 
         /// <summary>

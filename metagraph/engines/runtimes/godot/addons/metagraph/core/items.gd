@@ -142,6 +142,8 @@ static func going_on(old, new, now):
 		return new
 	if Util.most(old.start, new.start) > now and old.start != new.start:
 		return new
+	if old.end <= now and not LineTiming.tells_on(old.timing, new.timing):
+		return new
 	var timing = LineTiming.extended(old.timing, new.timing, Util.most(now - old.start, 0.0))
 	var length = Util.most(LineTiming.timed_seconds(timing, null), new.end - new.start)
 	var more = new.text == "" or new.text == LineTiming.told_text(new.timing)
