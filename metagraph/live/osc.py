@@ -5,6 +5,7 @@ docs/agents/osc.md.
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,11 +13,12 @@ from typing import Any
 from metagraph.graph.words import LAYERS
 from metagraph.live.hub import BACKLOG, Hub
 from metagraph.live.messages import LONGEST_MESSAGE, encode
-from metagraph.live.osc_bytes import OscError, messages_of, pad_osc
+from metagraph.live.osc_bytes import OscError, messages_of, pad_osc, seconds_ahead
 
 ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
 SENDERS = 32  # known at once
+AT_ONCE = ("hello", "status", "describe", "withdraw")  # whatever the time tag of their bundle says
 LARGEST = 60_000  # bytes of one datagram that is sent
 
 
@@ -126,12 +128,16 @@ def _field(text: str) -> tuple[str, Any]:
         return name, {"true": True, "false": False}.get(value, value)
 
 
-def texts_of(datagram: bytes) -> Iterator[tuple[str, bytes | str | OscError | bool]]:
+def texts_of(
+    datagram: bytes, now: float | None = None
+) -> Iterator[tuple[str, bytes | str | OscError | bool]]:
     """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, or whether
-    replies are wanted.
+    replies are wanted. A request of a bundle begins when the bundle's time tag says. `now` is in seconds
+    since 1970, the system's if None.
     """
     try:
         messages = list(messages_of(datagram))
+        ahead = seconds_ahead(datagram, time.time() if now is None else now)
     except OscError as error:
         yield "", OscError(f"not OSC: {error}")
         return
@@ -142,7 +148,10 @@ def texts_of(datagram: bytes) -> Iterator[tuple[str, bytes | str | OscError | bo
             elif address == ROOT + "json":
                 yield address, str(values[0]) if values else ""
             else:
-                yield address, encode(request(address, values))
+                asked = dict(request(address, values))
+                if ahead > 0 and asked["do"] not in AT_ONCE and not {"in", "at"} & asked.keys():
+                    asked["in"] = round(ahead, 3)
+                yield address, encode(asked)
         except (OscError, TypeError, ValueError) as error:
             yield address, OscError(str(error))
 

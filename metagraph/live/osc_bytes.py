@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from typing import Any
 
 DEEPEST = 8  # bundles within bundles, lists within lists
+LONGEST_AHEAD = 60.0  # seconds that a bundle may be for; a clock that is off by more is no clock
+_SINCE_1900 = 2_208_988_800  # seconds from 1900, which time tags count from, to 1970
 MOST = 1000  # messages of one datagram
 _NUMBERS = {"i": ">i", "f": ">f", "h": ">q", "d": ">d", "t": ">Q"}
 _PLAIN = {"T": True, "F": False, "N": None, "I": None}
@@ -26,9 +28,7 @@ def pad_osc(text: str) -> bytes:
 
 
 def messages_of(datagram: bytes, depth: int = 0) -> Iterator[tuple[str, list[Any]]]:
-    """Yield address and values of each message; when they are to be heard, bundles say in vain. Raises
-    OscError with the place, never with the bytes.
-    """
+    """Yield address and values of each message. Raises OscError with the place, never with the bytes."""
     if not datagram.startswith(_BUNDLE):
         yield _message(datagram)
         return
@@ -47,6 +47,21 @@ def messages_of(datagram: bytes, depth: int = 0) -> Iterator[tuple[str, list[Any
                 raise OscError(f"it has more than {MOST} messages")
             yield found
         at += 4 + size
+
+
+def seconds_ahead(datagram: bytes, now: float) -> float:
+    """Return in how many seconds a bundle is to be heard, by its time tag; 0 for at once, for what is past,
+    and for a message by itself. `now` is in seconds since 1970. Raises OscError for more than
+    `LONGEST_AHEAD`.
+    """
+    tag = datagram[len(_BUNDLE) : len(_BUNDLE) + 8]
+    if not datagram.startswith(_BUNDLE) or len(tag) < 8:
+        return 0.0
+    seconds, part = struct.unpack(">II", tag)
+    ahead = seconds - _SINCE_1900 + part / 2**32 - now
+    if ahead > LONGEST_AHEAD:
+        raise OscError(f"its bundle is for {ahead:.0f} s ahead; at most {LONGEST_AHEAD:.0f} s are taken")
+    return max(0.0, ahead)
 
 
 def _message(data: bytes) -> tuple[str, list[Any]]:

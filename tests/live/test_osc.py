@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import pytest
@@ -161,3 +162,25 @@ def test_values_of_every_type_are_taken_apart() -> None:
     for value in values:
         built.add_arg(value)
     assert list(messages_of(built.build().dgram)) == [("/x/é", values)]
+
+
+@pytest.mark.parametrize(("ahead", "begins"), [(3.0, 3.0), (0.0, None), (-5.0, None), (None, None)])
+def test_a_bundle_begins_when_its_time_tag_says(ahead: float | None, begins: float | None) -> None:
+    now = 1_800_000_000.25
+    tag = 1 if ahead is None else round((now + ahead + 2_208_988_800) * 2**32)
+    messages = [
+        pad_osc("/metagraph/gesture") + pad_osc(",s") + pad_osc("greeting"),
+        pad_osc("/metagraph/nod") + pad_osc(",s") + pad_osc("in=0.5"),
+        pad_osc("/metagraph/status") + pad_osc(","),
+    ]
+    data = b"#bundle\0" + tag.to_bytes(8, "big") + b"".join(len(m).to_bytes(4, "big") + m for m in messages)
+    gesture, nod, status = (json.loads(text) for _, text in texts_of(data, now))  # type: ignore[arg-type]
+    assert gesture.get("in") == begins and nod["in"] == 0.5 and "in" not in status
+
+
+def test_a_bundle_for_too_far_ahead_is_refused_with_a_reason() -> None:
+    message = pad_osc("/metagraph/blink") + pad_osc(",")
+    tag = (2_208_988_800 + 1000) << 32
+    data = b"#bundle\0" + tag.to_bytes(8, "big") + len(message).to_bytes(4, "big") + message
+    ((_, found),) = texts_of(data, 500.0)
+    assert isinstance(found, OscError) and "500 s ahead" in str(found) and "60 s" in str(found)
