@@ -57,7 +57,7 @@ def seconds_ahead(datagram: bytes, now: float) -> float:
     tag = datagram[len(_BUNDLE) : len(_BUNDLE) + 8]
     if not datagram.startswith(_BUNDLE) or len(tag) < 8:
         return 0.0
-    seconds, part = struct.unpack(">II", tag)
+    seconds, part = int.from_bytes(tag[:4], "big"), int.from_bytes(tag[4:], "big")
     ahead = seconds - _SINCE_1900 + part / 2**32 - now
     if ahead > LONGEST_AHEAD:
         raise OscError(f"its bundle is for {ahead:.0f} s ahead; at most {LONGEST_AHEAD:.0f} s are taken")

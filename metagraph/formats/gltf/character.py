@@ -37,6 +37,7 @@ class _Part:
 
 def character_of(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
     """Return the default scene's meshes on the rig's skeleton. Raises FileError if there are none."""
+    gltf.require_meshes()
     doc = gltf.json
     notes = [*rig.notes, *(repair.words for repair in rig.repairs)]
     parts: list[_Part] = []

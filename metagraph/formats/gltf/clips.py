@@ -19,7 +19,7 @@ from metagraph.formats.gltf.channels import (
     sound_times,
 )
 from metagraph.formats.gltf.columns import WEIGHTS, ChannelTable
-from metagraph.formats.gltf.file import Gltf, extras
+from metagraph.formats.gltf.file import DRACO, Gltf, extras
 from metagraph.formats.gltf.morphs import morph_weights
 from metagraph.formats.gltf.sampling import FrameGrid
 from metagraph.formats.gltf.skeleton import GltfRig
@@ -88,6 +88,8 @@ def _planned(
     first, after = channels.of_take(number)
     morphs = morph_channels(table, number, gltf.vrm_face.expressions)
     notes = note_unused_channels(gltf, table, number)
+    if DRACO in gltf.json.extensions_required:
+        notes.append(phrase("its mesh is packed with Draco and was left out; its motion was read"))
     own_nodes = table.nodes[table.begins[number] : table.begins[number + 1]]
     if gltf.vrm_face.gaze is not None and gltf.vrm_face.gaze in own_nodes:
         notes.append(phrase("where its eyes look (lookAt) was left out: the project's own gaze moves them"))

@@ -45,9 +45,9 @@ _KNOWN = (
     "VRM",
     "KHR_node_visibility",
 )
+DRACO = "KHR_draco_mesh_compression"
 _REMEDIES = {
-    "KHR_draco_mesh_compression": "Export it again without Draco compression, or unpack it with "
-    "'gltf-transform copy'.",
+    DRACO: "Export it again without Draco compression, or unpack it with 'gltf-transform copy'.",
 }
 
 
@@ -62,12 +62,20 @@ class Gltf:
         self._unpacked: dict[int, memoryview] = {}
         self._allowance = Allowance(size, lambda where: self.fail(OUT_OF_PROPORTION, where))
         for name in document.extensions_required:
-            if not name.startswith(_KNOWN):
-                self.fail(
-                    phrase("it needs the glTF extension {name}, which is not supported", name=name),
-                    phrase("its required extensions"),
-                    _REMEDIES.get(name, "Export it again without it."),
-                )
+            if not name.startswith(_KNOWN) and name != DRACO:
+                self._fail_for(name)
+
+    def require_meshes(self) -> None:
+        """Refuse a file whose meshes are packed in a way that is not read; its motion may be read."""
+        if DRACO in self.json.extensions_required:
+            self._fail_for(DRACO)
+
+    def _fail_for(self, extension: str) -> NoReturn:
+        self.fail(
+            phrase("it needs the glTF extension {name}, which is not supported", name=extension),
+            phrase("its required extensions"),
+            _REMEDIES.get(extension, "Export it again without it."),
+        )
 
     def fail(self, cause: str, where: str, remedy: str = DAMAGED) -> NoReturn:
         raise FileError(self.path, cause, where, remedy)

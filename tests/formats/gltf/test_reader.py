@@ -533,11 +533,22 @@ def test_buffers_that_are_absent_or_elsewhere_are_refused(tmp_path: Path, uri: s
 # --- refused
 
 
-@pytest.mark.parametrize("name", ["KHR_meshopt_compression", "KHR_draco_mesh_compression", "ACME_future"])
+@pytest.mark.parametrize("name", ["KHR_meshopt_compression", "ACME_future"])
 def test_required_extensions_that_are_unknown_are_refused_by_name(tmp_path: Path, name: str) -> None:
     scene = bending()
     scene.json["extensionsRequired"] = [name]
     refused(scene, tmp_path, name, "without")
+
+
+def test_the_motion_of_a_file_packed_with_draco_is_read_and_its_mesh_refused_with_a_remedy(
+    tmp_path: Path,
+) -> None:
+    scene = smiling()
+    scene.json["extensionsRequired"] = ["KHR_draco_mesh_compression"]
+    clip = read_one(scene, tmp_path)
+    assert clip.morphs == ("smile", "blink") and any("Draco" in note for note in clip.notes)
+    with pytest.raises(FileError, match="gltf-transform"):
+        read_character(tmp_path / "file.glb")
 
 
 def test_quantised_meshes_are_welcome(tmp_path: Path) -> None:
