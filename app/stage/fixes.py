@@ -30,6 +30,7 @@ class Fix:
     action: str | None = None
     changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
     end: str | None = None  # the stance in which a transition should end
+    in_place: str | None = None  # the clip to keep in place
     stance: str | None = None
     tip: str = field(default_factory=partial(tr, "One step that can be undone"))
     instead: Fix | None = None
@@ -40,6 +41,12 @@ class Fix:
             from metagraph.suggest.jumps.bridges import bridge_stance
 
             return bridge_stance(project, self.stance)[0]
+        if self.in_place is not None:
+            from metagraph.graph.editing.retiming import keep_clips_in_place
+
+            return (
+                keep_clips_in_place(project, [self.in_place]) if self.in_place in project.clips else project
+            )
         if self.action is None or project.action(self.action) is None:
             return project
         if self.end is not None:
@@ -49,12 +56,14 @@ class Fix:
 
 def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
     """Return fixes that give actions back the clips they were made of, if those are in the project; otherwise
-    fixes that keep the clips they have.
+    fixes that keep the clips they have. Clips that travel are kept in place.
     """
     out: dict[Problem, Fix] = {}
     for problem in problems:
-        action = project.action(problem.action or "") if problem.code == "swapped-clip" else None
-        if action is None:
+        action = project.action(problem.action or "")
+        if action is not None and problem.code in ("travels", "play-slide"):
+            out[problem] = Fix(tr("Keep in place"), in_place=action.clip)
+        if action is None or problem.code != "swapped-clip":
             continue
         keep = Fix(
             tr("Keep '{clip}'", clip=project.clips[action.clip].name), action.id, {"clip": action.clip}

@@ -49,6 +49,7 @@ class ProblemWatch(QObject):
         self._found: tuple[Problem, ...] = ()  # by `check_project`, without the flagged jumps
         self._busy = False
         self._seen: tuple[tuple[Problem, object], ...] = ()  # as it played, with what was played
+        self._seen_fixes: dict[Problem, Fix] = {}
         self.is_playing = False
         self._soon = QTimer(self, singleShot=True, interval=AFTER)
         self._soon.timeout.connect(self._check)
@@ -77,6 +78,7 @@ class ProblemWatch(QObject):
 
     def _show_seen(self, project: Project, problems: Sequence[Problem]) -> None:
         self._seen = tuple((p, _subject(project, p)) for p in problems)
+        self._seen_fixes = fix_clips(project, problems)
         self._merge()
 
     def _over(self) -> None:
@@ -110,7 +112,7 @@ class ProblemWatch(QObject):
         project = self.document.project
         seen = tuple(p for p, subject in self._seen if meta and _subject(project, p) is subject)
         self.problems = merge_problems((*found, *seen), flags)
-        self.fixes = {**flags, **self._bridges}
+        self.fixes = {**flags, **self._bridges, **self._seen_fixes}
         self.misfits = {
             p.action: f"{tr_phrase(p.message)}. {tr_phrase(p.remedy)}"
             for p in self.problems

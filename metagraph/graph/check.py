@@ -19,9 +19,13 @@ from metagraph.graph.expand import reachable
 from metagraph.graph.manual.check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
+from metagraph.motion.in_place import travel_of
 
 Array = NDArray[Any]
 
+# Metres over the ground, of a figure `end_gaps.TALL` high, that an action may end from where it begins: a
+# step within a transition is made good while it blends.
+TRAVELS = {"stance": 0.1, "gesture": 0.3, "fidget": 0.3, "transition": 0.6}
 SEEN = 0.2  # of an action, that is to play without a blend
 
 
@@ -225,6 +229,7 @@ class _ActionCheck:
         yield from self.played(entry, end)
         yield from self.blends()
         yield from self.exit(end)
+        yield from self.travel()
         yield from self.ends()
 
     def places(self) -> Iterator[Problem]:
@@ -365,6 +370,25 @@ class _ActionCheck:
                     earliest_exit=earliest,
                 ),
                 phrase("Move the earliest exit between start and end."),
+            )
+
+    def travel(self) -> Iterator[Problem]:
+        """Yield a problem if its hips end elsewhere over the ground, so that the character slides back."""
+        motion = end_gaps.motion_of(self.project, self.action)
+        if motion is None or self.project.skeleton is None or motion.frames < 2:
+            return
+        hips = anatomy.project_roles(self.project).get("hips", 0)
+        start, end = self.project.span(self.action)
+        far = travel_of(motion, hips, start, end)
+        size = max(self.project.skeleton.height, 1e-6) / end_gaps.TALL
+        if far > TRAVELS[self.action.kind] * size:
+            yield self.at(
+                "warning",
+                "travels",
+                phrase("moves {length:.1f} m in each loop, and jumps back at its end", length=far)
+                if self.action.kind == "stance"
+                else phrase("ends {length:.1f} m from where it begins, and slides back", length=far),
+                phrase("Keep the clip in place."),
             )
 
     def ends(self) -> Iterator[Problem]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from metagraph.graph.model import ClipEntry
 from metagraph.motion.clip import Clip
+from metagraph.motion.in_place import keep_in_place
 from metagraph.motion.retime import Course, apply_retiming
 
 
@@ -21,8 +22,8 @@ def course_of(entry: ClipEntry) -> Course | None:
 
 
 def with_source(entry: ClipEntry, source: Clip) -> ClipEntry:
-    """Return an entry whose clip was read, with its retiming made."""
-    motion = apply_retiming(source, entry.retime)
+    """Return an entry whose clip was read, kept in place if it is to be, with its retiming made."""
+    motion = apply_retiming(keep_in_place(source) if entry.in_place else source, entry.retime)
     return replace(
         entry,
         frames=motion.frames,

@@ -301,7 +301,8 @@ class ClipEntry:
     `as_is` names repairs that are not made on reading (`formats.takes.REPAIRS`). `brought_from` is the
     fingerprint of the skeleton it is retargeted from, "" if the file has the project's own. `made_by` and
     `made_seed` are the learned model that generated it and the seed; `made_by` is "" for other clips.
-    `retime` says how it is played faster, slower or held. `motion` is the loaded clip as it plays, None while
+    `retime` says how it is played faster, slower or held. `in_place` takes out the way its hips have made by
+    its end. `motion` is the loaded clip as it plays, None while
     the file is missing. `source` is the clip as it was read, if that differs (see `graph.editing.retiming`).
     """
 
@@ -319,6 +320,7 @@ class ClipEntry:
     made_by: str = ""
     made_seed: int = 0
     retime: Retime = field(default_factory=Retime)
+    in_place: bool = False
 
     @property
     def duration(self) -> float:

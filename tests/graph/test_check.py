@@ -339,3 +339,34 @@ def test_a_gesture_that_is_almost_all_blends_is_hardly_seen(
     timing = {"blend_in": blends[0] - 0.05, "blend_out": blends[1]}
     found = check_project(edits.update_actions(project, [wave], timing=timing))
     assert [p.code for p in found if p.action == wave] == ([] if seen else ["hardly-seen"])
+
+
+@pytest.mark.parametrize(
+    ("name", "metres", "words"),
+    [
+        ("rest loop", 0.5, "in each loop"),
+        ("rest wave rt", 0.5, "slides back"),
+        ("rest to up", 2.0, "slides back"),
+        ("rest to up", 0.3, ""),
+        ("rest wave rt", 0.1, ""),
+    ],
+)
+def test_what_travels_is_reported_and_keeping_it_in_place_helps(
+    toy: Any, name: str, metres: float, words: str
+) -> None:
+    from app.stage.fixes import fix_clips
+    from tests.motion.test_in_place import going
+
+    project = toy.project("body")
+    clip = next(i for i, e in project.clips.items() if e.name == name)
+    entry = project.clips[clip]
+    project = replace(
+        project, clips={**project.clips, clip: replace(entry, motion=going(entry.motion, metres, 0))}
+    )
+    found = [p for p in check_project(project) if p.code == "travels"]
+    assert [words in p.message for p in found] == ([True] if words else [])
+    for fix in fix_clips(project, found).values():
+        assert fix.words == "Keep in place"
+        after = fix(project)
+        assert not [p for p in check_project(after) if p.code == "travels"]
+        assert after.clips[clip].in_place and after.clips[clip].source is project.clips[clip].motion

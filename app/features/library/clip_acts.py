@@ -20,6 +20,7 @@ from metagraph.graph import edits
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.editing.listing import duplicate_clips
 from metagraph.graph.editing.marks import mark, mark_of
+from metagraph.graph.editing.retiming import keep_clips_in_place
 from metagraph.graph.model import ClipEntry
 
 
@@ -57,6 +58,12 @@ class ClipActs:
             lambda: self.document.edit(tr("Set base pose"), lambda p: edits.set_base(p, None)),
         )
         out.addSeparator()
+        clips = self.document.project.clips
+        held = all(clips[clip].in_place for clip in chosen if clip in clips)
+        action = out.addAction(tr("Keep in place"), lambda: self.keep_in_place(chosen, not held))
+        action.setCheckable(True)
+        action.setChecked(held)
+        action.setToolTip(tr("Takes out the way and the turn that the hips have made by the end"))
         out.addAction(tr("Rename…\tF2"), lambda: self.rename(entry.id))
         out.addAction(tr("Duplicate\tCtrl+Shift+D"), lambda: self.duplicate(chosen))
         out.addAction(tr("Reveal in folder"), lambda: self.reveal(entry.id))
@@ -93,6 +100,13 @@ class ClipActs:
         )
         action.setCheckable(True)
         action.setChecked(loved)
+
+    def keep_in_place(self, clips: Iterable[str], on: bool) -> None:
+        """Keep clips in place, or let them go their own way."""
+        some = tuple(clips)
+        what = tr_plural("{count:,} clip", "{count:,} clips", len(some))
+        words = tr("Keep {clips} in place", clips=what) if on else tr("Let {clips} travel", clips=what)
+        self.document.edit(words, lambda p: keep_clips_in_place(p, some, on))
 
     def mark(self, clips: Iterable[str], field: str, value: object) -> None:
         """Put something on clips: one field of a `ClipMark`."""

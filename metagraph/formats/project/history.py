@@ -151,7 +151,7 @@ def with_motion(
 
 
 def _source(entry: ClipEntry) -> tuple[Any, ...]:
-    return entry.path, entry.take, entry.as_is, entry.brought_from, entry.retime
+    return entry.path, entry.take, entry.as_is, entry.brought_from, entry.retime, entry.in_place
 
 
 def _filled(entry: ClipEntry, read: Mapping[tuple[Any, ...], ClipEntry]) -> ClipEntry:

@@ -4,7 +4,7 @@ names moments of it follow.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -68,6 +68,27 @@ def set_retime(project: Project, clip: str, retime: Retime) -> Project:
         frame = round((moved(base.frame / entry.fps) or 0.0) * after.fps)
         base = BasePose(clip, min(frame, after.frames - 1))
     return replace(out, manual=manual, base=base)
+
+
+def keep_clips_in_place(project: Project, clips: Iterable[str], on: bool = True) -> Project:
+    """Return the project with clips kept in place, or with their own way: see `motion.in_place`. Times stay.
+    Raises EditError where a clip is gone or its file is missing.
+    """
+    changed = {}
+    for clip in clips:
+        entry = project.clips.get(clip)
+        if entry is None:
+            raise EditError(phrase("that clip is no longer in the project"))
+        source = source_of(entry)
+        if source is None:
+            raise EditError(
+                phrase(
+                    "the file of '{name}' is missing: find the file, then keep it in place", name=entry.name
+                )
+            )
+        if entry.in_place != on:
+            changed[clip] = with_source(replace(entry, in_place=on), source)
+    return replace(project, clips={**project.clips, **changed}) if changed else project
 
 
 def set_speed(project: Project, clip: str, speed: float) -> Project:

@@ -1,0 +1,68 @@
+"""Keep a clip in place: take the way and the turn out that its hips have made by its end, little by little,
+so that it ends where it began. What they do in between stays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.roles import find_roles
+
+Array = NDArray[Any]
+
+TURNED = np.radians(8.0)  # from which on a turn is taken out; a smaller one is sway
+
+
+def keep_in_place(clip: Clip) -> Clip:
+    """Return the clip with its hips over the same spot, facing the same way, in the last frame as in the
+    first. Clips of one frame stay as they are.
+    """
+    if clip.frames < 2:
+        return clip
+    hips = find_roles(clip.skeleton).get("hips", 0)
+    ends = clip.pose_at(np.array([0.0, clip.duration]))
+    turns, places = clip.skeleton.globals(ends)
+    way = places[1, hips] - places[0, hips]
+    way[1] = 0.0
+    turn = _heading(turns[1, hips]) - _heading(turns[0, hips])
+    turn = float((turn + np.pi) % (2 * np.pi) - np.pi)
+    turn = turn if abs(turn) > TURNED else 0.0
+    if not way.any() and not turn:
+        return clip
+    part = np.linspace(0.0, 1.0, clip.frames)
+    _, at = clip.skeleton.globals(clip.poses())
+    centre = at[:, hips].astype(float)
+    centre[:, 1] = 0.0
+    back = rotation.from_axis_angle(np.array([0.0, 1.0, 0.0]), -turn * part)
+    roots = np.flatnonzero(clip.skeleton.parents < 0).tolist()
+    translated = tuple(sorted({*clip.translated, *roots}))
+    poses = clip.poses()
+    rotations, translations = poses.rotations.copy(), poses.translations.astype(float)
+    for root in roots:
+        rotations[:, root] = rotation.multiply(back, rotations[:, root].astype(float))
+        from_centre = rotation.rotate_vectors(back, translations[:, root] - centre)
+        translations[:, root] = from_centre + centre - part[:, None] * way
+    return replace(
+        clip,
+        rotations=rotation.continuous(rotations),
+        translations=translations[:, list(translated)].astype(np.float32),
+        translated=translated,
+    )
+
+
+def travel_of(clip: Clip, hips: int, start: float, end: float) -> float:
+    """Return how far the hips are over the ground from where they were, metres, between two seconds."""
+    _, places = clip.skeleton.globals(clip.pose_at(np.clip([start, end], 0.0, clip.duration)))
+    way = places[1, hips] - places[0, hips]
+    return float(np.hypot(way[0], way[2]))
+
+
+def _heading(turn: Array) -> float:
+    """Return the angle about the vertical axis of a rotation, radians."""
+    return float(2 * np.arctan2(turn[1], turn[3]))
