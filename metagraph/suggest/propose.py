@@ -71,6 +71,7 @@ Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
 TOLD = 0.7  # confidence of a name's stance, below which it does not define stances
 LEADS = 0.8  # confidence of the motion that a clip named after a stance goes there
+FACE_MOVES = 0.3  # of `Traits.face`, from which on a clip of a face alone is no pose that is held
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 
 
@@ -378,6 +379,8 @@ def _proposal(each: ClipEvidence, places: StancePlaces, anyway: bool = False) ->
         return None
     unsure: Agreed[Any] = Agreed(Belief("gesture", 0.3, phrase("nothing says what it is")))
     kind = kind or unsure
+    if kind.belief.value == "stance" and each.traits is not None and each.traits.face > FACE_MOVES:
+        kind = Agreed(Belief("gesture", 0.6, phrase("only its face moves, so nothing rests in it")))
     layer = layer or Agreed(Belief(each.layer, 0.34, phrase("nothing says which layer it is for")))
     where: Layer = layer.belief.value
     stance = combine(places.vote(each, "stance", where), places.count(where))

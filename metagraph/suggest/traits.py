@@ -389,16 +389,19 @@ def _turned(facing: Array) -> float:
 
 
 def _face(clip: Clip, roles: Mapping[str, int]) -> float:
-    """Return how much the joints below the head turn, and move in heights of the character, at most."""
+    """Return how much the joints below the head turn, and move in heights of the character, and how much of a
+    blend shape comes and goes, at most.
+    """
+    shapes = float(np.ptp(clip.weights, axis=0).max(initial=0.0)) if clip.weights is not None else 0.0
     if "head" not in roles:
-        return 0.0
+        return shapes
     face = [j for j in clip.skeleton.descendants(roles["head"]) if j != roles["head"]]
     turned = np.ptp(clip.rotations[:, face], axis=0) if face else np.zeros(0)
     moved = (
         np.ptp(clip.translations[:, [k for k, j in enumerate(clip.translated) if j in set(face)]], axis=0)
         / clip.skeleton.height
     )
-    return float(max(turned.max(initial=0.0), moved.max(initial=0.0)))
+    return float(max(turned.max(initial=0.0), moved.max(initial=0.0), shapes))
 
 
 def _stride(points: Mapping[str, Array]) -> float:

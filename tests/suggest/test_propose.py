@@ -304,3 +304,16 @@ def test_a_transition_that_travels_to_where_no_other_clip_plays_is_skipped_not_s
     assert "travels 2.6 m" in found.aside[ids["rest to leave"]]
     assert found.proposals[ids["rest to up"]].kind.value == "transition"
     assert not any("leave" in place.name for place in found.places.values())
+
+
+def test_a_clip_of_a_face_that_moves_is_no_stance(toy: Any) -> None:
+    clips = [toy.clip("idle", 3.0, swing=0.0), *(toy.clip(f"idle {n}", 1.0) for n in ("wave", "beat"))]
+    still = toy.clip("head idle", 1.0, swing=0.0)
+    weights = np.linspace(0.0, 1.0, still.frames)[:, None]
+    clips.append(replace(still, morphs=("jawOpen",), weights=weights))
+    project = edits.add_clips(Project(), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    ids = {entry.name: clip for clip, entry in project.clips.items()}
+    found = propose(project)
+    face = found.proposals.get(ids["head idle"])
+    assert face is None or face.kind.value != "stance"
+    assert found.proposals[ids["idle"]].kind.value == "stance"

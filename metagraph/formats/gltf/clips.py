@@ -19,6 +19,7 @@ from metagraph.formats.gltf.channels import (
     sound_times,
 )
 from metagraph.formats.gltf.columns import WEIGHTS, ChannelTable
+from metagraph.formats.gltf.faces import join_faces
 from metagraph.formats.gltf.file import DRACO, Gltf, extras
 from metagraph.formats.gltf.morphs import morph_weights
 from metagraph.formats.gltf.sampling import FrameGrid
@@ -46,11 +47,12 @@ def read_animations(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> li
     planned = (_planned(gltf, rig, n, table, channels, keys) for n in numbers)
     plans = [plan for plan in planned if plan is not None]
     still = Still(rig)
-    return [
+    clips = [
         clip
         for batch in _batches(plans, len(rig.nodes))
         for clip in _clips(gltf, rig, still, batch, channels, keys, as_is)
     ]
+    return join_faces(clips, [plan.first == plan.after for plan in plans])
 
 
 @dataclass(frozen=True, eq=False)

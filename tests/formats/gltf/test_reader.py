@@ -417,6 +417,43 @@ def test_morph_weights_come_with_their_names(tmp_path: Path) -> None:
     np.testing.assert_allclose(clip.weights[[0, 15, 30]], [[0, 1], [0.5, 0.5], [1, 0]], atol=1e-6)
 
 
+def take(scene: Scene, name: str, seconds: float, body: bool, face: bool) -> None:
+    turned = [(1, "rotation", [0, seconds], TURN, "LINEAR")] if body else []
+    shown = [(3, "weights", [0, seconds], [0, 1, 1, 0], "LINEAR")] if face else []
+    scene.animate(name, *turned, *shown)
+
+
+def test_the_face_of_a_take_that_is_an_animation_of_its_own_is_joined_to_it(tmp_path: Path) -> None:
+    scene = smiling()
+    scene.json["animations"] = []
+    take(scene, "FaceAction", 1.0, False, True)
+    take(scene, "talk", 1.0, True, False)
+    take(scene, "idle", 3.0, True, False)
+    talk, idle = read_gltf_clips(scene.glb(tmp_path / "file.glb"))
+    assert (talk.name, talk.morphs, idle.name, idle.morphs) == ("talk", ("smile", "blink"), "idle", ())
+    assert talk.weights is not None and any("'FaceAction'" in note for note in talk.notes)
+    np.testing.assert_allclose(talk.weights[[0, 15, 30]], [[0, 1], [0.5, 0.5], [1, 0]], atol=1e-6)
+
+
+def test_of_several_takes_as_long_as_a_face_none_is_given_it(tmp_path: Path) -> None:
+    scene = smiling()
+    scene.json["animations"] = []
+    for name, body, face in (
+        ("a", True, False),
+        ("b", True, False),
+        ("face", False, True),
+        ("c", True, True),
+    ):
+        take(scene, name, 1.0, body, face)
+    found = read_gltf_clips(scene.glb(tmp_path / "file.glb"))
+    assert [(clip.name, bool(clip.morphs)) for clip in found] == [
+        ("a", False),
+        ("b", False),
+        ("face", True),
+        ("c", True),
+    ]
+
+
 def test_a_mesh_without_a_skin_hangs_on_its_joint_and_keeps_its_morph_targets(tmp_path: Path) -> None:
     character = read_character(smiling().glb(tmp_path / "face.glb"))
     assert character.skeleton.names[character.joints[0, 0]] == "Head"
