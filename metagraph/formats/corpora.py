@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -40,6 +40,8 @@ _BEAT = re.compile(r"\d+_[a-z]+_\d+_\d+_\d+", re.I)
 _MARK = re.compile(
     r"[ ._-]+((?:speaker|actor|person|side)?[ ._-]?[12ab]|left|right|male|female)$|(?<=\D)[12]$", re.I
 )
+RATES = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 90.0, 100.0, 120.0, 240.0)  # frames a second
+UNEVEN = 3.0  # seconds by which motion and sound may differ in length without a word
 _WORDS = [s.lower() for s in TRANSCRIPTS]  # of several, the first counts
 UNREAD = {".npz": "SMPL-X parameters (BEAT2)", ".c3d": "markers", ".asf": "Acclaim", ".amc": "Acclaim"}
 
@@ -244,10 +246,28 @@ def _read(name: str, files: _Found) -> Recorded:
         if path is None:
             notes.append(f"nobody knows how side {side + 1} moved")
             continue
-        clips[side] = max(read_clips(path), key=lambda c: c.frames)
+        clip, odd = _as_long(max(read_clips(path), key=lambda c: c.frames), read.conversation.length)
+        clips[side] = clip
+        notes += [f"{path.name}: {words}" for words in odd]
     if not told:
         notes.append("no words are beside it: loudness tells clauses, hesitations are not found")
     return Recorded(name, (clips[0], clips[1]), read.conversation, None, (*notes, *read.notes), files.files)
+
+
+def _as_long(clip: Clip, seconds: float) -> tuple[Clip, list[str]]:
+    """Return a clip at the rate at which it is as long as its sound, where it is not and another usual rate
+    makes it so; and what there is to say of their lengths.
+    """
+    length = clip.frames / clip.fps
+    if seconds <= 0 or abs(length - seconds) <= max(UNEVEN, 0.1 * seconds):
+        return clip, []
+    rate = min(RATES, key=lambda fps: abs(clip.frames / fps - seconds))
+    told = f"its motion lasts {length:.0f} s at {clip.fps:.4g} frames a second, its sound {seconds:.0f} s"
+    if abs(clip.frames / rate - seconds) <= max(0.5, 0.01 * seconds):
+        return replace(clip, fps=rate), [
+            f"{told}: read at {rate:.4g} frames a second, at which it is as long"
+        ]
+    return clip, [f"{told}: check that they belong together"]
 
 
 def _of(files: Mapping[str, Path], path: Path) -> str:

@@ -7,8 +7,10 @@ Revisions 2024-11-05 to 2025-11-25 of the protocol (modelcontextprotocol.io): JS
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import msgspec
@@ -42,6 +44,24 @@ def mcp_tools(project: Project) -> list[dict[str, Any]]:
 
 
 _NOBODY = object()  # whose call it is that the line itself made
+_GESTURE = object()  # the same, of a gesture that is taken back
+SAID = 200  # things said whose gestures are remembered
+BATCH = 100  # messages
+
+
+@dataclass
+class _Batch:
+    """Messages that were sent together. `wanted` of them are answered; `told` has the answers so far."""
+
+    wanted: int
+    told: list[dict[str, Any]] = field(default_factory=list)
+
+
+class _InBatch(NamedTuple):
+    """The id of a message in a batch."""
+
+    ident: Any
+    batch: _Batch
 
 
 class _Call(NamedTuple):
@@ -73,6 +93,10 @@ class McpLine(StdioLine):
             for layer, graph in project.graphs.items()
         }
         self._gestured = 0
+        # Ids of the gestures that were asked for, by the id of what is said.
+        self._gestures: dict[str, list[str]] = {}
+        self._also = 0  # gestures that were taken back with what was said
+        self._batch: _Batch | None = None  # the one that is being heard
 
     def _heard(self, line: bytes | None) -> None:
         if line is None:
@@ -84,15 +108,34 @@ class McpLine(StdioLine):
             self._fail(None, BROKEN, f"it is not JSON ({error})")
             self.answered(1)
             return
+        if isinstance(message, list):
+            self._heard_batch(message)
+            self.answered(1)
+        elif not self._hear(message):
+            self.answered(1)
+
+    def _heard_batch(self, messages: list[Any]) -> None:
+        """Hear the messages of a batch (JSON-RPC 2.0, section 6): its answers go out together."""
+        if not 0 < len(messages) <= BATCH:
+            self._fail(None, NO_REQUEST, f"a batch has 1 to {BATCH} messages")
+            return
+        wanted = sum(isinstance(m, dict) and m.get("id") is not None and "method" in m for m in messages)
+        self._batch = _Batch(wanted)
+        for message in messages:
+            self._hear(message)
+        self._batch = None
+
+    def _hear(self, message: Any) -> bool:
+        """Hear one message; return whether the session has to answer."""
         ident = message.get("id") if isinstance(message, dict) else None
         if not isinstance(message, dict) or not isinstance(message.get("method"), str):
             if not isinstance(message, dict) or not ("result" in message or "error" in message):
                 self._fail(ident, NO_REQUEST, "a message needs a 'method'")
-            self.answered(1)  # nothing was asked of the client, so no result is awaited
-            return
+            return False  # nothing was asked of the client, so no result is awaited
+        if ident is not None and self._batch is not None:
+            ident = _InBatch(ident, self._batch)
         parameters = message.get("params")
-        if not self._called(message["method"], ident, parameters if isinstance(parameters, dict) else {}):
-            self.answered(1)
+        return self._called(message["method"], ident, parameters if isinstance(parameters, dict) else {})
 
     def _called(self, method: str, ident: Any, parameters: dict[str, Any]) -> bool:
         """Do what a message asks for; return whether the session has to answer."""
@@ -126,6 +169,8 @@ class McpLine(StdioLine):
         request = {key: value for key, value in given.items() if key not in ("do", "after")}
         if "after" in given:
             request["in"] = given["after"]  # as the session calls it
+        if name in ("say", "withdraw"):
+            self._take_gestures_back(str(request.get("id" if name == "say" else "what") or ""))
         alone = name == "say" and request.get("gestures", True) is True and not request.get("line")
         text = request.get("text") if alone else None
         if isinstance(text, str):
@@ -134,8 +179,14 @@ class McpLine(StdioLine):
         self._ask(msgspec.json.encode({**request, "do": name}))
         return True
 
-    def _gesture(self, said: _Call, begins: float) -> None:
-        """Ask for the gestures that go with what is said."""
+    def _take_gestures_back(self, said: str) -> None:
+        """Withdraw the gestures of something said that is taken back, or said anew."""
+        for ident in self._gestures.pop(said, ()):
+            self._calls.append(_Call(_GESTURE))
+            self._ask(msgspec.json.encode({"do": "withdraw", "what": ident}))
+
+    def _gesture(self, said: _Call, begins: float, ident: str) -> None:
+        """Ask for the gestures that go with what is said. `ident` is its id."""
         try:
             told = [(str(word), float(start), float(end)) for word, start, end in said.words or ()]
         except (TypeError, ValueError):
@@ -143,7 +194,12 @@ class McpLine(StdioLine):
         self._gestured += 1
         lexicon = gesture_words_for(said.text)
         made = propose_gestures(timed_words(said.text, told), self._tags, lexicon, self._gestured)
-        for request in gesture_requests(made, begins, f"said{self._gestured}"):
+        requests = gesture_requests(made, begins, f"said{self._gestured}")
+        if ident:
+            self._gestures[ident] = [request["id"] for request in requests]
+        while len(self._gestures) > SAID:
+            del self._gestures[next(iter(self._gestures))]
+        for request in requests:
             self._calls.append(_Call(_NOBODY))
             self._ask(msgspec.json.encode(request))
 
@@ -156,8 +212,16 @@ class McpLine(StdioLine):
             call = self._calls.popleft()
             if call.ident is _NOBODY:
                 continue
+            why = told.get("why") if isinstance(told.get("why"), str) else ""
+            if call.ident is _GESTURE:
+                self._also += why.startswith("1 taken back")
+                continue
+            if self._also and "taken back" in why:
+                told["why"] = re.sub(r"^\d+", lambda n: str(int(n[0]) + self._also), why)
+                data = msgspec.json.encode(told)
+            self._also = 0
             if call.text and isinstance(told.get("at"), int | float):
-                self._gesture(call, float(told["at"]))
+                self._gesture(call, float(told["at"]), str(told.get("id", "")))
             self._answer(call.ident, {
                 "content": [{"type": "text", "text": data.decode()}],
                 "structuredContent": told,
@@ -165,11 +229,21 @@ class McpLine(StdioLine):
             })  # fmt: skip
 
     def _answer(self, ident: Any, result: dict[str, Any]) -> None:
-        super().send([(msgspec.json.encode({"jsonrpc": "2.0", "id": ident, "result": result}), False)])
+        self._tell_client(ident, {"result": result})
+
+    def _tell_client(self, ident: Any, said: dict[str, Any]) -> None:
+        """Send an answer or an error; of a message of a batch, when all of it is answered."""
+        batch = ident.batch if isinstance(ident, _InBatch) else None
+        message = {"jsonrpc": "2.0", "id": ident.ident if batch is not None else ident, **said}
+        if batch is None:
+            super().send([(msgspec.json.encode(message), False)])
+            return
+        batch.told.append(message)
+        if len(batch.told) >= batch.wanted:
+            super().send([(msgspec.json.encode(batch.told), False)])
 
     def _fail(self, ident: Any, code: int, words: str) -> None:
-        error = {"code": code, "message": words}
-        super().send([(msgspec.json.encode({"jsonrpc": "2.0", "id": ident, "error": error}), False)])
+        self._tell_client(ident, {"error": {"code": code, "message": words}})
 
 
 def _instructions(project: Project) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -124,6 +125,26 @@ def test_talking_with_hands_tells_persons_by_their_marks(tmp_path: Path) -> None
     assert one.name == "session3 take7" and all(c is not None for c in one.clips)
     assert any("loudness tells clauses" in note for note in one.notes)
     assert kinds(one.conversation, 0) and kinds(one.conversation, 1)
+
+
+@pytest.mark.parametrize(
+    ("factor", "share", "words"), [(5.0, 1.0, "at which it is as long"), (1.0, 0.55, "check"), (1.0, 1.0, "")]
+)
+def test_motion_of_another_length_than_its_sound_is_put_right_where_a_usual_rate_fits_and_said(
+    tmp_path: Path, factor: float, share: float, words: str
+) -> None:
+    stem = "1_ann_0_1_1"
+    clip = talking(stem, speech(SECONDS, 1), SECONDS, 1)
+    clip = clip.trimmed(0, round(share * clip.frames))
+    write_bvh(replace(clip, fps=clip.fps / factor), tmp_path / f"{stem}.bvh")
+    sound(tmp_path / f"{stem}.wav", 0)
+    text(tmp_path / f"{stem}.TextGrid", grid(0))
+    found = read_corpus(tmp_path)
+    (one,) = found.recorded
+    read = one.clips[0]
+    assert read is not None and read.fps == pytest.approx(30.0, rel=1e-3)
+    told = [note for note in one.notes if "its motion lasts" in note]
+    assert [words in note for note in told] == ([True] if words else [])
 
 
 def test_of_beat_one_side_is_heard_and_its_face_is_no_transcript(tmp_path: Path) -> None:

@@ -182,3 +182,42 @@ def test_a_client_that_is_not_ours_moves_the_character(tmp_path: Path) -> None:
     assert said["told"]["state"] == "planned" and said["told"]["at"] > 0.4
     assert flip["isError"] and "backflip" in flip["told"]["why"]
     assert described["told"]["project"] == "sample" and playing["told"]["t"] > 0
+
+
+def test_what_a_text_made_is_taken_back_with_it(session: Session) -> None:
+    said = {"text": "Hello there! This is a very big idea.", "id": "answer"}
+    session.called("tools/call", name="say", arguments=said)
+    session.line.send([(b'{"id":"answer","state":"planned","at":1.0}', False)])
+    made = [json.loads(x or b"")["id"] for x in session.asked[1:]]
+    assert made
+    session.line.send([(b'{"state":"planned"}', False)] * len(made))
+    before = len(session.asked)
+    session.called("tools/call", name="withdraw", arguments={"what": "answer"})
+    asked = [json.loads(x or b"") for x in session.asked[before:]]
+    assert [x["what"] for x in asked] == [*made, "answer"] and {x["do"] for x in asked} == {"withdraw"}
+    gone = b'{"state":"done","why":"1 taken back; what has begun plays on"}'
+    session.line.send([(gone, False)] * len(asked))
+    result = session.told[-1]["result"]["structuredContent"]
+    assert result["why"].startswith(f"{len(asked)} taken back")
+
+
+@pytest.mark.parametrize("count", [0, 101])
+def test_an_empty_batch_and_a_huge_one_are_refused(session: Session, count: int) -> None:
+    session.line._heard(json.dumps([{"jsonrpc": "2.0", "id": 1, "method": "ping"}] * count).encode())
+    assert session.told[-1]["error"]["code"] == NO_REQUEST
+
+
+def test_a_batch_is_answered_together_when_all_of_it_is(session: Session) -> None:
+    batch = [
+        {"jsonrpc": "2.0", "id": "a", "method": "ping"},
+        {"jsonrpc": "2.0", "method": "notifications/initialized"},
+        {"jsonrpc": "2.0", "id": "b", "method": "tools/call", "params": {"name": "blink", "arguments": {}}},
+        {"jsonrpc": "2.0", "id": "c", "method": "none"},
+    ]
+    before = len(session.told)
+    session.line._heard(json.dumps(batch).encode())
+    assert len(session.told) == before
+    session.line.send([(b'{"state":"planned"}', False)])
+    told = session.told[-1]
+    assert len(session.told) == before + 1 and [x["id"] for x in told] == ["a", "c", "b"]
+    assert told[1]["error"]["code"] == NO_METHOD

@@ -61,6 +61,7 @@ def read_cues(path: Path, text: str) -> Transcript:
 
 def _cues(out: Collected, text: str) -> Iterator[_Cue]:
     lines = text.split("\n")
+    rolls = lines[0].lstrip("\ufeff").startswith("WEBVTT")  # there a line of blanks is a line of the cue
     n = 0
     while n < len(lines):
         if "-->" not in lines[n]:
@@ -88,7 +89,7 @@ def _cues(out: Collected, text: str) -> Iterator[_Cue]:
                 phrase("line {n}", n=n + 1),
             )
         n += 1
-        while n < len(lines) and lines[n].strip() and "-->" not in lines[n]:
+        while n < len(lines) and (lines[n] if rolls else lines[n].strip()) and "-->" not in lines[n]:
             cue.text.append(lines[n])
             n += 1
         if n < len(lines) and "-->" in lines[n] and cue.text and cue.text[-1].strip().isdigit():

@@ -240,6 +240,19 @@ def test_word_times_inside_cues_count_and_rolling_captions_are_said_once(read: R
     }
 
 
+def test_lines_of_blanks_are_part_of_a_webvtt_cue(read: Reader) -> None:
+    text = (
+        "WEBVTT\n\n00:00.080 --> 00:01.990\n \nthis<00:00.480> morning\n\n"
+        "00:01.990 --> 00:02.000\nthis morning\n \n\n"
+        "00:02.000 --> 00:03.990\nthis morning\nwe<00:02.400> left\n\n"
+    )
+    assert rows(read(text)) == {
+        "": [("this", 0.08, 0.48), ("morning", 0.48, 1.99), ("we", 2.0, 2.4), ("left", 2.4, 3.99)]
+    }
+    subtitles = text.removeprefix("WEBVTT\n\n").replace(".", ",")
+    assert [w.text for w in read(subtitles).speakers[""]][:1] == ["this"]
+
+
 def test_srt_names_before_colons_are_speakers(read: Reader) -> None:
     found = read(
         "1\r\n00:00:01,000 --> 00:00:02,000\r\nANN: Hi\r\n\r\n2\r\n00:00:02,500 --> 00:00:03,000\r\n{\\an8}- "
