@@ -31,6 +31,8 @@ class Fix:
     changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
     end: str | None = None  # the stance in which a transition should end
     in_place: str | None = None  # the clip to keep in place
+    scaled: str | None = None  # the clip whose actions' times are scaled to its length
+    kept: str | None = None  # the clip whose actions' times are right as they are
     stance: str | None = None
     tip: str = field(default_factory=partial(tr, "One step that can be undone"))
     instead: Fix | None = None
@@ -41,17 +43,21 @@ class Fix:
             from metagraph.suggest.jumps.bridges import bridge_stance
 
             return bridge_stance(project, self.stance)[0]
-        if self.in_place is not None:
-            from metagraph.graph.editing.retiming import keep_clips_in_place
-
-            return (
-                keep_clips_in_place(project, [self.in_place]) if self.in_place in project.clips else project
-            )
+        clip = self.in_place or self.scaled or self.kept
+        if clip is not None:
+            return self._of_clip(project, clip) if clip in project.clips else project
         if self.action is None or project.action(self.action) is None:
             return project
         if self.end is not None:
             return edits.set_ends(project, [self.action], self.end)
         return edits.update_actions(project, [self.action], **self.changes)
+
+    def _of_clip(self, project: Project, clip: str) -> Project:
+        from metagraph.graph.editing import retiming
+
+        if self.in_place is not None:
+            return retiming.keep_clips_in_place(project, [clip])
+        return retiming.scale_times(project, clip) if self.scaled else retiming.keep_times(project, clip)
 
 
 def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
@@ -63,6 +69,12 @@ def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fi
         action = project.action(problem.action or "")
         if action is not None and problem.code in ("travels", "play-slide"):
             out[problem] = Fix(tr("Keep in place"), in_place=action.clip)
+        if action is not None and problem.code == "other-length":
+            keep = Fix(tr("Keep the times"), kept=action.clip)
+            out[problem] = Fix(tr("Scale the times"), scaled=action.clip, instead=keep)
+        if action is not None and problem.code == "moment":
+            phases = dict.fromkeys(("stroke", "ready", "stroke_end", "relax"))
+            out[problem] = Fix(tr("Clear the stroke"), action.id, {"timing": phases})
         if action is None or problem.code != "swapped-clip":
             continue
         keep = Fix(

@@ -39,7 +39,7 @@ from metagraph.formats.new_file import Access
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.formats.project.text import TextError, as_text, read_text_data, to_text
-from metagraph.graph.clip_source import source_of, with_source
+from metagraph.graph.clip_source import source_of, with_changed_file, with_source
 from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.face.takes import FACE_TAKE, is_face_take, put_on_body
@@ -547,7 +547,7 @@ class _Loading:
             takes = read[entry.as_is]
             if 0 <= entry.take < len(takes):
                 motion = self._fitted(entry, takes[entry.take].renamed(entry.name))
-                self.clips[entry.id] = with_source(replace(entry, path=path, digest=now), motion)
+                self.clips[entry.id] = with_changed_file(replace(entry, path=path), motion, now)
             else:
                 self.notes.append(f"'{path}' no longer has take {entry.take + 1} ('{entry.name}')")
 

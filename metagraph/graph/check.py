@@ -229,6 +229,8 @@ class _ActionCheck:
         yield from self.played(entry, end)
         yield from self.blends()
         yield from self.exit(end)
+        yield from self.length(entry)
+        yield from self.moments(end)
         yield from self.travel()
         yield from self.ends()
 
@@ -371,6 +373,38 @@ class _ActionCheck:
                 ),
                 phrase("Move the earliest exit between start and end."),
             )
+
+    def length(self, entry: ClipEntry) -> Iterator[Problem]:
+        """Yield a problem if it was timed on a clip of another length."""
+        if entry.timed_on:
+            yield self.at(
+                "warning",
+                "other-length",
+                phrase(
+                    "was timed on a clip of {before:.2f} s; its file has {after:.2f} s since it changed",
+                    before=entry.timed_on,
+                    after=entry.duration,
+                ),
+                phrase("Scale its times, or keep them."),
+            )
+
+    def moments(self, end: float) -> Iterator[Problem]:
+        """Yield a problem if its stroke, or another of its phases, does not play."""
+        timing = self.timing
+        for seconds in (timing.stroke, timing.ready, timing.stroke_end, timing.relax):
+            if seconds is not None and not timing.start <= seconds <= end:
+                yield self.at(
+                    "error",
+                    "moment",
+                    phrase(
+                        "has its stroke at {stroke:.2f} s, but plays {start:.2f} to {end:.2f} s",
+                        stroke=seconds,
+                        start=timing.start,
+                        end=end,
+                    ),
+                    phrase("Move the stroke inside, or clear it."),
+                )
+                return
 
     def travel(self) -> Iterator[Problem]:
         """Yield a problem if its hips end elsewhere over the ground, so that the character slides back."""

@@ -21,6 +21,18 @@ def course_of(entry: ClipEntry) -> Course | None:
     return None if source is None else Course(entry.retime, source.duration, source.fps)
 
 
+def with_changed_file(entry: ClipEntry, source: Clip, digest: str) -> ClipEntry:
+    """Return an entry whose file was read again. Where the file is another than before and as long no more,
+    the entry remembers the length that its actions were timed on.
+    """
+    after = with_source(replace(entry, digest=digest), source)
+    before = entry.timed_on or entry.duration
+    if entry.frames < 2 or not entry.digest or (digest == entry.digest and not entry.timed_on):
+        return after
+    other = abs(after.duration - before) > 1.5 / after.fps
+    return replace(after, timed_on=before if other else 0.0)
+
+
 def with_source(entry: ClipEntry, source: Clip) -> ClipEntry:
     """Return an entry whose clip was read, kept in place if it is to be, with its retiming made."""
     motion = apply_retiming(keep_in_place(source) if entry.in_place else source, entry.retime)

@@ -12,7 +12,7 @@ from typing import Any
 
 from metagraph.common.wording import phrase
 from metagraph.graph import ids
-from metagraph.graph.clip_source import with_source
+from metagraph.graph.clip_source import with_changed_file, with_source
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.face.takes import FACE_TAKE, face_joints
 from metagraph.graph.manual.machine import remove_clips_from_machines
@@ -75,8 +75,8 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
             there = [ids.new_id(project, "c", path, take, more=clips)]
             clips[there[0]] = ClipEntry(there[0], clip.name, path, take)
         for entry in [clips[i] for i in there]:
-            entry = replace(entry, digest=digest, brought_from=clip.brought_from)
-            clips[entry.id] = with_source(entry, clip)
+            entry = replace(entry, brought_from=clip.brought_from)
+            clips[entry.id] = with_changed_file(entry, clip, digest)
     return replace(project, clips=clips, skeleton=skeleton)
 
 

@@ -302,7 +302,8 @@ class ClipEntry:
     fingerprint of the skeleton it is retargeted from, "" if the file has the project's own. `made_by` and
     `made_seed` are the learned model that generated it and the seed; `made_by` is "" for other clips.
     `retime` says how it is played faster, slower or held. `in_place` takes out the way its hips have made by
-    its end. `motion` is the loaded clip as it plays, None while
+    its end. `timed_on` is how many seconds the clip was long when its actions were timed, if its file has
+    another length since; else 0. `motion` is the loaded clip as it plays, None while
     the file is missing. `source` is the clip as it was read, if that differs (see `graph.editing.retiming`).
     """
 
@@ -321,6 +322,7 @@ class ClipEntry:
     made_seed: int = 0
     retime: Retime = field(default_factory=Retime)
     in_place: bool = False
+    timed_on: float = 0.0
 
     @property
     def duration(self) -> float:

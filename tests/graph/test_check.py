@@ -370,3 +370,41 @@ def test_what_travels_is_reported_and_keeping_it_in_place_helps(
         after = fix(project)
         assert not [p for p in check_project(after) if p.code == "travels"]
         assert after.clips[clip].in_place and after.clips[clip].source is project.clips[clip].motion
+
+
+@pytest.mark.parametrize(("seconds", "reported"), [(2.4, True), (0.6, True), (1.2, False)])
+def test_a_file_that_is_longer_or_shorter_since_is_reported_and_times_can_be_scaled_or_kept(
+    toy: Any, seconds: float, reported: bool
+) -> None:
+    from app.stage.fixes import fix_clips
+
+    project = toy.project()
+    wave = toy.id(project, "rest wave rt")  # 1.2 s
+    project = edits.update_actions(project, [wave], timing={"start": 0.2, "end": 1.0, "stroke": 0.5})
+    entry = project.clips[project.action(wave).clip]
+    first = edits.add_clips(project, [(entry.path, entry.take, "old", entry.motion)])
+    again = edits.add_clips(first, [(entry.path, entry.take, "new", toy.clip(entry.name, seconds))])
+    found = [p for p in check_project(again) if p.code == "other-length"]
+    assert [p.action for p in found] == ([wave] if reported else [])
+    for fix in fix_clips(again, found).values():
+        timing = fix(again).action(wave).timing
+        assert (timing.start, timing.end, timing.stroke) == pytest.approx(
+            tuple(x * seconds / 1.2 for x in (0.2, 1.0, 0.5)), abs=2e-3
+        )
+        assert not [p for p in check_project(fix(again)) if p.code == "other-length"]
+        assert fix.instead is not None
+        kept = fix.instead(again)
+        assert kept.action(wave) is again.action(wave) and not kept.clips[entry.id].timed_on
+
+
+def test_a_stroke_that_does_not_play_is_an_error_and_can_be_cleared(toy: Any) -> None:
+    from app.stage.fixes import fix_clips
+
+    project = toy.project()
+    wave = toy.id(project, "rest wave rt")
+    project = edits.update_actions(project, [wave], timing={"end": 0.8, "stroke": 1.0})
+    (problem,) = [p for p in check_project(project) if p.code == "moment"]
+    assert problem.severity == "error" and problem.action == wave
+    (fix,) = fix_clips(project, [problem]).values()
+    assert fix(project).action(wave).timing.stroke is None
+    assert not [p for p in check_project(fix(project)) if p.code == "moment"]

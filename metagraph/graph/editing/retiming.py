@@ -91,6 +91,39 @@ def keep_clips_in_place(project: Project, clips: Iterable[str], on: bool = True)
     return replace(project, clips={**project.clips, **changed}) if changed else project
 
 
+def scale_times(project: Project, clip: str) -> Project:
+    """Return the project with the actions of a clip whose file has another length since they were timed
+    scaled to it: all moments by as much as it is longer or shorter. Raises EditError where the clip is gone.
+    """
+    entry = project.clips.get(clip)
+    if entry is None:
+        raise EditError(phrase("that clip is no longer in the project"))
+    if not entry.timed_on:
+        return project
+    part = entry.duration / entry.timed_on
+
+    def moved(seconds: float | None, late: bool = False) -> float | None:
+        return None if seconds is None else round(min(seconds * part, entry.duration), 3)
+
+    out = keep_times(project, clip)
+    for graph in project.graphs.values():
+        changes: dict[str, Action | None] = {
+            a.id: replace(a, timing=_timing(a.timing, moved), contacts=_contacts(a.contacts, moved))
+            for a in graph.uses.get(clip, ())
+        }
+        if changes:
+            out = out.with_graph(graph.with_actions(changes))
+    return out
+
+
+def keep_times(project: Project, clip: str) -> Project:
+    """Return the project with the times of a clip's actions taken as right for the length it has."""
+    entry = project.clips.get(clip)
+    if entry is None:
+        raise EditError(phrase("that clip is no longer in the project"))
+    return replace(project, clips={**project.clips, clip: replace(entry, timed_on=0.0)})
+
+
 def set_speed(project: Project, clip: str, speed: float) -> Project:
     """Return the project with a clip played at a speed, 1 as it was read. Raises EditError."""
     entry = project.clips.get(clip)
