@@ -241,7 +241,8 @@ class _Findings:
         """
         own = _LAYER_OF.get(part, "body")
         causes = [self._cause(layer, time) for layer in (own, *(x for x in LAYERS if x != own))]
-        return next((c for c in causes if c.blending), causes[0])
+        playing = [c for c in causes if c.key[0]]
+        return next((c for c in causes if c.blending), next(iter(playing), causes[0]))
 
     def _worst(self, values: Array, limits: Array, part: int) -> Iterator[tuple[int, float, _Cause, int]]:
         """Yield, for each cause, the frame where values `[F]` are largest of those above a limit, the value,
@@ -349,7 +350,7 @@ class _Findings:
             by: dict[tuple[str, str], list[int]] = {}
             causes: dict[tuple[str, str], _Cause] = {}
             for n in frames[:: round(RATE / 4)].tolist():
-                cause = self._cause("body", float(self.seen.times[n]))
+                cause = self._likely_cause("hips", float(self.seen.times[n]))
                 by.setdefault(cause.key, []).append(n)
                 causes[cause.key] = cause
             key = max(by, key=lambda k: len(by[k]))
