@@ -12,6 +12,16 @@ KIND_TITLES = lazy_texts(
         "transition": tr("Transition"),
     }
 )
+KIND_MEANINGS = lazy_texts(
+    lambda: {
+        "stance": tr(
+            "A stance is a resting pose that the layer loops in. Gestures and fidgets start and end in it."
+        ),
+        "gesture": tr("A gesture accompanies speech or tells something."),
+        "fidget": tr("A fidget is a small action without meaning, such as a scratch or a shift of weight."),
+        "transition": tr("A transition leaves one stance and ends in another."),
+    }
+)
 MANY_OF_KIND = lazy_texts(
     lambda: {
         "stance": tr("Stances"),

@@ -21,6 +21,7 @@ Array = NDArray[Any]
 
 ALIKE = 0.3  # share of a check's gain that each other clip with the same words adds
 LOOK = 0.2  # probability of being wrong; from this on a check is worth its time
+PLACED = 0.6  # confidence of a stance; below it a clip may be on the wrong one, whatever else is certain
 LOST = 0.5  # confidence below which a stance is almost unknown
 WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
 
@@ -53,10 +54,16 @@ def chance_wrong(p: Proposal) -> float:
 
 
 def needs_look(p: Proposal, left: Container[str] = ()) -> bool:
-    """Return whether a person should check a proposal: it is probably wrong, or was not placed. `left` has
-    the clips that were not placed.
+    """Return whether somebody should check a proposal: it may well be wrong, nobody can be sure where it
+    belongs, or it was not placed. `left` are the clips that were not placed.
     """
-    return p.clip in left or chance_wrong(p) > LOOK
+    return p.clip in left or chance_wrong(p) > LOOK or _place_confidence(p) < PLACED
+
+
+def _place_confidence(p: Proposal) -> float:
+    """Return how sure a proposal's stance is, and of a transition also the stance it ends in."""
+    where = [p.stance, p.end_stance] if p.kind.value == "transition" else [p.stance]
+    return min(belief.confidence if belief is not None else 0.0 for belief in where)
 
 
 def doubt(p: Proposal) -> str:

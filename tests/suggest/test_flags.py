@@ -67,3 +67,12 @@ def test_a_transition_that_nothing_says_the_end_of_is_told_so() -> None:
 def test_a_look_gains_more_where_others_are_called_alike() -> None:
     alike = replace(SURE, details={"likelihood": Belief(0.25, 0.8, "one of 4 of 'shrug'")})
     assert gain(alike) > gain(SURE) > 0 and 0 < LOOK < 1
+
+
+@pytest.mark.parametrize(("sure", "look"), [(0.57, True), (0.62, False)])
+def test_a_clip_whose_stance_nobody_is_sure_of_needs_a_look_whatever_else_is_certain(
+    sure: float, look: bool
+) -> None:
+    assert needs_look(replace(SURE, stance=Belief("s", sure, "begins 40 cm from it"))) == look
+    passing = replace(SURE, kind=Belief("transition", 0.99, "name says 'to'"))
+    assert needs_look(replace(passing, end_stance=Belief("t", sure, "ends 40 cm from it"))) or not look

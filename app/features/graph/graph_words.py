@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.features.graph.graph_layout import GraphHit, Layout
+from app.look.domain_words import KIND_MEANINGS
 from app.look.names import names_in_tooltip
 from app.translation import tr, tr_plural
 from metagraph.graph.expand import count_machine_size
@@ -41,6 +42,8 @@ def describe_graph_hit(
         "add": tr("New stance: drop a clip here, or click"),
         "other": tr("Transitions that you drop end in this stance"),
     }.get(hit.area, "")
+    if hit.kind is not None and hit.area in ("node", "card"):
+        words = "\n".join(x for x in (KIND_MEANINGS[hit.kind], words) if x)
     return "\n".join(x for x in (name, words) if x) if words else ""
 
 

@@ -202,3 +202,16 @@ def test_ten_thousand_actions_lay_out_only_what_is_in_sight(toy):
     node = lay_out_canvas(project, "arms", rest, QSizeF(1200, 800)).nodes["gesture"]
     assert node.count == 10_004
     assert 0 < len(node.rows) < 60
+
+
+def test_the_pointer_on_a_node_says_what_its_kind_means(toy):
+    from app.features.graph.graph_layout import GraphHit
+    from app.features.graph.graph_words import describe_graph_hit
+
+    layout = lay_out_canvas(toy.project(), "arms", None, QSizeF(960, 700))
+    said = {
+        kind: describe_graph_hit(toy.project(), layout, GraphHit("node", None, kind), None, {})
+        for kind in ("gesture", "fidget", "transition")
+    }
+    assert "accompanies speech" in said["gesture"] and "without meaning" in said["fidget"]
+    assert "ends in another" in said["transition"]
