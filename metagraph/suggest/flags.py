@@ -48,8 +48,8 @@ def proposal_measures(p: Proposal) -> Array:
     )
 
 
-def chance_wrong(p: Proposal) -> float:
-    """Return how likely a proposal is wrong in what decides where its clip goes, 0..1."""
+def _fitted_chance(p: Proposal) -> float:
+    """Return how likely a proposal is wrong by the regression, 0..1."""
     return 1 / (1 + exp(float(np.clip(proposal_measures(p) @ np.array(WEIGHTS), -30, 30))))
 
 
@@ -57,13 +57,17 @@ def needs_look(p: Proposal, left: Container[str] = ()) -> bool:
     """Return whether somebody should check a proposal: it may well be wrong, nobody can be sure where it
     belongs, or it was not placed. `left` are the clips that were not placed.
     """
-    return p.clip in left or chance_wrong(p) > LOOK or _place_confidence(p) < PLACED
+    return p.clip in left or chance_wrong(p) > LOOK
 
 
-def _place_confidence(p: Proposal) -> float:
-    """Return how sure a proposal's stance is, and of a transition also the stance it ends in."""
+def chance_wrong(p: Proposal) -> float:
+    """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong where
+    nobody can be sure of its stance, or of the one that a transition ends in: a clip that begins 40 cm from
+    its stance belongs elsewhere, whatever its name says.
+    """
     where = [p.stance, p.end_stance] if p.kind.value == "transition" else [p.stance]
-    return min(belief.confidence if belief is not None else 0.0 for belief in where)
+    sure = min(belief.confidence if belief is not None else 0.0 for belief in where)
+    return max(_fitted_chance(p), 1 - sure if sure < PLACED else 0.0)
 
 
 def doubt(p: Proposal) -> str:

@@ -16,7 +16,7 @@ WORD = 0.15  # seconds a word takes of which only the start is told, if nothing 
 LETTER = 0.07  # and for each of its letters
 SHAPE = 0.2  # seconds the last shape of a line stays
 FARTHEST = 3600.0  # seconds of a line
-AGAIN = 0.1  # seconds before the end of what was told, from which on what is told later belongs to it
+AGAIN = 0.1  # seconds before the last shape of a line, from which on a shape that is told later belongs to it
 SLACK = 0.05  # seconds by which times may be past the end they are told with
 
 # What each viseme of a set shows of the mouth shapes, and how fully.
@@ -233,30 +233,22 @@ def _ends(marks: Sequence[VisemeMark]) -> list[float]:
 
 
 def tells_on(old: LineTiming, new: LineTiming) -> bool:
-    """Return whether what is told of a line after its end is of the same line: it begins where that ended, or
-    tells it again with more behind it. Else somebody says something else under the same id.
+    """Return whether what is told of a line after its end is of the same line: it begins after the last word
+    or shape that was told, or tells all again with more behind it. Else somebody says something else under
+    the same id.
     """
-    first, last = first_told(new), 0.0
-    for word in old.words:
-        last = max(last, word.start if word.end is None else word.end)
-    for mark in old.marks:
-        last = max(last, mark.at)
-    if first >= last - AGAIN:
-        return True
     if len(new.words) > 0 and len(old.words) > 0:
-        same = new.words[0].text == old.words[0].text and new.words[0].start == old.words[0].start
+        first = new.words[0]
+        if first.start > old.words[-1].start:
+            return True
+        same = first.text == old.words[0].text and first.start == old.words[0].start
         return same and len(new.words) > len(old.words)
-    return first == first_told(old) and len(new.marks) > len(old.marks)
-
-
-def first_told(timing: LineTiming) -> float:
-    """Return when the first word or shape of a line comes."""
-    first = FARTHEST
-    if len(timing.words) > 0:
-        first = timing.words[0].start
-    if len(timing.marks) > 0:
-        first = min(first, timing.marks[0].at)
-    return first
+    if len(new.marks) > 0 and len(old.marks) > 0:
+        shape = new.marks[0]
+        if shape.at >= old.marks[-1].at - AGAIN:
+            return True
+        return shape.at == old.marks[0].at and len(new.marks) > len(old.marks)
+    return False
 
 
 def extended(old: LineTiming, new: LineTiming, said: float) -> LineTiming:

@@ -20,7 +20,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import Likely, MotionGuess
 from metagraph.suggest.proposal import StancePlace, plain_stance_name
-from metagraph.suggest.stances.known import Shape
+from metagraph.suggest.stances.known import Shape, distance_from_stance
 from metagraph.suggest.stances.pose_words import describe_pose
 from metagraph.suggest.traits import LayerTraits, Traits
 from metagraph.suggest.vote_fusion import Agreed, combine
@@ -32,6 +32,8 @@ Array = NDArray[Any]
 LOOP_VOTE = (
     1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins there
 )
+ALIKE, ALIKE_VOTES = 0.8, 2.0  # share of a pose's clips that call it alike, and how many at least
+ONE_STANCE = 0.12  # heights within which poses that are called alike are one stance
 LEAST_VOTES = 0.5  # clips, below which a word says nothing about a pose
 MEANS = 0.6  # of a word's clips that lie in another's pose, from which on it means the same stance
 NEVER = 0.3  # of how sure a source is at least, so that its vote counts
@@ -134,6 +136,8 @@ class StancePlaces:
                 self._of_shape[id(free.pop(n))] = key
                 self._of_word.setdefault(told, key)
                 taken[word] = key
+        for n, key in self._called_alike(layer, shapes, free, votes).items():
+            self._of_shape[id(free.pop(n))] = key
         for n, shape in free.items():
             key = f"new {layer} {n + 1}"
             self.by_key[key] = StancePlace(key, layer, self._named(layer, shape, shapes), False, shape)
@@ -145,6 +149,34 @@ class StancePlaces:
             if told in self._of_word:
                 own = sum(c for s, c in mine.items() if self._of_shape.get(s) == self._of_word[told])
                 self._trusted[told] = (own + 1) / (spoken[word] + 1.1)
+
+    def _called_alike(
+        self,
+        layer: Layer,
+        shapes: Sequence[Shape],
+        free: Mapping[int, Shape],
+        votes: Mapping[str, Mapping[int, float]],
+    ) -> dict[int, str]:
+        """Return, of the shapes that have no name, those whose clips nearly all name a stance that another
+        shape has already and that is near: "idle 1" with the head up, and with it down, is one stance.
+        """
+        out = {}
+        for n, shape in free.items():
+            mine = {word: some[id(shape)] for word, some in votes.items() if id(shape) in some}
+            word = max(mine, key=lambda w: mine[w], default="")
+            told = (layer, plain_stance_name(word))
+            if (
+                not word
+                or mine[word] < max(ALIKE_VOTES, ALIKE * sum(mine.values()))
+                or not self._placed(told)
+            ):
+                continue
+            key = self._of_word[told]
+            other = self.by_key[key].shape
+            assert other is not None
+            if distance_from_stance(other, shape.names, shape.poses[0]) <= ONE_STANCE:
+                out[n] = key
+        return out
 
     def _named(self, layer: Layer, shape: Shape, shapes: Sequence[Shape]) -> str:
         """Return what a stance is called that no name speaks of: as its pose looks."""

@@ -21,7 +21,7 @@ inline constexpr double WORD = 0.15; // seconds a word takes of which only the s
 inline constexpr double LETTER = 0.07; // and for each of its letters
 inline constexpr double SHAPE = 0.2; // seconds the last shape of a line stays
 inline constexpr double FARTHEST = 3600.0; // seconds of a line
-// seconds before the end of what was told, from which on what is told later belongs to it
+// seconds before the last shape of a line, from which on a shape that is told later belongs to it
 inline constexpr double AGAIN = 0.1;
 inline constexpr double SLACK = 0.05; // seconds by which times may be past the end they are told with
 // What each viseme of a set shows of the mouth shapes, and how fully.
@@ -136,7 +136,6 @@ inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<d
 inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTiming>& timing);
 inline List<double> _ends(const List<Ref<VisemeMark>>& marks);
 inline bool tells_on(const Ref<LineTiming>& old, const Ref<LineTiming>& new_);
-inline double first_told(const Ref<LineTiming>& timing);
 inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
 inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mark);
 
@@ -462,38 +461,25 @@ inline List<double> _ends(const List<Ref<VisemeMark>>& marks) {
     return lang::backwards(out);
 }
 
-/// Return whether what is told of a line after its end is of the same line: it begins where that ended, or tells it
-/// again with more behind it. Else somebody says something else under the same id.
+/// Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that
+/// was told, or tells all again with more behind it. Else somebody says something else under the same id.
 inline bool tells_on(const Ref<LineTiming>& old, const Ref<LineTiming>& new_) {
-    double first = line_timing::first_told(new_);
-    double last = 0.0;
-    for (const auto& word : old->words) {
-        last = std::max(last, !word->end.has_value() ? word->start : *word->end);
-    }
-    for (const auto& mark : old->marks) {
-        last = std::max(last, mark->at);
-    }
-    if (first >= last - line_timing::AGAIN) {
-        return true;
-    }
     if (lang::len(new_->words) > 0 && lang::len(old->words) > 0) {
-        bool same = lang::at(new_->words, 0)->text == lang::at(old->words, 0)->text
-            && lang::at(new_->words, 0)->start == lang::at(old->words, 0)->start;
+        Ref<SpokenWord> first = lang::at(new_->words, 0);
+        if (first->start > lang::at(old->words, -1)->start) {
+            return true;
+        }
+        bool same = first->text == lang::at(old->words, 0)->text && first->start == lang::at(old->words, 0)->start;
         return same && lang::len(new_->words) > lang::len(old->words);
     }
-    return first == line_timing::first_told(old) && lang::len(new_->marks) > lang::len(old->marks);
-}
-
-/// Return when the first word or shape of a line comes.
-inline double first_told(const Ref<LineTiming>& timing) {
-    double first = line_timing::FARTHEST;
-    if (lang::len(timing->words) > 0) {
-        first = lang::at(timing->words, 0)->start;
+    if (lang::len(new_->marks) > 0 && lang::len(old->marks) > 0) {
+        Ref<VisemeMark> shape = lang::at(new_->marks, 0);
+        if (shape->at >= lang::at(old->marks, -1)->at - line_timing::AGAIN) {
+            return true;
+        }
+        return shape->at == lang::at(old->marks, 0)->at && lang::len(new_->marks) > lang::len(old->marks);
     }
-    if (lang::len(timing->marks) > 0) {
-        first = std::min(first, lang::at(timing->marks, 0)->at);
-    }
-    return first;
+    return false;
 }
 
 /// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the

@@ -13,7 +13,7 @@ export const WORD = 0.15; // seconds a word takes of which only the start is tol
 export const LETTER = 0.07; // and for each of its letters
 export const SHAPE = 0.2; // seconds the last shape of a line stays
 export const FARTHEST = 3600; // seconds of a line
-export const AGAIN = 0.1; // seconds before the end of what was told, from which on what is told later belongs to it
+export const AGAIN = 0.1; // seconds before the last shape of a line, from which on a shape that is told later belongs to it
 export const SLACK = 0.05; // seconds by which times may be past the end they are told with
 // What each viseme of a set shows of the mouth shapes, and how fully.
 export const OCULUS = new Map([
@@ -372,45 +372,29 @@ function _ends(marks) {
 }
 
 /**
- * Return whether what is told of a line after its end is of the same line: it begins where that ended, or tells it again
- * with more behind it. Else somebody says something else under the same id.
+ * Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that was
+ * told, or tells all again with more behind it. Else somebody says something else under the same id.
  * @param {LineTiming} old
  * @param {LineTiming} new_
  * @returns {boolean}
  */
 export function tellsOn(old, new_) {
-  const first = firstTold(new_);
-  let last = 0;
-  for (const word of old.words) {
-    last = Math.max(last, word.end === null ? word.start : word.end);
-  }
-  for (const mark of old.marks) {
-    last = Math.max(last, mark.at);
-  }
-  if (first >= last - AGAIN) {
-    return true;
-  }
   if (new_.words.length > 0 && old.words.length > 0) {
-    const same = new_.words[0].text === old.words[0].text && new_.words[0].start === old.words[0].start;
+    const first = new_.words[0];
+    if (first.start > old.words[old.words.length - 1].start) {
+      return true;
+    }
+    const same = first.text === old.words[0].text && first.start === old.words[0].start;
     return same && new_.words.length > old.words.length;
   }
-  return first === firstTold(old) && new_.marks.length > old.marks.length;
-}
-
-/**
- * Return when the first word or shape of a line comes.
- * @param {LineTiming} timing
- * @returns {number}
- */
-export function firstTold(timing) {
-  let first = FARTHEST;
-  if (timing.words.length > 0) {
-    first = timing.words[0].start;
+  if (new_.marks.length > 0 && old.marks.length > 0) {
+    const shape = new_.marks[0];
+    if (shape.at >= old.marks[old.marks.length - 1].at - AGAIN) {
+      return true;
+    }
+    return shape.at === old.marks[0].at && new_.marks.length > old.marks.length;
   }
-  if (timing.marks.length > 0) {
-    first = Math.min(first, timing.marks[0].at);
-  }
-  return first;
+  return false;
 }
 
 /**

@@ -57,7 +57,7 @@ namespace Metagraph
         public const double Letter = 0.07; // and for each of its letters
         public const double Shape = 0.2; // seconds the last shape of a line stays
         public const double Farthest = 3600.0; // seconds of a line
-        // seconds before the end of what was told, from which on what is told later belongs to it
+        // seconds before the last shape of a line, from which on a shape that is told later belongs to it
         public const double Again = 0.1;
         public const double Slack = 0.05; // seconds by which times may be past the end they are told with
         // What each viseme of a set shows of the mouth shapes, and how fully.
@@ -425,46 +425,31 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return whether what is told of a line after its end is of the same line: it begins where that ended, or tells it again
-        /// with more behind it. Else somebody says something else under the same id.
+        /// Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that
+        /// was told, or tells all again with more behind it. Else somebody says something else under the same id.
         /// </summary>
         public static bool TellsOn(LineTiming old, LineTiming new_)
         {
-            var first = FirstTold(new_);
-            var last = 0.0;
-            foreach (SpokenWord word in old.Words)
-            {
-                last = Math.Max(last, word.End == null ? word.Start : word.End.Value);
-            }
-            foreach (VisemeMark mark in old.Marks)
-            {
-                last = Math.Max(last, mark.At);
-            }
-            if (first >= last - Again)
-            {
-                return true;
-            }
             if (new_.Words.Count > 0 && old.Words.Count > 0)
             {
-                var same = new_.Words[0].Text == old.Words[0].Text && new_.Words[0].Start == old.Words[0].Start;
+                var first = new_.Words[0];
+                if (first.Start > old.Words[old.Words.Count - 1].Start)
+                {
+                    return true;
+                }
+                var same = first.Text == old.Words[0].Text && first.Start == old.Words[0].Start;
                 return same && new_.Words.Count > old.Words.Count;
             }
-            return first == FirstTold(old) && new_.Marks.Count > old.Marks.Count;
-        }
-
-        /// <summary>Return when the first word or shape of a line comes.</summary>
-        public static double FirstTold(LineTiming timing)
-        {
-            var first = Farthest;
-            if (timing.Words.Count > 0)
+            if (new_.Marks.Count > 0 && old.Marks.Count > 0)
             {
-                first = timing.Words[0].Start;
+                var shape = new_.Marks[0];
+                if (shape.At >= old.Marks[old.Marks.Count - 1].At - Again)
+                {
+                    return true;
+                }
+                return shape.At == old.Marks[0].At && new_.Marks.Count > old.Marks.Count;
             }
-            if (timing.Marks.Count > 0)
-            {
-                first = Math.Min(first, timing.Marks[0].At);
-            }
-            return first;
+            return false;
         }
 
         /// <summary>

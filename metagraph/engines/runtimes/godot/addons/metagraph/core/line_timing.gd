@@ -10,7 +10,7 @@ const WORD = 0.15  # seconds a word takes of which only the start is told, if no
 const LETTER = 0.07  # and for each of its letters
 const SHAPE = 0.2  # seconds the last shape of a line stays
 const FARTHEST = 3600.0  # seconds of a line
-const AGAIN = 0.1  # seconds before the end of what was told, from which on what is told later belongs to it
+const AGAIN = 0.1  # seconds before the last shape of a line, from which on a shape that is told later belongs to it
 const SLACK = 0.05  # seconds by which times may be past the end they are told with
 # What each viseme of a set shows of the mouth shapes, and how fully.
 const OCULUS = {
@@ -322,31 +322,21 @@ static func _ends(marks):
 	return Util.list(Util.backwards(out))
 
 
-# Return whether what is told of a line after its end is of the same line: it begins where that ended, or tells it again with more
-# behind it. Else somebody says something else under the same id.
+# Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that was told,
+# or tells all again with more behind it. Else somebody says something else under the same id.
 static func tells_on(old, new):
-	var first = first_told(new)
-	var last = 0.0
-	for word in old.words:
-		last = Util.most(last, word.start if word.end == null else word.end)
-	for mark in old.marks:
-		last = Util.most(last, mark.at)
-	if first >= last - AGAIN:
-		return true
 	if new.words.size() > 0 and old.words.size() > 0:
-		var same = new.words[0].text == old.words[0].text and new.words[0].start == old.words[0].start
+		var first = new.words[0]
+		if first.start > old.words[-1].start:
+			return true
+		var same = first.text == old.words[0].text and first.start == old.words[0].start
 		return same and new.words.size() > old.words.size()
-	return first == first_told(old) and new.marks.size() > old.marks.size()
-
-
-# Return when the first word or shape of a line comes.
-static func first_told(timing):
-	var first = FARTHEST
-	if timing.words.size() > 0:
-		first = timing.words[0].start
-	if timing.marks.size() > 0:
-		first = Util.least(first, timing.marks[0].at)
-	return first
+	if new.marks.size() > 0 and old.marks.size() > 0:
+		var shape = new.marks[0]
+		if shape.at >= old.marks[-1].at - AGAIN:
+			return true
+		return shape.at == old.marks[0].at and new.marks.size() > old.marks.size()
+	return false
 
 
 # Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new begins;
