@@ -41,7 +41,7 @@ _chosen: _Language | None = None  # None: English
 
 
 class Shown(str):
-    """Text in another language that also has its English text."""
+    """Text in another language that also has its English text. A project keeps a plain `str` of it."""
 
     __slots__ = ("english",)
     english: str

@@ -91,7 +91,7 @@ class RequestEdits:
         def edit(project: Project) -> Project:
             nonlocal made
             if made is None or made not in project.performances:
-                kept = KeptPerformance(name=tr("Performance"), length=self._length())
+                kept = KeptPerformance(name=str(tr("Performance")), length=self._length())
                 project, made = performance_edits.add_performance(project, kept)
             return performance_edits.add_request(project, made, ask)
 
@@ -177,7 +177,7 @@ class RequestEdits:
         def edit(project: Project) -> Project:
             nonlocal done, stage
             if stage is None or stage not in project.performances:
-                kept = KeptPerformance(name=tr("Performance"), length=self._length())
+                kept = KeptPerformance(name=str(tr("Performance")), length=self._length())
                 project, stage = performance_edits.add_performance(project, kept)
             done = paste_requests(project, stage, text, at)
             return done.project

@@ -307,7 +307,7 @@ class LinesPanel(QWidget):
         self.search.clear()  # the new one must be seen
         number = next(n for n in range(1, len(lines) + 2) if str(n) not in lines)
         self._try(
-            tr("Add line"), lambda p: performance_edits.set_line(p, str(number), Line(text=tr("Hello")))
+            tr("Add line"), lambda p: performance_edits.set_line(p, str(number), Line(text=str(tr("Hello"))))
         )
         self.table.setCurrentCell(len(lines), WORDS)
         self.table.edit(self.table.model().index(len(lines), WORDS))

@@ -282,7 +282,7 @@ class TimelinePanel(QWidget):
         self.session.transport.show_plan()
 
     def new(self) -> None:
-        self._keep(tr("New performance"), KeptPerformance(name=tr("Performance")))
+        self._keep(tr("New performance"), KeptPerformance(name=str(tr("Performance"))))
 
     def duplicate(self) -> None:
         if self.performance.requests.kept is not None:

@@ -6,8 +6,10 @@ from typing import Any
 
 import pytest
 
+from app import translation
 from app.features.timeline.request_editor import RequestEditor
 from app.widgets.request_menu import describe_mood, make_request_menu
+from metagraph.formats.store import save_project
 from metagraph.graph import requests as a
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -47,3 +49,22 @@ def test_moods_can_be_asked_for_and_are_told_in_words(drive: Any) -> None:
         assert "Mood" in names
     menu.close()
     assert describe_mood("sad", 1.5) == "sad × 1.5" and describe_mood((0.3, -0.5), None) == "mood 0.3, -0.5"
+
+
+def test_in_german_a_first_request_makes_a_performance_that_can_be_saved(drive: Any, tmp_path: Any) -> None:
+    translation.choose("de")
+    try:
+        drive.timeline.new()
+        drive.performance.requests.ask(a.Gesture(at=2.0))
+        drive.performance.requests.to_clipboard(tuple(x.id for x in drive.performance.asks))
+        drive.session.onstage.set_performance(None)
+        drive.performance.requests.ask(a.Gesture(at=1.0))
+        drive.session.onstage.set_performance(None)
+        drive.performance.requests.paste()
+        drive.lines.add_words()
+    finally:
+        translation.choose("en")
+    project = drive.document.project
+    assert {type(p.name) for p in project.performances.values()} == {str}
+    assert {type(x.text) for x in project.lines.values()} == {str}
+    save_project(project, tmp_path / "de.metagraph.yaml")
