@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections import Counter
 
 from app.cli.command_output import LONGEST, open_for_command
 from app.cli.journal_note import warn_of_journals
+from metagraph.formats.project.verified import count_in_words
 from metagraph.graph.check import check_project as find_problems
 from metagraph.graph.check import grave
 
@@ -21,13 +22,20 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--play",
-        type=float,
+        type=_seconds,
         nargs="?",
         const=PLAYED,
         metavar="SECONDS",
         help="also play the character untouched for so many seconds, and each action once, and report what a "
         f"viewer would see go wrong ({PLAYED:.0f} s without a number)",
     )
+
+
+def _seconds(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ArgumentTypeError(f"'{text}' is no number of seconds; the project comes before it") from None
 
 
 def run(options: Namespace) -> int:
@@ -47,5 +55,5 @@ def run(options: Namespace) -> int:
     else:
         for p in problems:
             print(f"{p.severity:8}{f'{p.layer}: ' if p.layer else ''}{p.message}\n        {p.remedy}")
-        print(f"{counts['error']} errors, {counts['warning']} warnings, {counts['hint']} hints")
+        print(", ".join(count_in_words(counts[one], one) for one in ("error", "warning", "hint")))
     return 3 if grave(problems, options.strict) else 0

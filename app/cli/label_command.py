@@ -141,16 +141,18 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     taken = replace(taken, project=labelled)
     if not begun.merged or labelled != begun.before:
         output.save(taken.project, source if source.is_file() else None)
+    changed = not begun.merged or bool(begun.clips)  # if not, the report of what was labelled earlier stays
     place = _free_report(path)
-    drawn = (
-        {}
-        if options.no_pictures
-        else draw_label_pictures(taken.project, path.resolve().parent, [*found.proposals])
-    )
-    write_atomically(place, format_label_report(taken.project, found, taken, drawn, notes, path).encode())
+    if changed:
+        drawn = (
+            {}
+            if options.no_pictures
+            else draw_label_pictures(taken.project, path.resolve().parent, [*found.proposals])
+        )
+        write_atomically(place, format_label_report(taken.project, found, taken, drawn, notes, path).encode())
     look = [p for p in found.doubtful if needs_look(p, taken.left)]
     errors = [p.message for p in grave(check_project(taken.project))]
-    seen = rehearse(taken.project, options.play) if options.play > 0 else []
+    seen = rehearse(taken.project, options.play) if options.play > 0 and changed else []
     faults = [p.message for p in seen if p.severity == "error"]
     seconds = time.perf_counter() - began
     for note in count_alike(notes):
@@ -170,12 +172,12 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         print(f"seen: {problem.message}", file=sys.stderr)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
-        f"{len(look)} need a look\n{place}"
+        f"{len(look)} need a look" + (f"\n{place}" if changed else "")
     )
     names = {clip: project.clips[clip].name for clip in found.proposals}
     data: dict[str, Any] = {
         "project": str(path),
-        "report": str(place),
+        "report": str(place) if changed else None,
         "labelled": len(taken.placed),
         "left": {names[c]: why for c, why in taken.left.items()},
         "held": {

@@ -20,6 +20,10 @@ def open_whole(path: Path, progress: Progress | None = None) -> Opened:
     """Read a project file with its clips and voices. Raises FileError; missing files beside it are in the
     notes.
     """
+    if path.is_dir():
+        raise FileError(
+            path, "is a folder", "on opening it", "Give the project file in it, or label the folder."
+        )
     return _voiced(open_project(path, progress), path.resolve().parent)
 
 

@@ -67,8 +67,9 @@ def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fi
     out: dict[Problem, Fix] = {}
     for problem in problems:
         action = project.action(problem.action or "")
-        if action is not None and problem.code in ("travels", "play-slide"):
-            out[problem] = Fix(tr("Keep in place"), in_place=action.clip)
+        entry = project.clips.get(action.clip) if action is not None else None
+        if entry is not None and problem.code in ("travels", "play-slide") and not entry.in_place:
+            out[problem] = Fix(tr("Keep in place"), in_place=entry.id)
         if action is not None and problem.code == "other-length":
             keep = Fix(tr("Keep the times"), kept=action.clip)
             out[problem] = Fix(tr("Scale the times"), scaled=action.clip, instead=keep)

@@ -140,9 +140,9 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
                     phrase("stance '{name}' has no gestures", name=stance.name)
                     if kind == "gesture"
                     else phrase("stance '{name}' has no fidgets", name=stance.name),
-                    phrase("Drop clips on its gestures node.")
+                    phrase("Drop clips on its Gesture node.")
                     if kind == "gesture"
-                    else phrase("Drop clips on its fidgets node."),
+                    else phrase("Drop clips on its Fidget node."),
                 )
         if len(graph.stances) > 1 and not any(
             a.end_stance in graph.stances for a in graph.of(stance.id, "transition")
@@ -422,7 +422,9 @@ class _ActionCheck:
                 phrase("moves {length:.1f} m in each loop, and jumps back at its end", length=far)
                 if self.action.kind == "stance"
                 else phrase("ends {length:.1f} m from where it begins, and slides back", length=far),
-                phrase("Keep the clip in place."),
+                phrase("Move its start and end to where its hips are over the same spot.")
+                if self.project.clips[self.action.clip].in_place
+                else phrase("Keep the clip in place."),
             )
 
     def ends(self) -> Iterator[Problem]:

@@ -19,6 +19,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.requests import Play
+from metagraph.motion.in_place import travel_of
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
@@ -30,6 +31,7 @@ from metagraph.playback.posing.rigs import rigs_of
 Array = NDArray[Any]
 
 MINUTES = 10.0
+LEAST_MINUTES = 5.0  # below which a stance that was not reached means nothing
 RATE = 60.0  # poses a second that are looked at
 CHUNK = 600  # poses made at once
 GAP = 0.5  # seconds between the actions that are each played once
@@ -275,9 +277,9 @@ class _Findings:
         return Problem(
             severity,
             code,
-            phrase("{what} at {moment}, while {cause}", what=words, moment=_clock(time), cause=cause.words)
+            phrase("at {moment}, while {cause}: {what}", what=words, moment=_clock(time), cause=cause.words)
             if self.free
-            else phrase("{what}, while {cause}", what=words, cause=cause.words),
+            else phrase("while {cause}: {what}", what=words, cause=cause.words),
             remedy,
             cause.layer,
             cause.stance,
@@ -338,8 +340,24 @@ class _Findings:
             if not cause.blending or far < GLIDES * self.size:
                 continue
             words = phrase("the body slides {length:.1f} m at {speed:.1f} m/s", length=far, speed=value)
-            remedy = phrase("Keep the clip in place, or add a clip that walks there.")
-            yield self._problem("play-slide", words, remedy, frame, cause, "error")
+            if self._can_stay(cause.action):
+                remedy = phrase("Keep the clip in place, or add a clip that walks there.")
+                yield self._problem("play-slide", words, remedy, frame, cause, "error")
+            else:
+                remedy = phrase(
+                    "In the timing editor, end the action where its hips are back, or lengthen its blend."
+                )
+                yield self._problem("play-sway", words, remedy, frame, cause, "error")
+
+    def _can_stay(self, ident: str | None) -> bool:
+        """Return whether keeping an action's clip in place takes out a way that it makes."""
+        action = self.project.action(ident or "")
+        clip = playable(self.project, action) if action is not None else None
+        if action is None or clip is None or self.project.skeleton is None:
+            return False
+        hips = anatomy.project_roles(self.project).get("hips", 0)
+        far = travel_of(clip, hips, *self.project.span(action))
+        return not self.project.clips[action.clip].in_place and far > GLIDES * self.size
 
     def _floor(self) -> Iterator[Problem]:
         under, above = self.seen.lowest < -UNDER * self.size, self.seen.lowest > ABOVE * self.size
@@ -395,6 +413,8 @@ class _Findings:
         )
 
     def _never_seen(self) -> Iterator[Problem]:
+        if len(self.seen.times) < 60 * LEAST_MINUTES * RATE:
+            return
         for layer, plan in self.plan.layers.items():
             graph = self.project.graphs[layer]
             shown = {rest.stance for rest in plan.rests} | {cue.then for cue in plan.cues}

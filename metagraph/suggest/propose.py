@@ -69,6 +69,7 @@ __all__ = [
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
+TAUGHT = 0.5  # confidence of a kind learned from labelled clips, from which on no clip is skipped
 TOLD = 0.7  # confidence of a name's stance, below which it does not define stances
 LEADS = 0.8  # confidence of the motion that a clip named after a stance goes there
 FACE_MOVES = 0.3  # of `Traits.face`, from which on a clip of a face alone is no pose that is held
@@ -177,7 +178,8 @@ def propose(
         each.beside = each.motion
         if each.traits is not None and each.motion is not None and each.motion.layer.value != each.layer:
             each.beside = guess(each.traits, shapes, each.layer, each.posture)
-        if why and "kind" not in each.learned:
+        taught = each.learned.get("kind")
+        if why and (taught is None or taught.confidence < TAUGHT):
             aside[c] = why
             others.append(each)
         else:

@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.playback.rehearsal import rehearse
+from metagraph.playback.rehearsal import LEAST_MINUTES, rehearse
 
 SECONDS = 40.0
 
@@ -95,7 +95,7 @@ def test_a_stance_that_is_never_reached_is_a_hint(sound: Project, toy: Any) -> N
     graph = sound.graphs["body"]
     actions = {i: a for i, a in graph.actions.items() if a.name != "up to far"}
     project = replace(sound, graphs={**sound.graphs, "body": replace(graph, actions=actions)})
-    (hint,) = [p for p in rehearse(project, SECONDS) if p.code == "play-never"]
+    (hint,) = [p for p in rehearse(project, 60 * LEAST_MINUTES) if p.code == "play-never"]
     assert hint.stance == toy.id(project, "far") and hint.severity == "hint" and "far" in hint.message
 
 

@@ -153,3 +153,10 @@ def test_reasons_that_differ_in_numbers_are_one_with_the_least_and_the_greatest(
         ("name says 'run'", ["c"]),
     ]
     assert reasons({}) == []
+
+
+def test_clips_left_aside_stay_so_when_the_rest_is_placed(exercises: MadeSet) -> None:
+    found = propose(exercises.project)
+    assert found.aside
+    placed = accept(exercises.project, found).project
+    assert propose(placed).aside.keys() == found.aside.keys()

@@ -42,3 +42,10 @@ def test_the_sample_plays_without_an_error(sample_clips: Path, capsys: pytest.Ca
 @pytest.fixture
 def sample_clips() -> Path:
     return Path(__file__).parents[3] / "sample_clips" / "sample.metagraph.yaml"
+
+
+def test_counts_are_in_words_and_a_folder_is_told(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(project)]) == 0
+    assert capsys.readouterr().out.rstrip().endswith(("0 hints", "1 hint"))
+    assert main(["check", str(project.parent)]) == 1
+    assert "is a folder" in capsys.readouterr().err

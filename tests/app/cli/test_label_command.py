@@ -262,3 +262,13 @@ def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     main([*again, "--overwrite"])
     project = open_project(out.with_name("p.metagraph.yaml")).project
     assert [x.contacts for x in project.joint_maps.values()] == [False]
+
+
+def test_labelling_again_leaves_the_earlier_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["label", str(folder), "--json", "--no-pictures", "--play", "0"]
+    assert main(command) == 0
+    report = Path(json.loads(capsys.readouterr().out)["report"])
+    before = report.read_bytes()
+    assert main(command) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["labelled"] == 0 and data["report"] is None and report.read_bytes() == before
