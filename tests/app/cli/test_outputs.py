@@ -294,10 +294,12 @@ def test_a_report_that_was_changed_is_kept_beside_the_new_one(
 ) -> None:
     folder = tmp_path / "talk"
     folder.mkdir()
-    for path in sorted((ROOT / "sample_clips" / "clips").glob("on_hips__*.glb"))[:3]:
+    *first, later = sorted((ROOT / "sample_clips" / "clips").glob("on_hips__*.glb"))[:4]
+    for path in first:
         shutil.copy(path, folder)
     assert main(["label", str(folder), "--no-pictures", "--play", "0"]) in (0, 3)
     (tmp_path / "talk.labels.html").write_text("my notes")
+    shutil.copy(later, folder)
     assert main(["label", str(folder), "--no-pictures", "--play", "0"]) in (0, 3)
     assert (tmp_path / "talk.labels.html").read_text() == "my notes"
     assert "talk.labels 2.html" in capsys.readouterr().out
