@@ -211,6 +211,8 @@ def _import_clips(
             failures.append(unforeseen_error(path, error))
             continue
         for number, clip in enumerate(takes):
+            if clip.face_of:
+                continue
             known = skeletons.setdefault(clip.skeleton.fingerprint, clip)
             clips.append(
                 (

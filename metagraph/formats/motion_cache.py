@@ -63,6 +63,7 @@ class KeptClip(msgspec.Struct, array_like=True):
     notes: tuple[str, ...]
     repairs: tuple[tuple[str, str, bool, int | None], ...]
     brought_from: str
+    face_of: str
 
 
 class KeptFile(msgspec.Struct, array_like=True):
@@ -155,6 +156,7 @@ def _encoded(clips: Iterable[Clip]) -> bytes:
                 tuple(map(str, clip.notes)),  # msgspec takes no text that knows its template
                 tuple((r.name, str(r.words), r.made, r.take) for r in clip.repairs),
                 clip.brought_from,
+                clip.face_of,
             )
         )
     body = msgspec.msgpack.encode(KeptFile(tuple(skeletons), tuple(kept)))
@@ -205,6 +207,7 @@ def _clip(kept: KeptClip, skeleton: Skeleton) -> Clip:
         kept.notes,
         tuple(Repair(*repair) for repair in kept.repairs),
         kept.brought_from,
+        kept.face_of,
     )
 
 

@@ -41,7 +41,7 @@ class Clip:
     joint 0 first); all other joints keep their rest translation. `weights` `[F, K]` are morph target weights
     for `morphs`. `notes` tell the user what the reader changed or dropped. `repairs` are those of the changes
     that can be left out. `brought_from` is the fingerprint of the skeleton it was retargeted from, "" if it
-    was not.
+    was not. `face_of` names the take of the same file that has this one as its face, "" if none has.
     """
 
     name: str
@@ -55,6 +55,7 @@ class Clip:
     notes: tuple[str, ...] = ()
     repairs: tuple[Repair, ...] = ()
     brought_from: str = ""
+    face_of: str = ""
 
     def __post_init__(self) -> None:
         r = np.ascontiguousarray(self.rotations, np.float32)

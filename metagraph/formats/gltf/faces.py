@@ -18,7 +18,8 @@ SAME = 0.05  # seconds by which a body's and its face's animation may differ in 
 def join_faces(clips: Sequence[Clip], faces: Sequence[bool]) -> list[Clip]:
     """Return the takes of a file, those that only have a face joined to the body's take that they belong to:
     the only one as long that has no face, or of as many of each the one in the same place. `faces` tells
-    which takes only have a face. A joined take has a note; what cannot be told stays a take of its own.
+    which takes only have a face. A joined take has a note. The face's own take stays in its place, so that
+    numbers of takes in projects stay right, and names its body in `face_of`; importing leaves it out.
     """
     bodies = [n for n, clip in enumerate(clips) if not faces[n] and not clip.morphs]
     owners: dict[int, int] = {}
@@ -27,12 +28,10 @@ def join_faces(clips: Sequence[Clip], faces: Sequence[bool]) -> list[Clip]:
         fitting = [n for n in bodies if _as_long(clips[n], length)]
         if len(some) == len(fitting):
             owners |= dict(zip(fitting, some, strict=True))
-    out = []
-    for n, clip in enumerate(clips):
-        if n in owners:
-            out.append(_joined(clip, clips[owners[n]]))
-        elif n not in owners.values():
-            out.append(clip)
+    out = list(clips)
+    for body, face in owners.items():
+        out[body] = _joined(clips[body], clips[face])
+        out[face] = replace(clips[face], face_of=clips[body].name)
     return out
 
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
+from metagraph.formats.clips import import_clips, read_clips
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles, write_glb
 from metagraph.formats.gltf.skeleton import compose
 from metagraph.formats.gltf.writer import Keys
@@ -429,7 +430,10 @@ def test_the_face_of_a_take_that_is_an_animation_of_its_own_is_joined_to_it(tmp_
     take(scene, "FaceAction", 1.0, False, True)
     take(scene, "talk", 1.0, True, False)
     take(scene, "idle", 3.0, True, False)
-    talk, idle = read_gltf_clips(scene.glb(tmp_path / "file.glb"))
+    face, talk, idle = read_clips(scene.glb(tmp_path / "file.glb"))
+    assert (face.name, face.face_of, talk.face_of) == ("FaceAction", "talk", "")
+    imported = import_clips([tmp_path / "file.glb"])
+    assert [(take, clip.name) for _, take, clip in imported.clips] == [(1, "talk"), (2, "idle")]
     assert (talk.name, talk.morphs, idle.name, idle.morphs) == ("talk", ("smile", "blink"), "idle", ())
     assert talk.weights is not None and any("'FaceAction'" in note for note in talk.notes)
     np.testing.assert_allclose(talk.weights[[0, 15, 30]], [[0, 1], [0.5, 0.5], [1, 0]], atol=1e-6)
