@@ -5,6 +5,7 @@ find what fixes them with a press.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import is_
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
@@ -48,7 +49,7 @@ class ProblemWatch(QObject):
         self._bridges: dict[Problem, Fix] = {}
         self._found: tuple[Problem, ...] = ()  # by `check_project`, without the flagged jumps
         self._busy = False
-        self._seen: tuple[tuple[Problem, object], ...] = ()  # as it played, with what was played
+        self._seen: tuple[tuple[Problem, tuple[object, ...]], ...] = ()  # as it played, with what was played
         self._seen_fixes: dict[Problem, Fix] = {}
         self.is_playing = False
         self._soon = QTimer(self, singleShot=True, interval=AFTER)
@@ -62,7 +63,7 @@ class ProblemWatch(QObject):
 
     def play(self) -> None:
         """Play ten minutes and each action once, and add what a viewer would see go wrong; it takes about a
-        minute. What is found stays until the action it is about is edited.
+        minute. What is found stays until the action it is about, or its clip, is edited.
         """
         if self.is_playing:
             return
@@ -110,8 +111,8 @@ class ProblemWatch(QObject):
         found = tuple(p for p in self._found if not (p.state or p.link if meta else p.stance or p.action))
         flags = self.compatibility.flags if meta else {}
         project = self.document.project
-        seen = tuple(p for p, subject in self._seen if meta and _subject(project, p) is subject)
-        self.problems = merge_problems((*found, *seen), flags)
+        seen = tuple(p for p, about in self._seen if meta and _same(_subject(project, p), about))
+        self.problems = merge_problems((*seen, *found), flags)
         self.fixes = {**flags, **self._bridges, **self._seen_fixes}
         self.misfits = {
             p.action: f"{tr_phrase(p.message)}. {tr_phrase(p.remedy)}"
@@ -121,6 +122,13 @@ class ProblemWatch(QObject):
         self.changed.emit()
 
 
-def _subject(project: Project, problem: Problem) -> object:
-    """Return what a problem is about: the action, else the stance, else the project's graphs."""
-    return project.action(problem.action or "") or project.stance(problem.stance) or project.graphs
+def _subject(project: Project, problem: Problem) -> tuple[object, ...]:
+    """Return what a problem is about: the action and its clip, else the stance, else the project's graphs."""
+    action = project.action(problem.action or "")
+    if action is not None:
+        return action, project.clips.get(action.clip)
+    return (project.stance(problem.stance) or project.graphs,)
+
+
+def _same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
+    return len(one) == len(other) and all(map(is_, one, other))

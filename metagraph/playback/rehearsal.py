@@ -7,7 +7,7 @@ of it is measured on the poses that are drawn, and compared with what the clips 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +20,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.requests import Play
 from metagraph.motion.in_place import travel_of
+from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
@@ -60,7 +61,7 @@ _NAMES = {
 @dataclass(frozen=True, eq=False)
 class PlayedPoses:
     """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
-    `[F]`: how high the lowest joint is. inside `[F]`: how deep an arm is within the body, metres.
+    `[F]`: how high the lowest joint of the body is. inside `[F]`: how deep an arm is within the body, metres.
     """
 
     times: Array
@@ -155,6 +156,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     roles = anatomy.project_roles(project)
     parts = tuple(part for part in PARTS if part in roles)
     joints = [roles[part] for part in parts]
+    body = body_joints(skeleton, roles)
     contacts = rigs_of(project).contacts
     evaluator = Evaluator(plan, project)
     times = np.arange(round(seconds * RATE)) / RATE
@@ -163,7 +165,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         pose = evaluator.at(some)
         _, at = skeleton.globals(pose)
         places.append(at[:, joints].astype(np.float64))
-        lowest.append(at[..., 1].min(1))
+        lowest.append(at[:, body, 1].min(1))
         inside.append(
             contact_depths(contacts, pose).max(-1, initial=0.0)
             if contacts is not None
@@ -172,6 +174,15 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         if step():
             return None
     return PlayedPoses(times, parts, *(np.concatenate(rows) for rows in (places, lowest, inside)))
+
+
+def body_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> list[int]:
+    """Return the joints of the body itself, with what its feet end in; without control joints, props and
+    clothes, which may be anywhere. All joints where no roles are known.
+    """
+    feet = [roles[foot] for foot in ("left_foot", "right_foot") if foot in roles]
+    ends = {joint for foot in feet for joint in skeleton.descendants(foot)}
+    return sorted(ends.union(roles.values())) or list(range(len(skeleton)))
 
 
 def _own_limits(project: Project) -> tuple[Array, Array]:
@@ -397,7 +408,7 @@ class _Findings:
             return
         frame = int(np.argmax(self.seen.inside))
         words = phrase(
-            "an arm is {length:.0f} cm inside the body, and inside it for {share:.0%} of the time",
+            "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0%} of all that was played",
             length=100 * float(self.seen.inside[frame]),
             share=float(over.mean()),
         )

@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.playback.rehearsal import LEAST_MINUTES, rehearse
+from metagraph.playback.rehearsal import LEAST_MINUTES, body_joints, rehearse
 
 SECONDS = 40.0
 
@@ -75,6 +75,35 @@ def test_a_figure_above_or_under_the_floor_is_an_error_with_its_moment(sound: Pr
         found = [p for p in rehearse(changed(sound, lifted(metres)), SECONDS) if p.code == code]
         assert found and found[0].severity == "error" and "100%" in found[0].message
         assert found[0].moment is not None and 0 <= found[0].moment < SECONDS
+
+
+def test_a_control_joint_under_the_floor_is_no_part_of_the_figure(toy: Any) -> None:
+    from metagraph.motion.roles import find_roles
+    from metagraph.motion.skeleton import Skeleton
+
+    bones = toy.skeleton
+    control = Skeleton(
+        (*bones.names, "elbowIK"),
+        np.append(bones.parents, 0),
+        np.vstack([bones.rest_rotations, [0, 0, 0, 1]]),
+        np.vstack([bones.rest_translations, [0, -5.0, 0]]),
+    )
+    body = body_joints(control, find_roles(control))
+    assert len(bones) not in body and set(find_roles(control).values()) <= set(body)
+    assert body_joints(bones, {}) == list(range(len(bones)))
+
+
+def test_what_a_clip_in_place_still_does_gets_another_advice(sound: Project, toy: Any) -> None:
+    project = changed(sound, travelling(2.0), "rest to up")
+    clip = next(a.clip for a in project.actions() if a.name == "rest to up")
+    held = replace(project, clips={**project.clips, clip: replace(project.clips[clip], in_place=True)})
+    found = [
+        p
+        for p in rehearse(held, SECONDS)
+        if p.code in ("play-slide", "play-sway") and "rest to up" in p.message
+    ]
+    assert found and {p.code for p in found} == {"play-sway"}
+    assert all("Keep" not in p.remedy for p in found)
 
 
 def test_a_transition_that_travels_slides_back_and_is_named(sound: Project, toy: Any) -> None:

@@ -212,6 +212,7 @@ class ProblemsPanel(QWidget):
         )
         if state == self._shown:
             return
+        fresh = self.problems[:1] != tuple(problems)[:1]
         self.problems, self.fixes, self._shown = tuple(problems), fixes, state
         self.tree.clear()
         colors = {"error": look.error, "warning": look.warning, "hint": look.dim}
@@ -232,6 +233,8 @@ class ProblemsPanel(QWidget):
             item.setData(0, ROLE, problem)
             self.tree.addTopLevelItem(item)
         self._share_out()
+        if fresh:
+            self.tree.scrollToTop()
         self.none.setText(
             tr("No problems. Every state can be reached and left.")
             if self.session.onstage.mode == "manual"

@@ -17,6 +17,7 @@ from app.stage.compatibility_state import describe_jumps, judge_jumps, merge_pro
 from app.stage.fixes import Fix, fix_clips, fix_unreachable
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
+from metagraph.graph.editing.retiming import keep_clips_in_place
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
@@ -306,6 +307,7 @@ def test_play_and_check_lists_what_is_seen_and_a_click_opens_that_moment(toys, t
     drive.wait(panel.play.isEnabled, 60)
     (seen,) = [p for p in panel.problems if p.code == "play-in-air"]
     assert seen.severity == "error" and seen.moment is not None
+    assert panel.problems[0].code.startswith("play-"), "what was seen is on top"
     transport = drive.session.transport
     transport.show_clip(next(iter(drive.document.project.clips)))
     item = panel.tree.topLevelItem([p.code for p in panel.problems].index("play-in-air"))
@@ -314,5 +316,12 @@ def test_play_and_check_lists_what_is_seen_and_a_click_opens_that_moment(toys, t
     QTest.mouseClick(panel.tree.viewport(), Qt.MouseButton.LeftButton, pos=spot)
     assert transport.show == "plan" and not transport.playing
     assert transport.seconds == pytest.approx(max(0.0, seen.moment - 1.0))
-    drive.document.edit("rename", lambda p: edits.update_actions(p, [seen.action], name="another"))
-    drive.wait(lambda: "play-in-air" not in {p.code for p in panel.problems})
+    clip = drive.document.project.action(seen.action).clip
+    for edit in (
+        lambda p: edits.update_actions(p, [seen.action], name="another"),
+        lambda p: keep_clips_in_place(p, [clip]),
+    ):
+        drive.document.edit("change what it is about", edit)
+        drive.wait(lambda: "play-in-air" not in {p.code for p in panel.problems})
+        drive.document.undo()
+        drive.wait(lambda: "play-in-air" in {p.code for p in panel.problems})
