@@ -401,6 +401,13 @@ class _ActionCheck:
                         stroke=seconds,
                         start=timing.start,
                         end=end,
+                    )
+                    if seconds == timing.stroke
+                    else phrase(
+                        "has a phase of its stroke at {seconds:.2f} s, but plays {start:.2f} to {end:.2f} s",
+                        seconds=seconds,
+                        start=timing.start,
+                        end=end,
                     ),
                     phrase("Move the stroke inside, or clear it."),
                 )
@@ -409,7 +416,7 @@ class _ActionCheck:
     def travel(self) -> Iterator[Problem]:
         """Yield a problem if its hips end elsewhere over the ground, so that the character slides back."""
         motion = end_gaps.motion_of(self.project, self.action)
-        if motion is None or self.project.skeleton is None or motion.frames < 2:
+        if motion is None or self.project.skeleton is None or self.graph.weight("legs") <= 0:
             return
         hips = anatomy.project_roles(self.project).get("hips", 0)
         start, end = self.project.span(self.action)

@@ -5,7 +5,9 @@ so that it ends where it began. What they do in between stays.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +32,7 @@ def keep_in_place(clip: Clip) -> Clip:
     turns, places = clip.skeleton.globals(ends)
     way = places[1, hips] - places[0, hips]
     way[1] = 0.0
-    turn = _heading(turns[1, hips]) - _heading(turns[0, hips])
-    turn = float((turn + np.pi) % (2 * np.pi) - np.pi)
+    turn = _heading(rotation.multiply(turns[1, hips], rotation.conjugate(turns[0, hips])))
     turn = turn if abs(turn) > TURNED else 0.0
     if not way.any() and not turn:
         return clip
@@ -58,11 +59,19 @@ def keep_in_place(clip: Clip) -> Clip:
 
 def travel_of(clip: Clip, hips: int, start: float, end: float) -> float:
     """Return how far the hips are over the ground from where they were, metres, between two seconds."""
+    return _travel(ref(clip), hips, start, end)
+
+
+@lru_cache(4096)
+def _travel(of: ref[Clip], hips: int, start: float, end: float) -> float:
+    clip = of()
+    assert clip is not None
     _, places = clip.skeleton.globals(clip.pose_at(np.clip([start, end], 0.0, clip.duration)))
     way = places[1, hips] - places[0, hips]
     return float(np.hypot(way[0], way[2]))
 
 
 def _heading(turn: Array) -> float:
-    """Return the angle about the vertical axis of a rotation, radians."""
-    return float(2 * np.arctan2(turn[1], turn[3]))
+    """Return the angle about the vertical axis of a rotation, -pi to pi."""
+    angle = 2 * np.arctan2(turn[1], turn[3])
+    return float((angle + np.pi) % (2 * np.pi) - np.pi)

@@ -408,7 +408,8 @@ class _Findings:
             return
         frame = int(np.argmax(self.seen.inside))
         words = phrase(
-            "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0%} of all that was played",
+            "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0%} of all that was "
+            "played",
             length=100 * float(self.seen.inside[frame]),
             share=float(over.mean()),
         )

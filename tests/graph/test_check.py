@@ -10,10 +10,12 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
+from metagraph.graph.editing import retiming
 from metagraph.graph.model import BasePose, Project
 from metagraph.graph.problem import Problem
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.skeleton import Skeleton
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
@@ -372,6 +374,29 @@ def test_what_travels_is_reported_and_keeping_it_in_place_helps(
         assert after.clips[clip].in_place and after.clips[clip].source is project.clips[clip].motion
 
 
+def test_travel_counts_on_layers_that_move_the_legs_and_by_the_figure_s_height(toy: Any) -> None:
+    from tests.motion.test_in_place import going
+
+    def travels(layer: str, metres: float, size: float = 1.0) -> bool:
+        project = toy.project(layer)
+        bones = project.skeleton
+        bones = Skeleton(bones.names, bones.parents, bones.rest_rotations, bones.rest_translations * size)
+        clips = {
+            i: replace(
+                e,
+                motion=going(
+                    replace(e.motion, skeleton=bones, translations=e.motion.translations * size), metres, 0
+                ),
+            )
+            for i, e in project.clips.items()
+        }
+        project = replace(project, skeleton=bones, clips=clips)
+        return "travels" in {p.code for p in check_project(project)}
+
+    assert travels("body", 3.0) and not travels("arms", 3.0) and not travels("head", 3.0)
+    assert travels("body", 0.3, 0.2) and not travels("body", 0.3, 5.0)
+
+
 @pytest.mark.parametrize(("seconds", "reported"), [(2.4, True), (0.6, True), (1.2, False)])
 def test_a_file_that_is_longer_or_shorter_since_is_reported_and_times_can_be_scaled_or_kept(
     toy: Any, seconds: float, reported: bool
@@ -397,6 +422,24 @@ def test_a_file_that_is_longer_or_shorter_since_is_reported_and_times_can_be_sca
         assert kept.action(wave) is again.action(wave) and not kept.clips[entry.id].timed_on
 
 
+def test_base_pose_and_contacts_are_scaled_too_and_a_speed_keeps_what_was_timed(toy: Any) -> None:
+    project = toy.project()
+    wave = toy.id(project, "rest wave rt")  # 1.2 s
+    entry = project.clips[project.action(wave).clip]
+    span = ContactSpan("left", "palm", "Spine", 0.3, 0.6, (ContactKey(0.3, (0, 0, 0), (0, 0, 0, 1)),))
+    project = edits.update_actions(project, [wave], timing={"stroke": 0.5}, contacts=(span,))
+    project = replace(project, base=BasePose(entry.id, 18))
+    again = edits.add_clips(project, [(entry.path, entry.take, "old", entry.motion)])
+    again = edits.add_clips(again, [(entry.path, entry.take, "new", toy.clip(entry.name, 2.4))])
+    scaled = retiming.scale_times(again, entry.id)
+    assert scaled.base.frame == 36
+    (moved,) = scaled.action(wave).contacts
+    assert (moved.start, moved.end, moved.keys[0].time) == pytest.approx((0.6, 1.2, 0.6), abs=2e-3)
+    fast = retiming.set_speed(again, entry.id, 2.0)
+    assert fast.clips[entry.id].timed_on == pytest.approx(0.6, abs=0.02)
+    assert retiming.scale_times(fast, entry.id).action(wave).timing.stroke == pytest.approx(0.5, abs=0.02)
+
+
 def test_a_stroke_that_does_not_play_is_an_error_and_can_be_cleared(toy: Any) -> None:
     from app.stage.fixes import fix_clips
 
@@ -404,7 +447,11 @@ def test_a_stroke_that_does_not_play_is_an_error_and_can_be_cleared(toy: Any) ->
     wave = toy.id(project, "rest wave rt")
     project = edits.update_actions(project, [wave], timing={"end": 0.8, "stroke": 1.0})
     (problem,) = [p for p in check_project(project) if p.code == "moment"]
-    assert problem.severity == "error" and problem.action == wave
+    assert problem.severity == "error" and problem.action == wave and "its stroke" in problem.message
+    for phase in ("ready", "stroke_end", "relax"):
+        late = edits.update_actions(toy.project(), [wave], timing={"end": 0.8, phase: 1.0})
+        (other,) = [p for p in check_project(late) if p.code == "moment"]
+        assert "a phase of its stroke at 1.00 s" in other.message
     (fix,) = fix_clips(project, [problem]).values()
     assert fix(project).action(wave).timing.stroke is None
     assert not [p for p in check_project(fix(project)) if p.code == "moment"]

@@ -50,6 +50,15 @@ def test_it_ends_where_it_began_whichever_way_it_went_and_turned(
     assert rotation.angle_between(turns[0, :1], turns[1, :1]).max() < 0.01
 
 
+def test_hips_that_rest_lying_turn_as_far_as_they_turn(toy: Any) -> None:
+    clip = toy.clip("lie", 2.0)
+    over = rotation.from_axis_angle(np.array([1.0, 0.0, 0.0]), np.radians(np.linspace(178, 183, clip.frames)))
+    turned = clip.rotations.astype(float).copy()
+    turned[:, 0] = rotation.multiply(over, turned[:, 0])
+    lying = replace(clip, rotations=turned.astype(np.float32))
+    assert rotation.angle_between(keep_in_place(lying).rotations[-1], lying.rotations[-1]).max() < 0.01
+
+
 def test_what_is_not_the_way_stays(toy: Any) -> None:
     clip = toy.clip("sway", 2.0)
     kept = keep_in_place(going(clip, 2.0, 0.0))

@@ -37,7 +37,9 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 Array = NDArray[Any]
 
 _LONGEST_HEADER = 16 * MIB
-_SLOWEST = 4.0  # seconds that no frame lasts: what says so is milliseconds
+_SLOWEST = 4.0  # seconds, from which on a frame time is taken for milliseconds
+_NUMBERS = re.compile(rb"(?im)^[ \t]*(?:OFFSET|Frame Time:|[-+\d])[^\r\n]*")  # lines that have numbers
+_COMMA = re.compile(rb"(?<=\d),(?=\d)")
 _DAMAGED = phrase("The file is damaged: export it again.")
 _TO_Y_UP = rotation.from_axis_angle([1, 0, 0], -np.pi / 2)
 
@@ -73,8 +75,9 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
         )
     notes: list[str] = []
     if b"," in data and not re.search(rb"\d\.\d", data):
-        data = re.sub(rb"(?<=\d),(?=\d)", b".", data)
-        notes.append(phrase("its decimal commas were read as points"))
+        before, data = data, _NUMBERS.sub(lambda row: _COMMA.sub(b".", row[0]), data)
+        if data != before:
+            notes.append(phrase("its decimal commas were read as points"))
     motion = re.search(rb"(?im)^[ \t]*MOTION[ \t]*\r?$", data)
     if motion is None:
         raise FileError(
@@ -259,8 +262,9 @@ def _motion(
     digits, repairs = head[2].decode("ascii", "replace"), []
     if _SLOWEST <= step <= 1000 * _SLOWEST:
         words = f"its frame time of {step:g} is milliseconds: {1000 / step:.4g} frames a second"
-        repairs.append(Repair(FRAME_TIME, words, FRAME_TIME not in as_is))
-        if FRAME_TIME not in as_is:
+        milliseconds = FRAME_TIME not in as_is or step > FRAME_SECONDS[1]
+        repairs.append(Repair(FRAME_TIME, words, milliseconds))
+        if milliseconds:
             step, digits = step / 1000, "0.000" + digits.partition(".")[2]
     if not FRAME_SECONDS[0] <= step <= FRAME_SECONDS[1]:
         raise FileError(

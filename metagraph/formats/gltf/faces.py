@@ -16,10 +16,12 @@ SAME = 0.05  # seconds by which a body's and its face's animation may differ in 
 
 
 def join_faces(clips: Sequence[Clip], faces: Sequence[bool]) -> list[Clip]:
-    """Return the takes of a file, those that only have a face joined to the body's take that they belong to:
-    the only one as long that has no face, or of as many of each the one in the same place. `faces` tells
-    which takes only have a face. A joined take has a note. The face's own take stays in its place, so that
-    numbers of takes in projects stay right, and names its body in `face_of`; importing leaves it out.
+    """Return the takes of a file, those that only have a face joined to the body's take that they belong to.
+    That is the only body as long as the face. Of several, it is the one whose name is in the face's name, or
+    else the one at the same place, if there are as many faces. `faces` tells which takes only have a face.
+
+    A joined take has a note. The face's own take stays in its place, so that numbers of takes in projects
+    stay right, and names its body in `face_of`; importing leaves it out.
     """
     bodies = [n for n, clip in enumerate(clips) if not faces[n] and not clip.morphs]
     owners: dict[int, int] = {}
@@ -27,12 +29,21 @@ def join_faces(clips: Sequence[Clip], faces: Sequence[bool]) -> list[Clip]:
         some = [n for n, face in enumerate(faces) if face and _as_long(clips[n], length)]
         fitting = [n for n in bodies if _as_long(clips[n], length)]
         if len(some) == len(fitting):
-            owners |= dict(zip(fitting, some, strict=True))
+            owners |= _by_name(clips, fitting, some) or dict(zip(fitting, some, strict=True))
     out = list(clips)
     for body, face in owners.items():
         out[body] = _joined(clips[body], clips[face])
         out[face] = replace(clips[face], face_of=clips[body].name)
     return out
+
+
+def _by_name(clips: Sequence[Clip], bodies: Sequence[int], faces: Sequence[int]) -> dict[int, int]:
+    """Return each body with the face whose name has its own; nothing unless each has exactly one."""
+    found = {
+        body: [f for f in faces if clips[body].name.casefold() in clips[f].name.casefold()] for body in bodies
+    }
+    sure = {body: some[0] for body, some in found.items() if len(some) == 1}
+    return sure if len(set(sure.values())) == len(bodies) else {}
 
 
 def _as_long(clip: Clip, length: int) -> bool:

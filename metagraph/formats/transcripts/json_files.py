@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -20,6 +21,7 @@ _REMEDY = phrase(
     "requested; IBM writes 'results' with 'timestamps'."
 )
 _SLOWEST = 3.0  # seconds a letter: the slowest speech has a fifth of that, a word in milliseconds 20 or more
+_FASTEST = 0.015  # seconds a letter: hurried speech has twice that
 
 
 def read_json(path: Path, text: str) -> Transcript:
@@ -137,7 +139,7 @@ def _time(out: Collected, value: Any, where: str) -> float | None:
 
 def _in_milliseconds(data: Any) -> bool:
     """Return whether every time of a text is a whole number, and half of the texts would last over
-    `_SLOWEST` seconds a letter if these were seconds.
+    `_SLOWEST` seconds a letter if these were seconds, and no less than `_FASTEST` if they are milliseconds.
     """
     lengths = []
     for start, end, text in _timed_texts(data):
@@ -146,7 +148,7 @@ def _in_milliseconds(data: Any) -> bool:
         letters = sum(c.isalnum() for c in text)
         if letters:
             lengths.append((end - start) / letters)
-    return bool(lengths) and median(lengths) > _SLOWEST
+    return bool(lengths) and median(lengths) > max(_SLOWEST, 1000 * _FASTEST)
 
 
 def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
@@ -158,10 +160,18 @@ def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
             waiting.extend(value)
         elif isinstance(value, dict):
             waiting.extend(value.values())
-            start, end = value.get("start"), value.get("end")
+            start, end = (_number(value.get(key)) for key in ("start", "end"))
             text = _text(value.get("word", value.get("text", value.get("punctuated_word"))))
-            if isinstance(start, int | float) and isinstance(end, int | float) and start + end < 1e15:
+            if start is not None and end is not None and abs(start) + abs(end) < 1e15:
                 yield start, end, text
+
+
+def _number(value: Any) -> float | None:
+    """Return a number, also one that is written as text."""
+    if isinstance(value, int | float | str) and not isinstance(value, bool):
+        with suppress(ValueError, OverflowError):
+            return float(value)
+    return None
 
 
 def _text(value: Any) -> str:

@@ -13,7 +13,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.clip_source import course_of, source_of, with_source
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual.machine import Manual
-from metagraph.graph.model import Action, BasePose, Project, Timing
+from metagraph.graph.model import Action, BasePose, ClipEntry, Project, Timing
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_hold import Contact, find_nearest_joint
 from metagraph.motion.contact_spans import ContactSpan
@@ -48,12 +48,22 @@ def set_retime(project: Project, clip: str, retime: Retime) -> Project:
     after = with_source(replace(entry, retime=retime.kept(source.duration)), source)
     if after.retime == entry.retime:
         return project
+    if entry.timed_on:
+        after = replace(after, timed_on=entry.timed_on * after.duration / entry.duration)
     course = course_of(after)
     assert course is not None
 
     def moved(seconds: float | None, late: bool = False) -> float | None:
         return None if seconds is None else round(before.along(seconds, course, late), 3)
 
+    return _move_times(project, after, moved)
+
+
+def _move_times(project: Project, after: ClipEntry, moved: Callable[..., float | None]) -> Project:
+    """Return the project with a clip as it is now, and all that names moments of it moved: its actions, the
+    states and links of machines that were drawn, the base pose.
+    """
+    clip, before = after.id, project.clips[after.id]
     out = replace(project, clips={**project.clips, clip: after})
     for graph in project.graphs.values():
         changes: dict[str, Action | None] = {
@@ -65,7 +75,7 @@ def set_retime(project: Project, clip: str, retime: Retime) -> Project:
     manual = {layer: _manual(machine, clip, moved) for layer, machine in project.manual.items()}
     base = project.base
     if base.clip == clip:
-        frame = round((moved(base.frame / entry.fps) or 0.0) * after.fps)
+        frame = round((moved(base.frame / before.fps) or 0.0) * after.fps)
         base = BasePose(clip, min(frame, after.frames - 1))
     return replace(out, manual=manual, base=base)
 
@@ -92,8 +102,8 @@ def keep_clips_in_place(project: Project, clips: Iterable[str], on: bool = True)
 
 
 def scale_times(project: Project, clip: str) -> Project:
-    """Return the project with the actions of a clip whose file has another length since they were timed
-    scaled to it: all moments by as much as it is longer or shorter. Raises EditError where the clip is gone.
+    """Return the project with all moments of a clip whose file has another length since they were timed
+    scaled to it, by as much as it is longer or shorter. Raises EditError where the clip is gone.
     """
     entry = project.clips.get(clip)
     if entry is None:
@@ -105,15 +115,7 @@ def scale_times(project: Project, clip: str) -> Project:
     def moved(seconds: float | None, late: bool = False) -> float | None:
         return None if seconds is None else round(min(seconds * part, entry.duration), 3)
 
-    out = keep_times(project, clip)
-    for graph in project.graphs.values():
-        changes: dict[str, Action | None] = {
-            a.id: replace(a, timing=_timing(a.timing, moved), contacts=_contacts(a.contacts, moved))
-            for a in graph.uses.get(clip, ())
-        }
-        if changes:
-            out = out.with_graph(graph.with_actions(changes))
-    return out
+    return _move_times(project, replace(entry, timed_on=0.0), moved)
 
 
 def keep_times(project: Project, clip: str) -> Project:

@@ -51,7 +51,7 @@ T = TypeVar("T")
 NEVER: Final = frozenset(
     ("walk", "walking", "run", "running", "jog", "jogging", "sprint", "sprinting", "strafe", "jump", "climb")
     + ("climbing", "swim", "swimming", "crawl", "crawling", "fly", "flying", "fall", "falling", "float")
-    + ("floating", "hang", "hanging", "death", "die", "dying", "dead", "t pose", "a pose", "tpose", "apose")
+    + ("floating", "hanging", "death", "die", "dying", "dead", "t pose", "a pose", "tpose", "apose")
     + ("bind pose", "locomotion", "side step", "sidestep")
 )
 EXPLICIT: Final = 0.98  # how often a word for what is done, after its stance, says the kind rightly

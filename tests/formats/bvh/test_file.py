@@ -105,6 +105,8 @@ def test_decimal_commas_are_points_and_commas_in_names_stay(path: Path) -> None:
     np.testing.assert_allclose(clip.translations[0, 0], [0.005, 0.9025, 0], atol=1e-6)
     assert clip.fps == 30 and clip.skeleton.names[1] == "Spine, upper"
     assert any("commas" in note for note in clip.notes)
+    whole = read(path, figure(rows="0 90 0 0 0 0  10 0 0\n" * 2, time="1").replace("Spine", "Spine,1"))
+    assert whole.skeleton.names[1] == "Spine,1" and not any("commas" in note for note in whole.notes)
 
 
 def walker(root: str, offset: float) -> str:

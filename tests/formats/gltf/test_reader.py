@@ -439,6 +439,24 @@ def test_the_face_of_a_take_that_is_an_animation_of_its_own_is_joined_to_it(tmp_
     np.testing.assert_allclose(talk.weights[[0, 15, 30]], [[0, 1], [0.5, 0.5], [1, 0]], atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("names", "owners"),
+    [
+        (("talk", "wave", "wave_face", "talk_face"), {"talk_face": "talk", "wave_face": "wave"}),
+        (("talk", "wave", "one", "two"), {"one": "talk", "two": "wave"}),
+    ],
+)
+def test_of_as_many_faces_as_takes_each_goes_by_its_name_or_else_its_place(
+    tmp_path: Path, names: tuple[str, ...], owners: dict[str, str]
+) -> None:
+    scene = smiling()
+    scene.json["animations"] = []
+    for name in names:
+        take(scene, name, 1.0, name in ("talk", "wave"), name not in ("talk", "wave"))
+    found = read_gltf_clips(scene.glb(tmp_path / "file.glb"))
+    assert {clip.name: clip.face_of for clip in found if clip.face_of} == owners
+
+
 def test_of_several_takes_as_long_as_a_face_none_is_given_it(tmp_path: Path) -> None:
     scene = smiling()
     scene.json["animations"] = []

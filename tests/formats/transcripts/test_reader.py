@@ -330,9 +330,11 @@ def test_words_alone_are_read(read: Reader, key: str | None) -> None:
 def test_whole_milliseconds_are_told_from_seconds_by_how_long_words_would_last(read: Reader) -> None:
     words = [("so", 0, 380), ("today", 500, 880), ("we", 2_400_000, 2_400_300)]
     data = {"words": [{"text": w, "start": a, "end": b} for w, a, b in words]}
-    found = read(json.dumps(data))
-    assert rows(found) == {"": [("so", 0, 0.38), ("today", 0.5, 0.88), ("we", 2400, 2400.3)]}
-    assert any("milliseconds" in note for note in found.notes)
+    texts = [{**word, "start": str(word["start"]), "end": str(word["end"])} for word in data["words"]]
+    for some in (data, {"words": texts}):
+        found = read(json.dumps(some))
+        assert rows(found) == {"": [("so", 0, 0.38), ("today", 0.5, 0.88), ("we", 2400, 2400.3)]}
+        assert any("milliseconds" in note for note in found.notes)
 
 
 @pytest.mark.parametrize(
@@ -341,6 +343,7 @@ def test_whole_milliseconds_are_told_from_seconds_by_how_long_words_would_last(r
         [("so", 1, 2), ("today", 2, 3), ("we", 40, 45)],  # one word that goes on, in whole seconds
         [("so", 0.5, 380), ("today", 500, 880)],  # no whole number
         [("now", 5, 5), ("then", 6, 6)],
+        [("Thanks", 0.0, 30.0)],  # one word in a window of 30 s, in milliseconds impossibly short
     ],
 )
 def test_whole_seconds_stay_seconds(read: Reader, words: list[tuple[str, float, float]]) -> None:
