@@ -116,7 +116,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from metagraph.graph.check import check_project, grave
     from metagraph.playback.rehearsal import rehearse
     from metagraph.suggest.flags import needs_look
-    from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges
+    from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges, describe_unbridged
     from metagraph.suggest.left_aside import reasons
     from metagraph.suggest.propose import SOURCES, accept, propose
 
@@ -154,6 +154,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     errors = [p.message for p in grave(check_project(taken.project))]
     seen = rehearse(taken.project, options.play) if options.play > 0 and changed else []
     faults = [p.message for p in seen if p.severity == "error"]
+    gaps = [] if options.no_bridges else describe_unbridged(taken.project)
     seconds = time.perf_counter() - began
     for note in count_alike(notes):
         print(f"note: {note}", file=sys.stderr)
@@ -162,6 +163,8 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
             print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
     for line in describe_bridges(taken.project, bridges):
         print(f"bridged: {line}", file=sys.stderr)
+    for line in gaps:
+        print(f"no bridge: {line}", file=sys.stderr)
     for why, clips in reasons(found.aside):
         print(f"aside: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for clip, why in taken.left.items():
@@ -184,6 +187,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
             s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None
         },
         "bridged": describe_bridges(taken.project, bridges),
+        "no bridge": gaps,
         "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
         "errors": errors,

@@ -14,7 +14,12 @@ from app.project.learned import Learned
 from app.translation import tr, tr_error
 from metagraph.graph.model import Kind, Project
 from metagraph.suggest.accept import AcceptedProposals
-from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges, find_missing_bridges
+from metagraph.suggest.jumps.bridges import (
+    bridge_all,
+    describe_bridges,
+    describe_unbridged,
+    find_missing_bridges,
+)
 from metagraph.suggest.left_aside import reasons, take_up_skipped
 from metagraph.suggest.proposal import Proposal, Proposals
 from metagraph.suggest.propose import propose, waiting
@@ -194,7 +199,7 @@ class Reviewing(QObject):
         if made:
             self._steps.append(None)
             self.document.edit(tr("Bridge by blending"), lambda p: bridge_all(p)[0])
-        return tuple(describe_bridges(after, made))
+        return (*describe_bridges(after, made), *describe_unbridged(after))
 
     def _learn(self, clips: list[str]) -> None:
         """Remember what was corrected of clips that are now placed, and look at the rest anew."""

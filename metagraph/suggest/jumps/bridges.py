@@ -2,19 +2,22 @@
 
 A set of takes often lacks a transition. Without it a stance is never reached and all its gestures never play.
 A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; where
-that is a single pose, the loop of the stance it leaves, and takes long to blend out of it.
+that is too short, the loop of the stance it leaves, and takes long to blend out of it. No bridge is made
+where the body would slide or turn on the spot, or where both loops are too short for the distance.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from math import atan2, degrees
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph import edits
+from metagraph.common.wording import Phrase, phrase
+from metagraph.graph import anatomy, edits
 from metagraph.graph.checks.end_gaps import TALL, motion_of
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
@@ -24,7 +27,10 @@ Array = NDArray[Any]
 # Of a figure TALL metres high:
 SPEED = 0.6  # metres a second that the farthest joint goes on a bridge, on average: an unhurried movement
 NOTICED = 0.3  # metres that a joint goes on a bridge, from which on a clip would look better
-SHORTEST, LONGEST = 0.6, 1.6  # seconds of a bridge
+SHORTEST, LONGEST = 0.6, 3.0  # seconds of a bridge
+HASTY = 2.0  # metres a second, on average, above which a movement looks thrown
+AWAY = 0.3  # metres over the floor that a body may slide on a bridge
+TURNED = 45.0  # degrees that it may turn on one
 FADE = 0.25  # of a bridge, that it takes to blend into or out of the loop that it is of
 CAREFUL = 0.9  # seconds of a bridge by a moment of a clip that moves before and after it, at least
 STILL = 0.2  # seconds, below which a clip is too short to be blended over
@@ -45,8 +51,8 @@ class Bridge:
 
 def bridge_all(project: Project) -> tuple[Project, tuple[Bridge, ...]]:
     """Return the project with transitions by blending to stances its start does not lead to, and back from
-    those that do not lead to it; and what was made. Stances without a loop are left as they are, and so
-    are those between which there are but single poses.
+    those that do not lead to it; and what was made. Stances without a loop are left as they are, and those
+    that `describe_unbridged` names.
     """
     out: list[Bridge] = []
     for layer in LAYERS:
@@ -118,6 +124,25 @@ def describe_bridges(project: Project, bridges: Iterable[Bridge]) -> list[str]:
     ]
 
 
+def describe_unbridged(project: Project) -> list[str]:
+    """Return a line for each stance that no bridge can join to the start of its layer, with the reason."""
+    out = []
+    for layer in LAYERS:
+        graph = project.graphs[layer]
+        poses = _poses(project, graph)
+        if graph.start not in poses:
+            continue
+        home = [s for s in poses if _joined(project, layer, s)]
+        for stance in (s for s in poses if s not in home):
+            lost = poses[stance]
+            nearest = min((poses[s] for s in home), key=lambda one: _metres(one, lost))
+            why = _refusal(project, nearest, lost)
+            if why is not None:
+                name = graph.stances[stance].name
+                out.append(phrase('"{name}" is not joined to the others: {why}', name=name, why=why))
+    return out
+
+
 def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -> tuple[list[str], list[str]]:
     """Return the stances that the start leads to, or that lead to it, and those of which that is not so."""
     if there:
@@ -128,21 +153,35 @@ def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -
 
 
 def _nearest(
-    project: Project, poses: Mapping[str, Array], home: Iterable[str], lost: Collection[str], there: bool
+    project: Project, poses: Mapping[str, _Rest], home: Iterable[str], lost: Collection[str], there: bool
 ) -> tuple[Project, Bridge | None]:
     """Bridge the shortest way between stances at home and lost ones: there, or back; None where none can."""
-    moving = {s for s in poses if _length(project, s) >= STILL}
-    ways = [(_metres(poses[a], poses[b]), a, b) for a in home for b in lost if a in moving or b in moving]
-    if not ways:
-        return project, None
-    metres, one, other = min(ways)
-    return _bridge(project, *((one, other) if there else (other, one)), metres)
+    ways = [(_metres(poses[a], poses[b]), *((a, b) if there else (b, a))) for a in home for b in lost]
+    for metres, start, end in sorted(ways):
+        if _refusal(project, poses[start], poses[end]) is None:
+            return _bridge(project, poses, start, end, metres)
+    return project, None
 
 
-def _length(project: Project, stance: str) -> float:
-    found = project.stance(stance)
-    loop = _loop(project, project.graphs[found.layer], stance) if found is not None else None
-    return project.clips[loop.clip].duration if loop is not None else 0.0
+def _refusal(project: Project, one: _Rest, other: _Rest) -> Phrase | None:
+    """Return why a bridge between two rests would look wrong, None if it would not."""
+    size, metres = _size(project), _metres(one, other)
+    away = float(np.linalg.norm(one.hips - other.hips)) if one.on_legs else 0.0
+    turned = abs((one.heading - other.heading + 180) % 360 - 180) if one.on_legs else 0.0
+    room = max(one.room, other.room)
+    if room < STILL:
+        return phrase("both are single poses, which leave no time to blend")
+    if away > AWAY * size:
+        return phrase("the body would slide {length:.1f} m over the floor", length=away)
+    if turned > TURNED:
+        return phrase("the body would turn by {angle:.0f} degrees on the spot", angle=turned)
+    if metres > HASTY * size * room:
+        return phrase(
+            "both loops are too short: {length:.0f} cm in {seconds:.1f} s look thrown",
+            length=100 * metres,
+            seconds=room,
+        )
+    return None
 
 
 def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
@@ -150,37 +189,61 @@ def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
     return next((a for a in graph.of(stance, "stance") if motion_of(project, a) is not None), None)
 
 
-def _poses(project: Project, graph: MetaGraph) -> dict[str, Array]:
-    """Return stance -> where the joints are `[J, 3]` as its loop begins, metres from the first of them; of
-    those that have a loop that is there.
+@dataclass(frozen=True, eq=False)
+class _Rest:
+    """The pose that a stance's loop begins in.
+
+    `places` `[J, 3]`, metres, from the first joint. `hips` `[2]`, metres, on the floor. `heading`: where the
+    hips face, degrees. `on_legs`: whether the layer moves the legs. `room`: seconds of the loop's clip.
     """
+
+    places: Array
+    hips: Array
+    heading: float
+    on_legs: bool
+    room: float
+
+
+def _poses(project: Project, graph: MetaGraph) -> dict[str, _Rest]:
+    """Return stance -> the pose of its loop; of those that have a loop that is there."""
     out = {}
+    roles = anatomy.project_roles(project)
     for stance in graph.stances:
         loop = _loop(project, graph, stance)
         motion = motion_of(project, loop)
         if loop is not None and motion is not None:
             _, places = motion.skeleton.globals(motion.pose_at(project.span(loop)[0]))
-            out[stance] = places - places[:1]
+            left, right = (places[roles.get(f"{side}_upper_leg", 0)] for side in ("left", "right"))
+            across = left - right
+            out[stance] = _Rest(
+                places - places[:1],
+                places[roles.get("hips", 0)][[0, 2]],
+                degrees(atan2(-across[2], across[0])),
+                graph.weight("legs") > 0,
+                motion.duration,
+            )
     return out
 
 
-def _metres(one: Array, other: Array) -> float:
-    return float(np.linalg.norm(one - other, axis=-1).max())
+def _metres(one: _Rest, other: _Rest) -> float:
+    return float(np.linalg.norm(one.places - other.places, axis=-1).max())
 
 
 def _size(project: Project) -> float:
     return max(project.skeleton.height / TALL, 1e-6) if project.skeleton is not None else 1.0
 
 
-def _bridge(project: Project, start: str, end: str, metres: float) -> tuple[Project, Bridge]:
+def _bridge(
+    project: Project, poses: Mapping[str, _Rest], start: str, end: str, metres: float
+) -> tuple[Project, Bridge]:
     stance = project.stance(end)
     assert stance is not None
     graph = project.graphs[stance.layer]
-    leaving = _length(project, end) < STILL
+    seconds, fade = float(np.clip(metres / (SPEED * _size(project)), SHORTEST, LONGEST)), FADE
+    leaving = poses[end].room < min(seconds, poses[start].room)
     loop = _loop(project, graph, start if leaving else end)
     assert loop is not None
     entry = project.clips[loop.clip]
-    seconds, fade = float(np.clip(metres / (SPEED * _size(project)), SHORTEST, LONGEST)), FADE
     begins, ends = project.span(loop)
     if ends - begins < min(seconds, entry.duration):  # the moment itself is where neither blend is
         seconds, fade = max(seconds * (1 - FADE) / 0.5, CAREFUL), 0.5

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,15 +14,19 @@ from hypothesis import strategies as st
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
 from metagraph.graph.expand import reachable
-from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
 from metagraph.suggest.accept import accept
 from metagraph.suggest.jumps.bridges import (
     CAREFUL,
+    HASTY,
     LONGEST,
     SHORTEST,
     bridge_all,
     bridge_stance,
     describe_bridges,
+    describe_unbridged,
     find_missing_bridges,
 )
 from metagraph.suggest.propose import propose
@@ -184,6 +188,82 @@ def test_a_single_pose_is_blended_into_out_of_the_loop_before_it() -> None:
     assert into is not None and after.clips[into.clip].duration > 1
     assert into.timing.blend_out > into.timing.blend_in > 0 and not trouble(after)
     assert all(x.seconds >= SHORTEST - 1e-9 for x in made)
+
+
+def two_poses(change: Callable[[Clip], Clip], seconds: float = 2.0, layer: Layer = "body") -> Project:
+    """A stance, and another whose clip is changed."""
+    clips = [TOY.clip("here", 2.0, 0.0, swing=0.02), change(TOY.clip("there", seconds, 0.4, swing=0.02))]
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    for name in ("here", "there"):
+        project = edits.add_stance(project, layer, name, [TOY.id(project, name)])
+    return project
+
+
+def moved(metres: float) -> Callable[[Clip], Clip]:
+    def move(clip: Clip) -> Clip:
+        translations = clip.translations.copy()
+        translations[:, clip.translated.index(0), 0] += metres
+        return replace(clip, translations=translations)
+
+    return move
+
+
+def faced(degrees: float) -> Callable[[Clip], Clip]:
+    def face(clip: Clip) -> Clip:
+        rotations = clip.rotations.copy()
+        turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.radians(degrees))
+        rotations[:, 0] = rotation.multiply(turn, rotations[:, 0])
+        return replace(clip, rotations=rotations.astype(np.float32))
+
+    return face
+
+
+def test_a_short_loop_is_blended_into_out_of_the_longer_loop_before_it() -> None:
+    project = two_poses(lambda clip: clip, seconds=0.4, layer="arms")
+    after, made = bridge_all(project)
+    there = next(x for x in made if x.end == TOY.id(project, "there"))
+    into = after.action(there.action)
+    assert into is not None and into.timing.blend_out > into.timing.blend_in
+    assert after.clips[into.clip].name == "here" and there.seconds > 0.5
+    assert len(made) == 2 and not describe_unbridged(after)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (moved(0.8), "slide 0.8 m over the floor"),
+        (faced(90.0), "turn by 90 degrees on the spot"),
+        (faced(-170.0), "turn by 170 degrees on the spot"),
+    ],
+)
+def test_no_bridge_slides_or_turns_the_body(change: Callable[[Clip], Clip], words: str) -> None:
+    project = two_poses(change)
+    assert bridge_all(project) == (project, ()) and find_missing_bridges(project) == []
+    (line,) = describe_unbridged(project)
+    assert line.startswith('"there" is not joined to the others') and words in line
+
+
+@pytest.mark.parametrize("change", [moved(0.1), faced(20.0)])
+def test_a_small_step_or_turn_is_bridged(change: Callable[[Clip], Clip]) -> None:
+    after, made = bridge_all(two_poses(change))
+    assert len(made) == 2 and describe_unbridged(after) == []
+
+
+def test_a_layer_that_leaves_the_legs_alone_is_bridged_wherever_the_clips_stand() -> None:
+    project = edits.set_weight(two_poses(moved(2.0), layer="arms"), "arms", "legs", 0.0)
+    assert len(bridge_all(project)[1]) == 2
+
+
+def test_no_bridge_throws_the_hands() -> None:
+    clips = [TOY.clip(name, 0.25, angle, swing=0.0) for name, angle in (("down", 0.0), ("up", 1.6))]
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    for clip in clips:
+        project = edits.add_stance(project, "arms", clip.name, [TOY.id(project, clip.name)])
+    assert bridge_all(project) == (project, ())
+    (line,) = describe_unbridged(project)
+    assert "both loops are too short" in line and "look thrown" in line
+    _, made = bridge_all(stances(3))
+    assert all(x.metres / x.seconds < HASTY for x in made)
 
 
 def test_between_single_poses_there_is_nothing_to_blend() -> None:
