@@ -4,20 +4,20 @@ what is carried in the hands by the dozen is hidden at first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from metagraph.common.files import is_text
 from metagraph.errors import FileError
-from metagraph.formats.gltf.reader import has_skinned_mesh, read_character
-from metagraph.graph.edits import hide_meshes, set_character
+from metagraph.formats.gltf.reader import has_skinned_mesh, read_character, read_vrm_roles
+from metagraph.graph.edits import hide_meshes, set_character, set_role
 from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import CharacterMesh, explain_no_character
-from metagraph.motion.roles import find_roles
+from metagraph.motion.roles import ROLES, find_roles
 from metagraph.motion.skeleton import Skeleton
 
 SUFFIXES = (".glb", ".gltf", ".vrm")
@@ -26,14 +26,16 @@ SAME = 0.8  # share of a skeleton's joints that a file without motion must name 
 
 @dataclass(frozen=True)
 class CharacterFile:
-    """path: as the project keeps it. morphs: its morph targets. hidden: meshes that are not drawn at first.
-    why_not: why its mesh is no character, in words that follow "its mesh"; None where it is one.
+    """`path`: as the project keeps it. `morphs`: its morph targets. `hidden`: meshes that are not drawn at
+    first. `why_not`: why its mesh is no character, in words that follow "its mesh"; None where it is one.
+    `roles`: role -> joint name, those that a VRM file states and names and shape do not tell.
     """
 
     path: str
     morphs: tuple[str, ...] = ()
     hidden: tuple[str, ...] = ()
     why_not: str | None = None
+    roles: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -47,19 +49,33 @@ class CharacterFile:
         )
 
     def into(self, project: Project) -> Project:
-        """The edit: `project` drawn with this character."""
-        return with_morphs(hide_meshes(set_character(project, self.path), self.hidden), self.morphs)
+        """Edit `project`: draw it with this character. Roles that a user has corrected are kept."""
+        project = with_morphs(hide_meshes(set_character(project, self.path), self.hidden), self.morphs)
+        joints = project.skeleton or ()
+        for role, joint in self.roles.items():
+            if role not in project.roles and joint in joints:
+                project = set_role(project, role, joint)
+        return project
 
 
 def look_at(name: str, folder: Path | None, skeleton: Skeleton | None) -> CharacterFile:
     """Read what a project of a skeleton has to know of a character's file. Raises FileError."""
     if not is_text(name):
         raise FileError(name, "has a name that is no text", "its name", "Rename it.")
-    return _described(name, read_character((folder or Path()) / name), skeleton)
+    path = (folder or Path()) / name
+    return _described(name, path, read_character(path), skeleton)
 
 
-def _described(name: str, body: CharacterMesh, skeleton: Skeleton | None) -> CharacterFile:
-    return CharacterFile(name, body.morphs, find_held_meshes(body), explain_no_character(body, skeleton))
+def _described(name: str, path: Path, body: CharacterMesh, skeleton: Skeleton | None) -> CharacterFile:
+    stated = read_vrm_roles(path)
+    found = find_roles(body.skeleton)
+    roles = {
+        role: joint
+        for role, joint in stated.items()
+        if role in ROLES and body.skeleton.index(joint) != found.get(role)
+    }
+    why_not = explain_no_character(body, skeleton)
+    return CharacterFile(name, body.morphs, find_held_meshes(body), why_not, roles)
 
 
 def find_held_meshes(body: CharacterMesh) -> tuple[str, ...]:
@@ -129,4 +145,4 @@ def _look(name: str, folder: Path | None, skeleton: Skeleton, same: float = 0.0)
         return None
     if sum(joint in body.skeleton for joint in skeleton.names) < same * len(skeleton):
         return None
-    return _described(name, body, skeleton)
+    return _described(name, path, body, skeleton)

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.joint_map import find_known_roles
+from metagraph.motion.roles import missing_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
@@ -21,6 +23,8 @@ Array = NDArray[Any]
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 _BETWEEN = 4  # joints that one skeleton may have between shared ones and the other not
 _NOTABLE = 0.03  # of the figure's size: shorter bones are fingers and faces
+_APART = 0.05  # of the figure's size that joints of one role may be apart at rest in the same character
+_TURNED = np.radians(5)  # that such joints may be turned against each other at rest
 
 
 class SkeletonMismatchError(ValueError):
@@ -33,29 +37,119 @@ def difference(clip: Skeleton, project: Skeleton) -> str | None:
     A clip may lack joints (a face-only file), bring ends of its own (a jaw, finger tips), and have up to
     `_BETWEEN` joints more or fewer between shared ones (a second chest, an armature above the hips). The
     bones between shared joints must be as long. Names may differ by what all joints of a file bear before or
-    behind them (`mixamorig1:`).
+    behind them (`mixamorig1:`), and altogether where each role's joint rests in the same place and turned the
+    same way.
     """
-    clip = _called_alike(clip, project)
-    extra = [name for name in clip.names if name not in project]
-    shared = [name for name in clip.names if name in project]
-    if len(shared) < max(1, len(clip) // 2):
-        return f"its joints have other names (it has '{extra[0]}', the project has '{project.names[0]}')"
-    own, ours = _chains(clip, project), _chains(project, clip)
-    for name, chain in own.items():
-        above, here = clip.parents[chain[0]], project.parents[ours[name][0]]
-        one = clip.names[above] if above >= 0 else "nothing"
-        other = project.names[here] if here >= 0 else "nothing"
-        if one != other:
-            return f"joint '{name}' hangs on '{one}' instead of '{other}'"
-    between = sum(len(chain) - 1 for chains in (own, ours) for chain in chains.values())
-    if between > _BETWEEN:
-        return f"{between} joints between those of the same names are there in one skeleton alone"
-    theirs, mine = _lengths(clip, own), _lengths(project, ours)
-    inner = np.array([clip.parents[chain[0]] >= 0 for chain in own.values()]) & (mine > 1e-3)
-    ratio = float(np.median(theirs[inner] / mine[inner])) if inner.any() else 1.0
-    if not 0.7 < ratio < 1.4:
-        return f"its bones are {ratio:.3g} times as long"
-    return None
+    return _Match(clip, project).difference()
+
+
+def bone_difference(clip: Skeleton, project: Skeleton) -> float:
+    """Return by which share, 0 or more, the longer bones of a clip's skeleton differ most from the project's,
+    for skeletons between which there is no `difference`.
+    """
+    return _Match(clip, project).bone_difference()
+
+
+class _Match:
+    """A clip's skeleton beside the project's.
+
+    `clip` has the project's names where both name the same joint. `own` and `ours` have, for each shared
+    joint by name, the joints from below the nearest shared one above it down to itself, in either skeleton.
+    """
+
+    def __init__(self, clip: Skeleton, project: Skeleton) -> None:
+        self.clip, self.project = _called_alike(clip, project), project
+        self.own, self.ours = _chains(self.clip, project), _chains(project, self.clip)
+
+    def difference(self) -> str | None:
+        """Return what `difference` returns."""
+        clip, project = self.clip, self.project
+        if len(self.own) < max(1, len(clip) // 2):
+            extra = next(name for name in clip.names if name not in project)
+            return f"its joints have other names (it has '{extra}', the project has '{project.names[0]}')"
+        for name, chain in self.own.items():
+            above, here = clip.parents[chain[0]], project.parents[self.ours[name][0]]
+            one = clip.names[above] if above >= 0 else "nothing"
+            other = project.names[here] if here >= 0 else "nothing"
+            if one != other:
+                return f"joint '{name}' hangs on '{one}' instead of '{other}'"
+        between = sum(len(chain) - 1 for chains in (self.own, self.ours) for chain in chains.values())
+        if between > _BETWEEN:
+            return f"{between} joints between those of the same names are there in one skeleton alone"
+        theirs, mine = self._lengths()
+        inner = self._inner() & (mine > 1e-3)
+        ratio = float(np.median(theirs[inner] / mine[inner])) if inner.any() else 1.0
+        if not 0.7 < ratio < 1.4:
+            return f"its bones are {ratio:.3g} times as long"
+        return None
+
+    def bone_difference(self) -> float:
+        """Return what `bone_difference` returns."""
+        theirs, mine = self._lengths()
+        below = np.array([len(self.clip.descendants(chain[-1])) for chain in self.own.values()])
+        bones = self._inner() & (mine > _NOTABLE * self.project.height) & (below <= len(self.clip) / 2)
+        return float(np.abs(theirs[bones] / mine[bones] - 1).max(initial=0.0))
+
+    def note_lost(self) -> tuple[str, ...]:
+        """Return a note on the joints of the clip whose motion the project's skeleton has no joints for."""
+        kept = {joint for chain in self.own.values() for joint in chain}
+        names = [name for joint, name in enumerate(self.clip.names) if joint not in kept]
+        if not names:
+            return ()
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        return (
+            f"the motion of its joint '{names[0]}'{more} was left out: the project's skeleton has none such",
+        )
+
+    def _lengths(self) -> tuple[Array, Array]:
+        return _lengths(self.clip, self.own), _lengths(self.project, self.ours)
+
+    def _inner(self) -> Array:
+        return np.array([self.clip.parents[chain[0]] >= 0 for chain in self.own.values()])
+
+
+def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
+    """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the
+    clip has them. A note names the joints whose motion is lost; that of joints between shared ones is handed
+    down.
+
+    Raises SkeletonMismatchError when the skeletons are not of the same character.
+    """
+    if clip.skeleton is skeleton:
+        return clip
+    if clip.skeleton == skeleton:
+        return replace(clip, skeleton=skeleton)
+    match = _Match(clip.skeleton, skeleton)
+    why = match.difference()
+    if why is not None:
+        raise SkeletonMismatchError(why)
+    own, chains, alike = match.own, match.ours, match.clip
+    source = clip.poses()
+    rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
+    translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(
+        np.float32
+    )
+    plain = [name for name in own if len(own[name]) == len(chains[name]) == 1]
+    here, there = [skeleton.index(name) for name in plain], [alike.index(name) for name in plain]
+    rotations[:, here], translations[:, here] = source.rotations[:, there], source.translations[:, there]
+    for name in own.keys() - set(plain):
+        turn, place = _along(source, own[name])
+        above = Pose(skeleton.rest_rotations[None], skeleton.rest_translations[None])
+        base_turn, base_place = _along(above, chains[name][:-1])
+        back = rotation.conjugate(base_turn)
+        rotations[:, chains[name][-1]] = rotation.multiply(back, turn)
+        translations[:, chains[name][-1]] = rotation.rotate_vectors(back, place - base_place)
+    rest = skeleton.rest_translations.astype(np.float32)
+    moved = np.flatnonzero(np.abs(translations - rest).max(axis=(0, 2)) > MOVED)
+    translated = tuple(sorted({0, *(int(j) for j in moved)}))
+    return replace(
+        clip,
+        skeleton=skeleton,
+        rotations=rotation.continuous(rotations),
+        translations=translations[:, list(translated)],
+        translated=translated,
+        notes=(*clip.notes, *match.note_lost()),
+    )
 
 
 def _chains(skeleton: Skeleton, other: Skeleton) -> dict[str, list[int]]:
@@ -83,7 +177,8 @@ def _lengths(skeleton: Skeleton, chains: Mapping[str, Sequence[int]]) -> Array:
 
 def _called_alike(clip: Skeleton, project: Skeleton) -> Skeleton:
     """Return the clip's skeleton with the project's names where these differ only by a namespace, or by what
-    all of either's joints bear before or behind them; else as it is.
+    all of either's joints bear before or behind them, or where the joints of all roles rest alike; else as it
+    is.
     """
     if all(name in project for name in clip.names):
         return clip
@@ -91,9 +186,37 @@ def _called_alike(clip: Skeleton, project: Skeleton) -> Skeleton:
         ours, theirs = bare(project.names), bare(clip.names)
         known = dict(zip(ours, project.names, strict=True))
         if len(known) == len(ours) and len(set(theirs)) == len(theirs) and all(n in known for n in theirs):
-            names = tuple(known[name] for name in theirs)
-            return Skeleton(names, clip.parents, clip.rest_rotations, clip.rest_translations)
-    return clip
+            return _renamed(clip, [known[name] for name in theirs])
+    if sum(name in project for name in clip.names) >= len(clip) / 2:
+        return clip
+    return _called_by_roles(clip, project)
+
+
+def _called_by_roles(clip: Skeleton, project: Skeleton) -> Skeleton:
+    """Return the clip's skeleton with the project's names for the joints of its roles, if these rest in the
+    same places and turned the same way, as those of a VRM animation and its character do; else as it is.
+    """
+    theirs, ours = find_known_roles(clip, None), find_known_roles(project, None)
+    shared = [role for role in theirs if role in ours]
+    if missing_roles(theirs) or missing_roles(ours):
+        return clip
+    one, other = [theirs[role] for role in shared], [ours[role] for role in shared]
+    (turns, places), (our_turns, our_places) = clip.globals(clip.rest), project.globals(project.rest)
+    apart = (places[one] - places[theirs["hips"]]) - (our_places[other] - our_places[ours["hips"]])
+    turned = rotation.angle_between(turns[one], our_turns[other])
+    if np.linalg.norm(apart, axis=-1).max() > _APART * project.height or turned.max() > _TURNED:
+        return clip
+    known = dict(zip(one, (project.names[joint] for joint in other), strict=True))
+    free = set(known.values())
+    names = [
+        known.get(joint, f"{name} (of the clip)" if name in free else name)
+        for joint, name in enumerate(clip.names)
+    ]
+    return _renamed(clip, names)
+
+
+def _renamed(skeleton: Skeleton, names: Sequence[str]) -> Skeleton:
+    return Skeleton(tuple(names), skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations)
 
 
 def _without_namespace(names: Sequence[str]) -> list[str]:
@@ -118,63 +241,6 @@ def _shared(names: Sequence[str]) -> int:
     )
 
 
-def bone_difference(clip: Skeleton, project: Skeleton) -> float:
-    """Return by which share, 0 or more, the longer bones of a clip's skeleton differ most from the project's,
-    for skeletons between which there is no `difference`.
-    """
-    clip = _called_alike(clip, project)
-    own = _chains(clip, project)
-    theirs, ours = _lengths(clip, own), _lengths(project, _chains(project, clip))
-    below = np.array([len(clip.descendants(chain[-1])) for chain in own.values()])
-    inner = np.array([clip.parents[chain[0]] >= 0 for chain in own.values()])
-    bones = inner & (ours > _NOTABLE * project.height) & (below <= len(clip) / 2)
-    return float(np.abs(theirs[bones] / ours[bones] - 1).max(initial=0.0))
-
-
-def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
-    """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the
-    clip has them. A note names the joints whose motion is lost; that of joints between shared ones is handed
-    down.
-
-    Raises SkeletonMismatchError when the skeletons are not of the same character.
-    """
-    if clip.skeleton is skeleton:
-        return clip
-    if clip.skeleton == skeleton:
-        return replace(clip, skeleton=skeleton)
-    why = difference(clip.skeleton, skeleton)
-    if why is not None:
-        raise SkeletonMismatchError(why)
-    alike = _called_alike(clip.skeleton, skeleton)
-    own, chains = _chains(alike, skeleton), _chains(skeleton, alike)
-    source = clip.poses()
-    rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
-    translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(
-        np.float32
-    )
-    plain = [name for name in own if len(own[name]) == len(chains[name]) == 1]
-    here, there = [skeleton.index(name) for name in plain], [alike.index(name) for name in plain]
-    rotations[:, here], translations[:, here] = source.rotations[:, there], source.translations[:, there]
-    for name in own.keys() - set(plain):
-        turn, place = _along(source, own[name])
-        above = Pose(skeleton.rest_rotations[None], skeleton.rest_translations[None])
-        base_turn, base_place = _along(above, chains[name][:-1])
-        back = rotation.conjugate(base_turn)
-        rotations[:, chains[name][-1]] = rotation.multiply(back, turn)
-        translations[:, chains[name][-1]] = rotation.rotate_vectors(back, place - base_place)
-    rest = skeleton.rest_translations.astype(np.float32)
-    moved = np.flatnonzero(np.abs(translations - rest).max(axis=(0, 2)) > MOVED)
-    translated = tuple(sorted({0, *(int(j) for j in moved)}))
-    return replace(
-        clip,
-        skeleton=skeleton,
-        rotations=rotation.continuous(rotations),
-        translations=translations[:, list(translated)],
-        translated=translated,
-        notes=(*clip.notes, *_lost(alike, skeleton)),
-    )
-
-
 def _along(pose: Pose, chain: Sequence[int]) -> tuple[Array, Array]:
     """Return the turn `[F, 4]` and place `[F, 3]` of a chain's end in the space above it; of no joints,
     none.
@@ -185,13 +251,3 @@ def _along(pose: Pose, chain: Sequence[int]) -> tuple[Array, Array]:
         place = place + rotation.rotate_vectors(turn, pose.translations[:, joint].astype(float))
         turn = rotation.multiply(turn, pose.rotations[:, joint].astype(float))
     return turn, place
-
-
-def _lost(clip: Skeleton, project: Skeleton) -> tuple[str, ...]:
-    """Return a note on the joints of a clip whose motion the project's skeleton has no joints for."""
-    kept = {joint for chain in _chains(clip, project).values() for joint in chain}
-    names = [name for joint, name in enumerate(clip.names) if joint not in kept]
-    if not names:
-        return ()
-    more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    return (f"the motion of its joint '{names[0]}'{more} was left out: the project's skeleton has none such",)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.formats.characters import find_held_meshes
+from metagraph.formats.characters import CharacterFile, find_held_meshes
 from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import import_files
@@ -52,6 +52,15 @@ def test_a_file_without_motion_is_the_character_of_the_clips_beside_it(tmp_path:
     result = import_files(Project(), tmp_path, [tmp_path])
     assert result.character is not None and result.character.path == "body.glb"
     assert result.failures == (), "it was of use"
+
+
+def test_a_vrm_file_says_which_joint_has_which_role_where_names_and_shape_do_not(tmp_path: Path) -> None:
+    joint = SKELETON.names[1]
+    stated = CharacterFile("me.vrm", roles={"chest": joint, "jaw": "nowhere"})
+    project = stated.into(Project(skeleton=SKELETON))
+    assert project.roles == {"chest": joint}
+    corrected = stated.into(Project(skeleton=SKELETON, roles={"chest": SKELETON.names[0]}))
+    assert corrected.roles == {"chest": SKELETON.names[0]}, "what the user said counts"
 
 
 def test_a_file_without_motion_of_somebody_else_stays_a_failure(tmp_path: Path) -> None:

@@ -210,7 +210,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.formats.clips import read_clips
     from metagraph.formats.elan import read_elan
     from metagraph.formats.fbx.reader import read_fbx_clips
-    from metagraph.formats.gltf.reader import has_skinned_mesh, morph_targets, read_character, vrm_roles
+    from metagraph.formats.gltf.reader import has_skinned_mesh, morph_targets, read_character, read_vrm_roles
     from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.formats.language_files import read_pack
     from metagraph.formats.live_link_face import read_live_link
@@ -228,7 +228,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.speech.lines import read_line_voice, voice_from_phones
 
     def drawn(path: Path) -> None:
-        for read in (read_character, vrm_roles, morph_targets, has_skinned_mesh):
+        for read in (read_character, read_vrm_roles, morph_targets, has_skinned_mesh):
             survives(read, path)
 
     def listed(path: Path) -> None:

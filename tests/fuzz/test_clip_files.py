@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import read_bvh, write_bvh
 from metagraph.formats.clips import read_clips
-from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles, write_glb
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips, read_vrm_roles, write_glb
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.clip import Clip
@@ -84,7 +84,7 @@ def survives(reader: Callable[[Path], Any], path: Path) -> None:
 
 
 def all_readers(suffix: str) -> list[Callable[[Path], Any]]:
-    return [read_clips, read_bvh] if suffix == ".bvh" else [read_clips, read_character, vrm_roles]
+    return [read_clips, read_bvh] if suffix == ".bvh" else [read_clips, read_character, read_vrm_roles]
 
 
 def check(tmp_path: Path, suffix: str, data: bytes) -> None:

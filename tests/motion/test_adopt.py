@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -198,3 +199,44 @@ def test_how_far_bones_differ_is_told_by_the_longest_share() -> None:
     assert bone_difference(skeleton(), skeleton()) == 0
     assert bone_difference(skeleton(offsets=longer), skeleton()) == pytest.approx(0.05)
     assert bone_difference(skeleton(tuple(f"x:{n}" for n in NAMES), offsets=longer), skeleton()) > 0.04
+
+
+def with_names(on: Skeleton, names: tuple[str, ...]) -> Skeleton:
+    return Skeleton(names, on.parents, on.rest_rotations, on.rest_translations)
+
+
+def test_other_names_for_the_same_roles_at_rest_alike_are_the_same_character(toy: Any) -> None:
+    vrm = with_names(toy.skeleton, tuple(name[0].lower() + name[1:] for name in toy.skeleton.names))
+    wave = toy.clip("wave")
+    there = replace(wave, skeleton=vrm)
+    assert difference(vrm, toy.skeleton) is None
+    adopted = adopt(there, toy.skeleton)
+    assert adopted.skeleton is toy.skeleton and np.allclose(adopted.rotations, wave.rotations, atol=1e-6)
+    odd = with_names(toy.skeleton, tuple(f"bone{n:02}" for n in range(len(toy.skeleton))))
+    assert difference(odd, toy.skeleton) is None, "the shape says which joint is which"
+
+
+@pytest.mark.parametrize("change", ["turned", "longer"])
+def test_other_names_and_another_rest_are_another_character(toy: Any, change: str) -> None:
+    names = tuple(name[0].lower() + name[1:] for name in toy.skeleton.names)
+    turns, offsets = toy.skeleton.rest_rotations.copy(), toy.skeleton.rest_translations.copy()
+    arm = toy.skeleton.index("LeftUpperArm")
+    if change == "turned":
+        turns[arm] = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(30))
+    else:
+        offsets[arm + 1] *= 1.5
+    other = Skeleton(names, toy.skeleton.parents, turns, offsets)
+    assert "other names" in str(difference(other, toy.skeleton))
+
+
+def test_a_joint_of_the_clip_named_like_another_of_the_project_keeps_out_of_its_way(toy: Any) -> None:
+    names = tuple(f"bone{n:02}" for n in range(len(toy.skeleton)))
+    tail = Skeleton(
+        (*names, "Head"),
+        np.array([*toy.skeleton.parents, 0]),
+        np.concatenate([toy.skeleton.rest_rotations, [[0, 0, 0, 1.0]]]),
+        np.concatenate([toy.skeleton.rest_translations, [[0, 0, -0.3]]]),
+    )
+    assert difference(tail, toy.skeleton) is None
+    adopted = adopt(clip(tail), toy.skeleton)
+    assert any("'Head (of the clip)'" in note for note in adopted.notes)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
@@ -19,6 +20,9 @@ from metagraph.errors import FileError
 from metagraph.formats.imports import Imported, Strangers, bring_over, find_strangers
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.motion.joint_map import JointMap
+
+if TYPE_CHECKING:
+    from app.features.retargeting.joint_map_dialog import JointMapDialog
 
 Then = Callable[[Imported], None]
 
@@ -87,10 +91,28 @@ class Retargeting(QObject):
             self._end(lambda: then(Imported((), group.failures, apart=(told,))))
             return
         self._asking = True
-        dialog = JointMapDialog(group, Bringing(self.document.project), self.jobs, self.window)
-        dialog.accepted.connect(lambda: self._bring(group, dialog.map, then))
+        whole = [other for other, _ in self._waiting if not other.joint_map.missing]
+        dialog = JointMapDialog(
+            group,
+            Bringing(self.document.project),
+            self.jobs,
+            self.window,
+            sum(len(other.clips) for other in whole),
+        )
+        dialog.accepted.connect(lambda: self._accept(dialog, group, then))
         dialog.rejected.connect(lambda: self._leave(group, then))
         dialog.open()
+
+    def _accept(self, dialog: JointMapDialog, group: Strangers, then: Then) -> None:
+        """Retarget a group by the dialog's map, and where all were chosen, those that wait by theirs."""
+        waiting, self._waiting = self._waiting, []
+        chosen: list[tuple[Strangers, Then]] = []
+        for pair in waiting:
+            whole = dialog.all_chosen and not pair[0].joint_map.missing
+            (chosen if whole else self._waiting).append(pair)
+        self._bring(group, dialog.map, then)
+        for other, told in chosen:
+            self._bring(other, other.joint_map, told)
 
     def _leave(self, group: Strangers, then: Then) -> None:
         self._end(lambda: then(Imported((), apart=(group,))))

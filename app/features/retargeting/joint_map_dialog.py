@@ -42,13 +42,20 @@ SHOWN = 150  # frames of a clip that are played
 
 
 class JointMapDialog(QDialog):
-    """map: the joint map as it is now; accepted when the clips are to be retargeted by it, rejected when they
-    are left out.
+    """`map`: the joint map as it is now; accepted when the clips are to be retargeted by it, rejected when
+    they are left out. `all_chosen`: whether the groups that wait are to be retargeted, too, by the maps that
+    are offered for them.
     """
 
     def __init__(
-        self, strangers: Strangers, bringing: Bringing, jobs: Jobs, parent: QWidget | None = None
+        self,
+        strangers: Strangers,
+        bringing: Bringing,
+        jobs: Jobs,
+        parent: QWidget | None = None,
+        waiting: int = 0,
     ) -> None:
+        """Show how `strangers` are mapped. `waiting`: clips of other skeletons that are asked about next."""
         super().__init__(parent)
         assert bringing.project.skeleton is not None
         self.strangers, self.bringing, self.jobs = strangers, bringing, jobs
@@ -58,6 +65,7 @@ class JointMapDialog(QDialog):
             "",
             self.map,
         )  # the joint that was changed last, and the map before that
+        self.waiting, self.all_chosen = waiting, False
         self._asked = 0  # previews, so that a late one of an older map is not shown
         self._roles = {
             self.target.names[j]: role for role, j in find_known_roles(self.target, bringing.roles).items()
@@ -86,6 +94,16 @@ class JointMapDialog(QDialog):
         self.buttons = QDialogButtonBox(self)
         self.go = self.buttons.addButton(tr("Retarget"), QDialogButtonBox.ButtonRole.AcceptRole)
         self.leave = self.buttons.addButton(tr("Skip them"), QDialogButtonBox.ButtonRole.RejectRole)
+        if waiting:
+            everything = self.buttons.addButton(
+                tr("Retarget all {count:,} clips", count=waiting + len(strangers.clips)),
+                QDialogButtonBox.ButtonRole.ActionRole,
+            )
+            everything.setObjectName("retarget all")
+            everything.setToolTip(
+                tr("Retarget the clips of the other skeletons, too, by the joint maps offered for them")
+            )
+            everything.clicked.connect(self._choose_all)
         strengthen(self.go)
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
@@ -94,6 +112,10 @@ class JointMapDialog(QDialog):
         self._say()
         self._show()
         self._play()
+
+    def _choose_all(self) -> None:
+        self.all_chosen = True
+        self.accept()
 
     def _forget(self) -> None:
         self._asked = 0  # what a preview finds from now on is nobody's

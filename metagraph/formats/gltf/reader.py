@@ -15,6 +15,7 @@ from metagraph.formats.gltf.clips import read_animations
 from metagraph.formats.gltf.file import extras, open_gltf
 from metagraph.formats.gltf.morphs import read_morph_names
 from metagraph.formats.gltf.skeleton import build_rig
+from metagraph.formats.gltf.vrm_animation import find_humanoid_bones
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.takes import unique_takes
 from metagraph.motion.character_mesh import CharacterMesh
@@ -23,7 +24,7 @@ from metagraph.motion.clip import Clip
 # Numbers of a broken file may overflow before a check refuses them; that is no reason for a warning.
 _QUIET = np.errstate(all="ignore")
 
-__all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
+__all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "read_vrm_roles", "write_glb"]
 
 
 @guard_reader
@@ -82,28 +83,17 @@ def morph_targets(path: str | Path) -> tuple[str, ...]:
 
 @guard_reader
 @_QUIET
-def vrm_roles(path: str | Path) -> dict[str, int]:
-    """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises
-    FileError.
+def read_vrm_roles(path: str | Path) -> dict[str, str]:
+    """Return role -> joint name as a VRM 0.x, VRM 1.0 or VRM animation file states it; empty for other files.
+    Raises FileError.
     """
     gltf = open_gltf(path)
-    stated = extras(gltf.json.extensions)
-    bones: dict[str, object] = {}
-    for name in ("VRMC_vrm", "VRMC_vrm_animation", "VRM"):
-        humanoid = stated.get(name, {}).get("humanoid", {}) if isinstance(stated.get(name), dict) else {}
-        found = humanoid.get("humanBones", {}) if isinstance(humanoid, dict) else {}
-        if isinstance(found, list):  # VRM 0.x
-            found = {b["bone"]: b for b in found if isinstance(b, dict) and isinstance(b.get("bone"), str)}
-        if isinstance(found, dict):
-            bones.update(
-                {k: v.get("node") for k, v in found.items() if isinstance(k, str) and isinstance(v, dict)}
-            )
+    bones = find_humanoid_bones(extras(gltf.json.extensions))
     if not bones:
         return {}
-    places = build_rig(gltf).places
-    out = {}
-    for bone, node in bones.items():
-        role = "".join(f"_{c.lower()}" if c.isupper() else c for c in bone)
-        if isinstance(node, int) and not isinstance(node, bool) and node in places:
-            out[role] = places[node]
-    return out
+    rig = build_rig(gltf)
+    return {
+        "".join(f"_{c.lower()}" if c.isupper() else c for c in bone): rig.skeleton.names[rig.places[node]]
+        for bone, node in bones.items()
+        if node in rig.places
+    }

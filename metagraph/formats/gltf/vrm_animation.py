@@ -1,5 +1,6 @@
-"""Find the face of a VRM animation (VRMC_vrm_animation 1.0): each expression has a node, and the x of the
-node's translation is the expression's weight; another node's rotation is where the eyes look.
+"""Find the humanoid bones that a VRM file states, and the face of a VRM animation (VRMC_vrm_animation 1.0):
+each expression has a node, and the x of the node's translation is the expression's weight; another node's
+rotation is where the eyes look.
 """
 
 from __future__ import annotations
@@ -35,6 +36,20 @@ def find_vrm_face(extensions: Mapping[str, Any]) -> VrmFace:
     named = [*_nodes(_part(expressions, "preset")), *_nodes(_part(expressions, "custom"))]
     gaze = dict(_nodes(stated)).get("lookAt")
     return VrmFace({node: name for name, node in named}, gaze)
+
+
+def find_humanoid_bones(extensions: Mapping[str, Any]) -> dict[str, int]:
+    """Return humanoid bone, such as "leftUpperArm", -> node of a VRM 0.x, VRM 1.0 or VRM animation file;
+    empty for other files. Values with another form than the format's are skipped.
+    """
+    bones: dict[str, int] = {}
+    for name in ("VRMC_vrm", "VRMC_vrm_animation", "VRM"):
+        stated = _part(_part(extensions, name), "humanoid").get("humanBones")
+        if isinstance(stated, list):  # VRM 0.x
+            stated = {b["bone"]: b for b in stated if isinstance(b, dict) and isinstance(b.get("bone"), str)}
+        if isinstance(stated, dict):
+            bones.update(_nodes(stated))
+    return bones
 
 
 def _part(value: Mapping[str, Any], name: str) -> Mapping[str, Any]:

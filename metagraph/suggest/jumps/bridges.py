@@ -126,7 +126,7 @@ def describe_bridges(project: Project, bridges: Iterable[Bridge]) -> list[str]:
 
 def describe_unbridged(project: Project) -> list[str]:
     """Return a line for each stance that no bridge can join to the start of its layer, with the reason."""
-    out = []
+    out: list[str] = []
     for layer in LAYERS:
         graph = project.graphs[layer]
         poses = _poses(project, graph)

@@ -17,7 +17,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import import_clips, read_clips
-from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles, write_glb
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips, read_vrm_roles, write_glb
 from metagraph.formats.gltf.skeleton import compose
 from metagraph.formats.gltf.writer import Keys
 from metagraph.motion import rotation
@@ -495,7 +495,7 @@ def test_vrm_files_state_their_roles(tmp_path: Path, extension: dict[str, Any]) 
     scene = Scene(bones())
     scene.json["extensions"] = extension
     scene.animate("bend", (1, "rotation", [0, 1], TURN, "LINEAR"))
-    assert vrm_roles(scene.glb(tmp_path / "me.vrm")) == {"hips": 0, "head": 2}
+    assert read_vrm_roles(scene.glb(tmp_path / "me.vrm")) == {"hips": "Hips", "head": "Head"}
 
 
 def vrm_animation(skin: bool) -> Scene:
@@ -539,7 +539,7 @@ def test_an_expression_whose_weight_is_no_number_of_its_node_is_refused(tmp_path
 
 def test_files_that_are_not_vrm_state_no_roles(tmp_path: Path) -> None:
     scene = Scene(bones())
-    assert vrm_roles(scene.glb(tmp_path / "me.glb")) == {}
+    assert read_vrm_roles(scene.glb(tmp_path / "me.glb")) == {}
 
 
 # --- text files and buffers

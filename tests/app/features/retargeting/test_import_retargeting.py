@@ -5,10 +5,12 @@ or left out.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QPushButton
 
 from app.project import watching
 from app.project.autosave import state_folder
@@ -71,6 +73,7 @@ def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_st
     assert dialog.headline.text() == "2 clips have another skeleton"
     assert "other0.glb, other1.glb" in dialog.details.text() and "61 joints" in dialog.details.text()
     assert dialog.go.text() == "Retarget 2 clips" and dialog.go.isEnabled()
+    assert dialog.findChild(QPushButton, "retarget all") is None, "nobody else waits"
     assert dialog.combo("LeftHand").currentText() == "LeftHand"
     assert dialog.rows["LeftHand"].text(2) == "left hand"
     press(dialog.go)
@@ -103,6 +106,28 @@ def test_they_may_be_left_out_and_the_others_of_the_same_drop_come_in(own, folde
     )
     assert [e.name for e in drive.document.project.clips.values()] == ["rest", "wave", "nod"]
     assert not read_joint_maps()
+
+
+def test_one_click_retargets_the_clips_of_every_other_skeleton(own, folder, sample):
+    from app.features.retargeting.joint_map_dialog import JointMapDialog
+    from metagraph.formats.gltf.writer import write_glb
+    from metagraph.motion.skeleton import Skeleton
+
+    drive = own
+    motion = next(iter(sample.clips.values())).motion.trimmed(0, 20)
+    bones = motion.skeleton
+    names = tuple(f"{name}_x" if n % 2 else name for n, name in enumerate(bones.names))
+    third = Skeleton(names, bones.parents, bones.rest_rotations, bones.rest_translations * 1.3)
+    write_glb(folder / "third.glb", [replace(motion, name="third", skeleton=third)])
+    dialog = bring(drive, folder, "other0", "other1", "third")
+    everything = dialog.findChild(QPushButton, "retarget all")
+    assert everything.text() == "Retarget all 3 clips"
+    press(everything)
+    drive.wait(lambda: len(drive.document.project.clips) == 5)
+    project = drive.document.project
+    assert len(project.joint_maps) == 2 and sum(bool(e.brought_from) for e in project.clips.values()) == 3
+    drive.wait(lambda: any("3 of them retargeted" in words for words in drive.said))
+    assert not any(d.isVisible() for d in drive.window.findChildren(JointMapDialog))
 
 
 def test_a_joint_is_corrected_by_hand_and_what_is_missing_is_said(own, folder):
