@@ -59,6 +59,7 @@ def run(*command: object, **options: object) -> subprocess.CompletedProcess[str]
     )  # type: ignore[call-overload]
 
 
+@pytest.mark.nightly
 def test_the_wheel_goes_by_a_name_that_is_nobody_elses(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as inside:
         (path,) = (n for n in inside.namelist() if n.endswith(".dist-info/METADATA"))

@@ -97,6 +97,7 @@ def test_python_in_the_pages_runs_and_prints_what_follows_it(
 # What a command may be told on top, so that it does all it does, but short and small.
 SMALLER = {
     ("render",): "-s 0.3 --size 96x64 --frames 2",
+    ("label",): "--play 2 --no-pictures",
     ("generate", "train"): "--seconds 0.5 --threads 1",
     ("generate", "evaluate"): "--draws 2",
     ("study", "simulate"): "--participants 6",

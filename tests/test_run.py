@@ -450,6 +450,7 @@ def test_files_that_are_begun_first_are_there() -> None:
     assert [name for name in LONG if not (ROOT / "tests" / name).is_file()] == []
 
 
+@pytest.mark.nightly
 def test_to_prepare_the_tests_leaves_the_bytecode_that_they_are_run_from(tmp_path: Path) -> None:
     environ = {**os.environ, "PYTHONPYCACHEPREFIX": str(tmp_path / "kept")}
     environ.pop("PYTHONDONTWRITEBYTECODE", None)

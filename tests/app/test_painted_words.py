@@ -69,6 +69,7 @@ def told(found: dict[str, list[str]]) -> str:
     return "\n".join(f"{k}: {line}" for k, lines in found.items() for line in lines)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("size", SIZES[: many(1, 2)], ids=str)
 def test_panels_that_are_opened_keep_to_it_too(drive, sample, size):
     drive.document.load(edits.update_each(sample, {}), None)

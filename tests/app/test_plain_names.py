@@ -99,6 +99,7 @@ def tips(root: QWidget) -> list[str]:
     return out
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_no_panel_dialog_or_tooltip_takes_a_name_for_html(
     drive: Any, picture: Path, openings: Callable[[], int], tmp_path: Path

@@ -112,6 +112,7 @@ def alone(drive):
     drive.workspaces.places.only("graph")
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("do", (moved, stretched, raised, chosen_another, alone), ids=lambda do: do.__name__)
 def test_docks_that_a_test_has_moved_do_not_stand_as_they_did_and_are_put_back(toys, do):
     stood = stands(toys.window)

@@ -60,6 +60,7 @@ out.append([first, named, none, same, told, character.now, character.answer(firs
     assert rest[8]["state"] == "planned"
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_malformed_requests_are_refused_and_nothing_fails(game: Path) -> None:
     wrong: list[Any] = [

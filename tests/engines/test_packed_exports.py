@@ -60,6 +60,7 @@ def damaged(packed: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Path
     return out
 
 
+@pytest.mark.nightly
 def test_it_plays_the_same_in_python(packed: Path) -> None:
     outcome = check_vectors(packed)
     assert outcome.passed > many(5, 15) and not outcome.failures
@@ -147,6 +148,7 @@ def test_views_are_unpacked_as_the_extensions_own_library_does(packed: Path) -> 
     assert all(off <= (kind == "QUATERNION") for _, kind, off in found), found
 
 
+@pytest.mark.nightly
 @csharp_runtime.needs_mono
 def test_it_plays_the_same_in_c_sharp_and_a_damaged_one_is_refused(
     packed: Path, damaged: list[Path], core: Path

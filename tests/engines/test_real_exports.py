@@ -69,6 +69,7 @@ def test_vectors_of_real_clips_hold(shared_data: Path, tmp_path: Path, folder: s
     vectors_hold(project_of(files, f"{folder}{pattern}"), tmp_path, REAL.index((folder, pattern)))
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ZOO)
 def test_vectors_of_the_zoo_hold(zoo_files: dict[str, Path], tmp_path: Path, name: str) -> None:
     vectors_hold(project_of([zoo_files[name]], name), tmp_path, len(REAL) + ZOO.index(name))

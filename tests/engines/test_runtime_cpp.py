@@ -64,6 +64,7 @@ def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     assert "update the runtime" in done.stdout
 
 
+@pytest.mark.nightly
 def test_single_cases_that_notice_mutants_pass_where_nothing_is_broken(probe: Path, single: Path) -> None:
     tried = {folders_to_try(hint, VECTORS, single)[0] for *_, hint in MUTANTS}
     assert all(folder.parent == single for folder in tried)

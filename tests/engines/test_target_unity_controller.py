@@ -174,6 +174,7 @@ def test_whatever_is_referred_to_is_there(made: ExportedFiles, controller: Objec
     assert "0" not in controller
 
 
+@pytest.mark.nightly
 def test_two_exports_are_equal_to_the_byte(sample: Project, made: ExportedFiles, tmp_path: Path) -> None:
     again = write(sample, tmp_path)
     assert [p.name for p in again.files] == [p.name for p in made.files]

@@ -84,6 +84,7 @@ def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matche
     assert overlap > 0.96, overlap
 
 
+@pytest.mark.nightly
 def test_buttons_ask_and_the_answers_and_the_plan_show_it(page: Path, browse: Browser) -> None:
     state = """[metagraph.object.character.plan.layers.arms.cues.map((c) => [c.action.name, c.meta]),
       document.getElementById('answers').textContent]"""
@@ -125,6 +126,7 @@ def test_speech_moves_the_jaw_and_a_look_the_eyes(page: Path, browse: Browser) -
         assert abs(np.dot(rest[joint], talking[joint])) < 0.9995
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("scheme", ["dark", "light"])
 def test_the_page_takes_the_systems_colours(browse: Browser, page: Path, scheme: str) -> None:
     (color,), errors = browse(

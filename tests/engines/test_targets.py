@@ -323,6 +323,7 @@ def test_babylon_plays_the_behaviour_graph_without_code(written: Any, tmp_path: 
     )  # a gesture of another stance is passed over
 
 
+@pytest.mark.nightly
 def test_babylon_goes_to_a_stance_by_as_many_transitions_as_it_takes(
     sample: Project, written: Any, tmp_path: Path
 ) -> None:

@@ -372,6 +372,7 @@ def test_twice_the_jitter_is_borne(talk: Talk) -> None:
     assert found["arms"][0] >= 0.9 and found["head"][0] >= 0.85
 
 
+@pytest.mark.nightly
 def test_a_camera_held_askew_is_got_used_to(talk: Talk) -> None:
     for roll in (-2.0, 2.0):
         found = scored(talk, 2, View(roll=roll))

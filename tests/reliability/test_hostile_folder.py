@@ -222,6 +222,7 @@ def test_the_window_runs_nothing_of_it(hostile: tuple[Path, Path, dict[str, str]
     assert not _was_run(ran)
 
 
+@pytest.mark.nightly
 def test_setting_up_runs_nothing_of_it(hostile: tuple[Path, Path, dict[str, str]]) -> None:
     """run.py, started in such a folder, makes an environment: as far as that goes without a network."""
     folder, ran, environ = hostile

@@ -214,6 +214,7 @@ def test_what_fails_in_a_block_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         build_graph(made(1500), LIMIT)
 
 
+@pytest.mark.nightly
 @pytest.mark.filterwarnings("ignore")  # of Dask, about its own parts
 def test_a_cluster_makes_the_same_edges(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed", reason="needs the extra 'cluster' (Dask)")

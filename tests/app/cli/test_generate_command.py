@@ -329,6 +329,7 @@ def test_motion_that_never_rests_gives_no_pieces_and_says_so(
 # --- evaluate
 
 
+@pytest.mark.nightly
 def test_models_are_judged_on_what_was_held_out(
     model: Path, takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

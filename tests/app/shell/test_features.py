@@ -31,6 +31,7 @@ window.close()
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.parametrize(
     ("feature", "gone"),

@@ -92,6 +92,7 @@ def test_the_timeline_shows_one_sides_plan_and_the_other_when_it_is_chosen(stage
     assert staged.preview.scene().actors[0].positions[..., 0].mean() < 0, "nobody moves to another place"
 
 
+@pytest.mark.nightly
 def test_improvised_takes_the_conversation_off_stage(staged):
     staged.timeline.stage.setFocus()
     QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Up)
@@ -114,6 +115,7 @@ def test_it_plays_to_its_end_and_stops_there(staged):
     assert staged.session.transport.seconds == 8.0 and not staged.session.transport.playing
 
 
+@pytest.mark.nightly
 def test_another_seed_is_the_conversations_own_and_undone(staged):
     before = staged.document.project.settings.seed
     staged.timeline.seed.setValue(77)
@@ -188,6 +190,7 @@ def test_a_side_is_drawn_with_a_character_of_its_own_whose_face_it_has(talking):
     assert any("missing.glb" in note for note in shown.notes)
 
 
+@pytest.mark.nightly
 def test_the_characters_of_both_are_drawn(staged):
     plain = str(ROOT / "sample_clips" / "mannequin.glb")
     staged.document.edit(
@@ -202,6 +205,7 @@ def test_the_characters_of_both_are_drawn(staged):
     staged.wait(lambda: drawn() == {"Ada", "Mannequin"})
 
 
+@pytest.mark.nightly
 def test_two_other_projects_are_each_read_once(talking, monkeypatch):
     from app.stage import conversation_plans as stage
 
@@ -290,6 +294,7 @@ def test_a_generated_clip_moves_what_is_above_the_hips_and_is_written_so(talking
     assert abs(float(written.pose_at(1.0).rotations[at] @ wanted)) > 0.999
 
 
+@pytest.mark.nightly
 def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion_for_each(talking, tmp_path):
     def run(*words: str) -> subprocess.CompletedProcess[str]:
         whole = [
@@ -362,6 +367,7 @@ def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: 
         assert theirs is not None and np.allclose(mine.rotations, theirs.rotations)
 
 
+@pytest.mark.nightly
 def test_three_are_written_one_by_one(three: Path, tmp_path: Path) -> None:
     words = (
         "render",

@@ -117,6 +117,7 @@ def test_of_somebodys_takes_each_exhibit_is_made(
             assert all(len(row) == len(part.columns) for row in part.rows)
 
 
+@pytest.mark.nightly
 def test_a_side_nobody_recorded_and_one_take_alone_spoil_nothing(
     sample: Project, talks: tuple[Recorded, ...]
 ) -> None:
@@ -136,6 +137,7 @@ def test_a_side_nobody_recorded_and_one_take_alone_spoil_nothing(
     assert "cannot be held out" in searching.exhibit_search(alone).missing
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not SHIPPED.is_file(), reason="no learned generator is installed")
 def test_takes_of_another_figure_are_retargeted_before_a_model_is_judged_on_them(
     sample: Project, talks: tuple[Recorded, ...], tmp_path: Path
@@ -177,6 +179,7 @@ def test_where_constraints_compete_some_find_nothing_and_the_best_finds_more(sam
     assert found["no constraints", "exact"] == cases
 
 
+@pytest.mark.nightly
 def test_adjoining_clauses_leave_no_short_gap_and_rare_answers_are_rarer(sample: Project) -> None:
     plain = scarce(sample, Scarcity("x", 1, 40.0), 1)
     closed = scarce(sample, Scarcity("x", 1, 40.0, adjoining=True), 1)
@@ -194,6 +197,7 @@ def test_adjoining_clauses_leave_no_short_gap_and_rare_answers_are_rarer(sample:
     assert answers(rare) < answers(plain)
 
 
+@pytest.mark.nightly
 def test_the_numbers_of_competing_say_who_found_what(
     sample: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -206,6 +206,7 @@ def test_a_long_slow_blend_over_a_wide_gap_is_no_jump_and_a_short_one_is() -> No
     assert strip.gaps[0][0] > 0.3 > 0.05 > strip.gaps[1][0]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["opaque takes", "sitting, leaning, standing"])
 def test_proposed_times_leave_no_joint_far_from_a_stance_where_the_present_ones_do_not(name: str) -> None:
     made = named(name).project

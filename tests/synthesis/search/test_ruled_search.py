@@ -121,6 +121,7 @@ def test_a_clause_does_not_begin_with_the_middle_of_another() -> None:
     assert find_path(graph, spoken, loose, rules=FREE).jumps.tolist() == [21]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("rules", [FREE, JUMP_RULES])
 def test_a_graph_that_was_searched_is_let_go(rules: JumpRules) -> None:
     graph = moving(200, [0, 200], {(n, (n + 90) % 200): 0.2 for n in range(0, 200, 5)})

@@ -153,6 +153,7 @@ def test_takes_are_made_cut_and_dropped_on_the_graph_in_one_step(shown, tmp_path
     assert list(drive.document.project.actions()) == list(before.actions())
 
 
+@pytest.mark.nightly
 def test_a_sound_that_is_missing_is_told_and_nothing_changes(shown, tmp_path):
     drive, dialog = shown
     (tmp_path / "talk.wav").unlink()
@@ -162,6 +163,7 @@ def test_a_sound_that_is_missing_is_told_and_nothing_changes(shown, tmp_path):
     assert drive.document.project is before and dialog.use.move_button.isEnabled()
 
 
+@pytest.mark.nightly
 def test_a_damaged_model_is_told_where_it_is_chosen(shown, tmp_path):
     _, dialog = shown
     (tmp_path / "models" / "broken.mgmodel").write_bytes(b"no model")
@@ -169,6 +171,7 @@ def test_a_damaged_model_is_told_where_it_is_chosen(shown, tmp_path):
     assert dialog.use.model.currentText() == "broken" and "broken.mgmodel" in dialog.use.about.text()
 
 
+@pytest.mark.nightly
 def test_the_programs_own_model_is_offered_where_it_is_installed(shown, model, tmp_path, monkeypatch):
     _, dialog = shown
     names = lambda: [dialog.use.model.itemText(n) for n in range(dialog.use.model.count())]  # noqa: E731
@@ -282,6 +285,7 @@ def test_a_training_is_followed_stopped_and_kept(training, model):
     assert learn.train.isVisible() and learn.add.isEnabled()
 
 
+@pytest.mark.nightly
 def test_a_training_that_fails_says_why(training):
     drive, dialog, process = training
     process.error, process.running = "memory ran out: train a smaller model", False
@@ -290,6 +294,7 @@ def test_a_training_that_fails_says_why(training):
     assert dialog.learn.run is None and dialog.learn.train.isEnabled()
 
 
+@pytest.mark.nightly
 def test_closing_ends_the_training(training):
     _, dialog, process = training
     dialog.close()
@@ -303,6 +308,7 @@ def planting():
     return planting
 
 
+@pytest.mark.nightly
 def test_a_training_that_was_cut_short_is_offered_and_not_written_over(shown, tmp_path):
     drive, dialog = shown
     planting().cut_short(tmp_path / "models", "mine", 10)
@@ -343,6 +349,7 @@ def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path
     assert read_card(out).steps == 10 and read_card(out).notes
 
 
+@pytest.mark.nightly
 def test_a_model_that_is_there_is_not_written_over(shown, tmp_path):
     drive, dialog = shown
     learn = dialog.learn
@@ -383,6 +390,7 @@ def test_without_a_conversation_it_says_how_to_get_one(shown):
     assert use.side.isVisible() and use.move_button.isEnabled() and not use.nobody.isVisible()
 
 
+@pytest.mark.nightly
 def test_without_a_sound_making_clips_asks_for_one_first(shown, tmp_path, monkeypatch):
     drive, dialog = shown
     use, asked = dialog.use, []

@@ -209,6 +209,7 @@ def test_the_command_opens_it(drive: object) -> None:
     QTest.keyClick(made, Qt.Key.Key_Escape)
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.parametrize("column", some(range(4), 2))
 def test_rows_are_sorted_by_any_column_either_way_and_what_is_selected_stays_so(

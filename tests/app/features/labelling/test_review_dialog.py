@@ -472,6 +472,7 @@ def play_through(drive, dialog) -> None:
     dialog.stage.played.emit()
 
 
+@pytest.mark.nightly
 def test_all_clips_are_watched_through_a_correction_holds_and_they_are_accepted_together(
     practice, monkeypatch
 ):

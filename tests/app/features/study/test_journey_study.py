@@ -417,6 +417,7 @@ def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
     assert marks == [(0, "begin"), (0, "end"), (1, "begin"), (1, "end"), (2, "begin")]
 
 
+@pytest.mark.nightly
 def test_tasks_begin_with_a_clap_where_the_study_wants_it(drive, takes_part, tiny):
     tiny.write_text(tiny.read_text() + "claps: true\n")
     p = takes_part()

@@ -47,6 +47,7 @@ def stances(d) -> list[str]:
     return [s.name for s in d.document.project.graphs["head"].stances.values()]
 
 
+@pytest.mark.nightly
 def test_a_sitting_is_seen_again(drive, sat, tiny):
     from app.features.study.study_replay import Replayer
 

@@ -50,6 +50,7 @@ def made(tmp_path: Path) -> Perceived:
     )
 
 
+@pytest.mark.nightly
 def test_from_a_file_everything_is_answered_by_keyboard_saved_and_read(
     made: Perceived, tmp_path: Path, browse: Browser
 ) -> None:
