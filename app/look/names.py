@@ -14,6 +14,7 @@ from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, P
 
 MANY = 1 << 14  # names that are remembered, with what is made of them: after each edit all are asked for
 _TAKE = re.compile(r"[\s.#(-]*\d+\)?$")  # the number of a take, at a name's end
+_MARK = re.compile(r"[\s_@|:.#]+")  # between the words of a name
 _SIDES: Mapping[str, tuple[Limb, str]] = {
     **dict.fromkeys(("left", "l", "lf", "lft"), ("left", "L")),
     **dict.fromkeys(("right", "r", "rt", "rgt"), ("right", "R")),
@@ -155,3 +156,15 @@ def _called_alike(
             if a is not b and (a.id, a.name, a.limb, a.end_stance) != (b.id, b.name, b.limb, b.end_stance):
                 return False
     return True
+
+
+def drop_common_start(names: Sequence[str]) -> list[str]:
+    """Return names without what all of them begin with, up to the last mark between words
+    ("ChrRachel_ChrBrad@Idle01" is "Idle01" among others of that set).
+    """
+    first, last = min(names, default=""), max(names, default="")
+    alike = next((n for n, (a, b) in enumerate(zip(first, last, strict=False)) if a != b), len(first))
+    start = first[:alike] if len(names) > 1 else ""
+    marks = [found.end() for found in _MARK.finditer(start)]
+    cut = marks[-1] if marks else 0
+    return [name[cut:] for name in names] if all(len(name) > cut for name in names) else list(names)

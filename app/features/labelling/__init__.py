@@ -14,8 +14,9 @@ def contribute(shell: Shell) -> Contribution:
     def label() -> None:
         from app.features.labelling.review_dialog import ReviewDialog
 
+        stage, learned = shell.stage, shell.services[Learned]
         ReviewDialog(
-            document, session, shell.jobs, shell.stage.figures, shell.services[Learned], shell.widget
+            document, session, shell.jobs, stage.figures, learned, stage.thumbnails, shell.widget
         ).show()
 
     def patterns() -> None:

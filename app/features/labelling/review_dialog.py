@@ -40,6 +40,7 @@ from app.project.learned import Learned
 from app.stage.figures import Figures
 from app.stage.playback_source import ShownPlayback, play_clip_alone
 from app.stage.session import StageSession
+from app.stage.thumbnails import Thumbnails
 from app.translation import lazy_texts, tr, tr_error, tr_phrase
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import KINDS, Kind
@@ -80,10 +81,12 @@ class ReviewDialog(QDialog):
         jobs: Jobs,
         figures: Figures,
         learned: Learned,
+        thumbnails: Thumbnails,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
+        self.thumbnails = thumbnails
         self.work = Reviewing(document, jobs, learned, self)
         self.current: str | None = None
         self.row: Field = "kind"
@@ -105,6 +108,7 @@ class ReviewDialog(QDialog):
         self.queue.picked.connect(self.go_to)
         self.queue.sure_wanted.connect(self.accept_sure)
         self.queue.limit_changed.connect(self._count)
+        self.queue.groups_wanted.connect(self.review_groups)
         self.queue.bridge_wanted.connect(self.bridge)
         self.fields.chosen.connect(self._choose)
         self.fields.picked.connect(self._pick)
@@ -418,6 +422,21 @@ class ReviewDialog(QDialog):
                 )
             )
 
+    def review_groups(self) -> None:
+        """Show clips with the same proposal side by side, and accept them together."""
+        from app.features.labelling.groups_dialog import GroupsDialog
+
+        if self.work.waiting():
+            dialog = GroupsDialog(self.work, self.session, self.thumbnails, self)
+            dialog.opened.connect(self.go_to)
+            dialog.finished.connect(lambda _: self._go_on())
+            dialog.open()
+
+    def _go_on(self) -> None:
+        """Look at the clip that was looked at, or at the next where that is placed by now."""
+        waiting = self.work.waiting()
+        self.go_to(self.current if self.current in waiting else next(iter(waiting), None))
+
     def bridge(self) -> None:
         """Join the stances that no clip leads to or back from by blending."""
         if self.work.parted:
@@ -546,6 +565,7 @@ class ReviewDialog(QDialog):
             k.Key_Backspace: self.undo,
             k.Key_A: self.accept_sure,
             k.Key_B: self.bridge,
+            k.Key_G: self.review_groups,
             k.Key_W: self.watch,
             k.Key_Up: lambda: self._move(-1),
             k.Key_Down: lambda: self._move(1),

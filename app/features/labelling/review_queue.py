@@ -18,7 +18,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.features.labelling.clip_groups import is_doubtful
 from app.features.labelling.review_words import describe_length
+from app.look.names import drop_common_start
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop, tr_plural
@@ -28,17 +30,18 @@ from metagraph.suggest.propose import waiting
 from metagraph.suggest.review import Review, ReviewPace
 
 CLIP = Qt.ItemDataRole.UserRole
-DOUBT = 0.7  # below it a clip is marked as worth a look
 
 
 class ReviewQueue(QWidget):
-    """clips: all of the review, in the order they are gone through. picked: a clip was clicked. sure_wanted:
-    accept the sure ones. limit_changed: how sure that is. bridge_wanted: join stances that no clip leads to.
+    """`clips`: all of the review, in the order they are gone through. `picked`: a clip was clicked.
+    `sure_wanted`: accept the sure ones. `limit_changed`: how sure that is. `groups_wanted`: look at groups.
+    `bridge_wanted`: join stances that no clip leads to.
     """
 
     picked = Signal(str)
     sure_wanted = Signal()
     limit_changed = Signal()
+    groups_wanted = Signal()
     bridge_wanted = Signal()
 
     def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
@@ -79,12 +82,18 @@ class ReviewQueue(QWidget):
         self.limit.setAccessibleName(tr("Minimum certainty"))
         self.limit.setToolTip(tr("Minimum certainty of the proposals to accept together"))
         self.limit.valueChanged.connect(self.limit_changed)
+        self.groups = QPushButton(tr("Review in groups"), self)
+        self.groups.setAutoDefault(False)
+        self.groups.setToolTip(
+            tr("See clips with the same proposal side by side, and accept them together (G)")
+        )
+        self.groups.clicked.connect(self.groups_wanted)
         self.parted = QLabel(self, wordWrap=True)
         self.bridge = QPushButton(tr("Bridge by blending"), self)
         self.bridge.setAutoDefault(False)
         self.bridge.setToolTip(tr("Add transitions that blend from pose to pose, as one undo step (B)"))
         self.bridge.clicked.connect(self.bridge_wanted)
-        for widget in (self.list, self.sure, self.bridge):
+        for widget in (self.list, self.sure, self.groups, self.bridge):
             widget.setFocusPolicy(
                 Qt.FocusPolicy.NoFocus
             )  # keys are the review's, wherever the mouse has been
@@ -97,6 +106,7 @@ class ReviewQueue(QWidget):
         row.addWidget(self.sure, 1)
         row.addWidget(self.limit)
         column.addLayout(row)
+        column.addWidget(self.groups)
         column.addWidget(self.parted)
         column.addWidget(self.bridge)
         self.part((), ())
@@ -158,13 +168,16 @@ class ReviewQueue(QWidget):
     def refresh(self, review: Review, project: Project) -> None:
         """Show what each clip is taken for now, and whether it is placed."""
         look, open_ = theme(self.session.look.name), set(waiting(project))
+        there = [clip for clip in self._items if clip in project.clips]
+        short = drop_common_start([project.clips[clip].name for clip in there])
+        names = dict(zip(there, short, strict=True))
         for clip, item in self._items.items():
             entry, p = project.clips.get(clip), review.found.proposals.get(clip)
             item.setHidden(entry is None)
             if entry is None:
                 continue
             if p is None:
-                item.setText(0, f"–  {entry.name}")
+                item.setText(0, f"–  {names[clip]}")
                 item.setToolTip(
                     0, tr("{name}: skipped, {why}", name=entry.name, why=review.found.aside.get(clip, ""))
                 )
@@ -172,10 +185,10 @@ class ReviewQueue(QWidget):
                     item.setForeground(column, QColor(look.dim))
                 continue
             placed, kind = clip not in open_, p.kind.value
-            item.setText(0, f"{KIND_MARKS[kind]}  {entry.name}")
+            item.setText(0, f"{KIND_MARKS[kind]}  {names[clip]}")
             item.setToolTip(0, entry.name)
             item.setText(1, "✓" if placed else f"{p.confidence:.0%}")
-            odd = not placed and (bool(p.conflicts) or p.good is False or p.confidence < DOUBT)
+            odd = not placed and is_doubtful(p)
             item.setForeground(0, QColor(look.dim) if placed else look.kind(kind))
             item.setForeground(1, QColor(look.warning if odd else look.dim))
 
@@ -206,3 +219,4 @@ class ReviewQueue(QWidget):
             else tr("No certain proposals")
         )
         self.sure.setEnabled(sure > 0)
+        self.groups.setEnabled(left > 0)

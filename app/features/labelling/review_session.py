@@ -141,6 +141,13 @@ class Reviewing(QObject):
         self.review = self.review.tell(clip, name, value)
         self.changed.emit()
 
+    def tell_all(self, clips: list[str], name: Field, value: object) -> None:
+        """Correct a field of the proposals of several clips, those that it can be said of."""
+        for clip in clips:
+            if value in [choice for choice, _ in self.review.choices(clip, name)]:
+                self.review = self.review.tell(clip, name, value)
+        self.changed.emit()
+
     def take_up(self, clip: str, kind: Kind) -> None:
         """Make a clip that was left aside one of the review, as a kind."""
         self.review = Review(take_up_skipped(self.review.found, clip), self.review.said).tell(

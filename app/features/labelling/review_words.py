@@ -29,6 +29,7 @@ KEYS = lazy_texts(
         ("N", tr("new stance")),
         ("T", tr("tags")),
         ("A", tr("accept certain ones")),
+        ("G", tr("groups")),
         ("W", tr("watch all")),
         ("B", tr("bridge stances")),
     )

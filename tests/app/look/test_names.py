@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.look.names import node_names, plain_action_name, row_names, tell_apart
+from app.look.names import drop_common_start, node_names, plain_action_name, row_names, tell_apart
 from metagraph.graph import edits
 
 
@@ -101,3 +101,18 @@ def test_names_of_a_node_are_made_anew_only_where_something_is_called_otherwise(
     assert names(edits.rename_stance(louder, stance, "elsewhere")) is not kept
     gone = edits.remove_actions(project, (action.id,))
     assert action.id in names(project) and action.id not in names(gone)
+
+
+@pytest.mark.parametrize(
+    ("names", "short"),
+    [
+        (["Rachel@Idle01_Nod", "Rachel@Idle02_Nod", "Rachel@Guitar"], ["Idle01_Nod", "Idle02_Nod", "Guitar"]),
+        (["idle_nod", "idle_wave"], ["nod", "wave"]),
+        (["nodding", "nods"], ["nodding", "nods"]),
+        (["idle_", "idle_nod"], ["idle_", "idle_nod"]),
+        (["idle nod"], ["idle nod"]),
+        ([], []),
+    ],
+)
+def test_what_all_names_begin_with_is_left_out_up_to_a_mark_between_words(names, short) -> None:
+    assert drop_common_start(names) == short
