@@ -19,6 +19,7 @@ from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.listing import shift_actions
+from metagraph.graph.editing.merging_stances import merge_stances
 from metagraph.graph.model import KINDS, Action, Kind
 
 
@@ -119,6 +120,17 @@ class GraphActs(QObject):
             self.document.edit(tr("Change end stance"), lambda p: edits.set_ends(p, actions, stance))
         except EditError as error:
             self.refused.emit(tr_error(error))
+
+    def merge(self, merged: str, into: str) -> None:
+        """Make one stance part of another, in one step, and show that."""
+        stances = self.document.project.graphs[self.session.place.layer].stances
+        words = tr("Merge {stance} into {other}", stance=stances[merged].name, other=stances[into].name)
+        try:
+            self.document.edit(words, lambda p: merge_stances(p, merged, into))
+        except EditError as error:
+            self.refused.emit(tr_error(error))
+            return
+        self.session.place.set_stance(into)
 
     def show_clip(self) -> None:
         actions = self.session.selection.selected_actions()

@@ -25,6 +25,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QToolTip, QWidget
 
+from app.features.graph.drags.chip import ChipDrag
 from app.features.graph.drags.head import HeadDrag
 from app.features.graph.drags.likelihood import LikelihoodDrag
 from app.features.graph.drags.row import RowDrag
@@ -248,6 +249,9 @@ class Canvas(QWidget):
     def end_in(self, actions: Sequence[str], stance: str) -> None:
         self.acts.end_in(actions, stance)
 
+    def merge(self, merged: str, into: str) -> None:
+        self.acts.merge(merged, into)
+
     def refuse(self, words: str) -> None:
         self.acts.refused.emit(words)
 
@@ -261,6 +265,7 @@ class Canvas(QWidget):
             return
         if hit.area == "chip" and hit.ident:
             self.session.place.set_stance(hit.ident)
+            self.hand.take(ChipDrag(self, hit.ident), event.position())
         elif hit.area == "add":
             self.acts.new_stance()
         elif hit.area == "other":

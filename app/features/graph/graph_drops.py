@@ -145,6 +145,16 @@ def _move(project: Project, stance: str, load: Load) -> Drop:
     return Drop(True, tr("move {what} to *{name}*", what=_count(load), name=name), None, stance)
 
 
+def merge_at(project: Project, stance: str, hit: GraphHit) -> Drop:
+    """Return what dropping a stance's chip on `hit` does."""
+    if hit.area != "chip" or hit.ident is None or hit.ident == stance:
+        return Drop(False, tr("drop this on another stance to merge the two"))
+    words = tr(
+        "merge *{stance}* into *{other}*", stance=_name(project, stance), other=_name(project, hit.ident)
+    )
+    return Drop(True, words, None, hit.ident)
+
+
 def perform_drop(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
     """Do what a possible drop said, for clips or actions. Raises EditError."""
     if drop.reorder:

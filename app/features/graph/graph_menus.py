@@ -44,6 +44,15 @@ def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> Q
             tr("Start here"),
             lambda: acts.document.edit(tr("Start here"), lambda p: edits.set_start_stance(p, stance_id)),
         )
+        others = [
+            s
+            for s in acts.document.project.graphs[acts.session.place.layer].stances.values()
+            if s.id != hit.ident
+        ]
+        if others:
+            into = menu.addMenu(tr("Merge into"))
+            for stance in others:
+                into.addAction(stance.name, partial(acts.merge, stance_id, stance.id))
         menu.addSeparator()
         menu.addAction(
             tr("Remove stance and its actions"),

@@ -351,18 +351,22 @@ class ReviewDialog(QDialog):
         )
         self._tell("timing", {name: round(seconds, 3)})
 
-    def _new_stance(self) -> None:
-        """Ask for the name of a stance there is not yet."""
+    def _find_stance(self) -> None:
+        """Ask for a stance by typing: one that is there, or the name of a new one."""
         if self._proposed is None:
             return
-        ends = self.row == "end_stance"
-        words, ok = QInputDialog.getText(
+        name: Field = "end_stance" if self.row == "end_stance" else "stance"
+        choices = self._choices(name)
+        words, ok = QInputDialog.getItem(
             self,
-            tr("New stance"),
-            tr("Name of the stance it ends in:") if ends else tr("Name of the stance:"),
+            tr("Find or add a stance"),
+            tr("Stance it ends in, or a new name:") if name == "end_stance" else tr("Stance, or a new name:"),
+            ["", *(words for _, words in choices)],
         )
-        if ok and words.strip():
-            self._choose("end_stance" if ends else "stance", " ".join(words.split()))
+        plain = " ".join(words.split())
+        if ok and plain:
+            known = {words.casefold(): value for value, words in choices}
+            self._choose(name, known.get(plain.casefold(), plain))
 
     def _toggle_context(self) -> None:
         self.context = not self.context
@@ -578,7 +582,7 @@ class ReviewDialog(QDialog):
             k.Key_Space: stage.toggle,
             k.Key_Home: stage.replay,
             k.Key_C: self._toggle_context,
-            k.Key_N: self._new_stance,
+            k.Key_N: self._find_stance,
             k.Key_T: self._edit_tags,
             k.Key_BracketLeft: lambda: self._cut("start"),
             k.Key_BracketRight: lambda: self._cut("end"),

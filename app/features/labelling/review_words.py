@@ -26,7 +26,7 @@ KEYS = lazy_texts(
         (", .", tr("frame")),
         ("[ ]", tr("set start, end")),
         ("C", tr("clip only")),
-        ("N", tr("new stance")),
+        ("N", tr("find or add a stance")),
         ("T", tr("tags")),
         ("A", tr("accept certain ones")),
         ("G", tr("groups")),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QMimeData, QUrl
 
-from app.features.graph.graph_drops import drop_at, perform_drop
+from app.features.graph.graph_drops import drop_at, merge_at, perform_drop
 from app.features.graph.graph_layout import GraphHit
 from app.project.load import Load
 from app.widgets.mime import load_of, make_mime
@@ -192,3 +192,35 @@ def test_only_files_that_can_be_clips_and_folders_are_taken():
         ]
     )
     assert load_of(data).files == ("/x/a.BVH", "/x/folder")
+
+
+def test_a_chip_on_another_merges_them_and_elsewhere_does_nothing(toy, project):
+    rest, up = toy.id(project, "rest"), toy.id(project, "up")
+    drop = merge_at(project, rest, GraphHit("chip", up))
+    assert (drop.possible, drop.stance, drop.words) == (True, up, "merge *rest* into *up*")
+    for hit in (GraphHit("chip", rest), GraphHit("node", None, "gesture"), GraphHit("nothing")):
+        assert not merge_at(project, rest, hit).possible
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_stance_dragged_onto_another_is_merged_in_one_step_and_from_its_menu_too(toys):
+    from app.features.graph.graph_menus import menu_of
+
+    drive = toys
+    far, up, rest = (drive.id(name) for name in ("far", "up", "rest"))
+    drive.session.place.set_stance(rest)
+    drive.pause(100)
+    steps = drive.document.undo_stack.count()
+    stances = lambda: drive.document.project.graphs["arms"].stances  # noqa: E731
+    drive.drag(drive.chip(far), drive.chip(up), lambda: far not in stances())
+    assert drive.document.undo_stack.count() == steps + 1 and drive.session.place.stance() == up
+    assert drive.canvas.arrow is None and drive.canvas.drop is None
+    drive.document.undo()
+    assert list(stances()) == [rest, up, far]
+    menu = menu_of(drive.canvas.acts, GraphHit("chip", far), [])
+    merge = next(a.menu() for a in menu.actions() if a.text() == "Merge into")
+    assert [a.text() for a in merge.actions()] == ["rest", "up"]
+    merge.actions()[0].trigger()
+    assert list(stances()) == [rest, up] and drive.session.place.stance() == rest
+    menu.close()

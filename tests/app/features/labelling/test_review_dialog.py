@@ -261,11 +261,22 @@ def test_a_clip_may_wait_and_one_gone_by_is_placed_anew(practice):
     dialog.close()
 
 
-def test_a_stance_there_is_not_is_named(practice, monkeypatch):
+def test_a_stance_is_found_by_typing_or_named(practice, monkeypatch):
     drive, dialog = practice, begun(practice)
     rest = next(c for c, e in drive.document.project.clips.items() if e.name == "on_hips__stance")
     dialog.go_to(rest)
-    monkeypatch.setattr(QInputDialog, "getText", lambda *a, **k: (" akimbo ", True))
+    dialog.fields.picked.emit("stance")
+    value, name = next((v, w) for v, w in dialog.review.choices(rest, "stance") if "hip" not in w.lower())
+    offered = []
+
+    def answer(*words, **_):
+        offered.extend(words[3])
+        return f" {name.upper()} ", True
+
+    monkeypatch.setattr(QInputDialog, "getItem", answer)
+    press(dialog, K.Key_N)
+    assert dialog.review.value(rest, "stance") == value and name in offered
+    monkeypatch.setattr(QInputDialog, "getItem", lambda *a, **k: (" akimbo ", True))
     press(dialog, K.Key_N)
     assert dialog.review.value(rest, "stance") == "akimbo"
     press(dialog, K.Key_Return)
