@@ -277,6 +277,7 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
             a.earliest_exit,
             stroke,
             *own,
+            repeat=a.repeat if isinstance(a.repeat, float) else 0.0,
         )
         actions[a.id] = Action(
             a.id,
