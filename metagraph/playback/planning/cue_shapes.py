@@ -141,8 +141,8 @@ def meets(action: Action, request: MetaRequest) -> bool:
 
 
 def remaining(meta: MetaAction, now: float) -> MetaRequest:
-    """Return what a meta action asks for; of a remainder, for as long as is left."""
+    """Return what a meta action asks for; of a remainder, for as long as is left. A model says no length."""
     request = meta.request
-    if meta.part == 0 or request.duration is None:
+    if request.duration is None or (meta.part == 0 and not meta.written):
         return request
-    return replace(request, duration=max(0.0, meta.end - now))
+    return replace(request, duration=None if meta.written else max(0.0, meta.end - now))

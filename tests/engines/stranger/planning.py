@@ -149,7 +149,7 @@ def shape(planner: dict[str, Any], action: dict[str, Any], meta: Meta | None, no
     leave, p = action["earliest_exit"], cycle(action)
     if p > 0.0:
         s = min(action["repeat"], 60.0)
-        if meta is not None and meta.timed:  # what models wrote says how long, too
+        if meta is not None and meta.timed and meta.rank != WRITTEN:
             s = meta.end - now if meta.part else meta.seconds
         length += (max(1.0, floor(min(s / p, 1e6) + 0.5)) - 1.0) * p
         leave = action["end"] if leave is None else leave

@@ -210,10 +210,10 @@ inline bool meets(const Ref<Action>& action, const Ref<MetaRequest>& request) {
         && (lang::len(request->among) == 0 || lang::contains(request->among, action->id));
 }
 
-/// Return what a meta action asks for; of a remainder, for as long as is left.
+/// Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
 inline Ref<MetaRequest> remaining(const Ref<MetaAction>& meta, double now) {
     Ref<MetaRequest> request = meta->request;
-    if (meta->part == 0 || !request->duration.has_value()) {
+    if (!request->duration.has_value() || (meta->part == 0 && !meta->written)) {
         return request;
     }
     return lang::made<MetaRequest>(
@@ -221,7 +221,7 @@ inline Ref<MetaRequest> remaining(const Ref<MetaAction>& meta, double now) {
         request->layer,
         request->kind,
         request->start,
-        std::max(0.0, meta->end - now),
+        meta->written ? std::nullopt : std::optional<double>(std::max(0.0, meta->end - now)),
         request->action,
         request->tags,
         request->limb,

@@ -186,15 +186,15 @@ export function meets(action, request) {
 }
 
 /**
- * Return what a meta action asks for; of a remainder, for as long as is left.
+ * Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
  * @param {MetaAction} meta
  * @param {number} now
  * @returns {MetaRequest}
  */
 export function remaining(meta, now) {
   const request = meta.request;
-  if (meta.part === 0 || request.duration === null) {
+  if (request.duration === null || (meta.part === 0 && !meta.written)) {
     return request;
   }
-  return but(request, { duration: Math.max(0, meta.end - now) });
+  return but(request, { duration: meta.written ? null : Math.max(0, meta.end - now) });
 }

@@ -187,11 +187,13 @@ namespace Metagraph
                 && (request.Among.Count == 0 || request.Among.Contains(action.Id));
         }
 
-        /// <summary>Return what a meta action asks for; of a remainder, for as long as is left.</summary>
+        /// <summary>
+        /// Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+        /// </summary>
         public static MetaRequest Remaining(MetaAction meta, double now)
         {
             var request = meta.Request;
-            if (meta.Part == 0 || request.Duration == null)
+            if (request.Duration == null || (meta.Part == 0 && !meta.Written))
             {
                 return request;
             }
@@ -200,7 +202,7 @@ namespace Metagraph
                 request.Layer,
                 request.Kind,
                 request.Start,
-                Math.Max(0.0, meta.End - now),
+                meta.Written ? (double?)null : Math.Max(0.0, meta.End - now),
                 request.Action,
                 request.Tags,
                 request.Limb,

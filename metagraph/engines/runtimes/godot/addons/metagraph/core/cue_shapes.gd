@@ -143,17 +143,17 @@ static func meets(action, request):
 		and (request.among.size() == 0 or request.among.has(action.id)))
 
 
-# Return what a meta action asks for; of a remainder, for as long as is left.
+# Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
 static func remaining(meta, now):
 	var request = meta.request
-	if meta.part == 0 or request.duration == null:
+	if request.duration == null or (meta.part == 0 and not meta.written):
 		return request
 	return MetaPlan.MetaRequest.new(
 		request.id,
 		request.layer,
 		request.kind,
 		request.start,
-		Util.most(0.0, meta.end - now),
+		null if meta.written else Util.most(0.0, meta.end - now),
 		request.action,
 		request.tags,
 		request.limb,
