@@ -329,11 +329,7 @@ class _ActionCheck:
                 ),
                 phrase("Shorten its blends."),
             )
-        elif (
-            self.action.kind in ("gesture", "fidget")
-            and entry.frames > 1
-            and blends > (1 - SEEN) * length
-        ):
+        elif self.action.kind in ("gesture", "fidget") and entry.frames > 1 and blends > (1 - SEEN) * length:
             yield self.at(
                 "warning",
                 "hardly-seen",

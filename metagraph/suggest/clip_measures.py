@@ -21,7 +21,8 @@ TYPICAL: Mapping[Layer, float] = {
 HELD = 1.0  # seconds without movement after which it is a pose to stand in
 FLOWING = 0.2  # of its greatest speed: a clip that is so fast at its ends is a flowing loop
 CYCLE = (0.2, 1.25)  # seconds that one cycle of a movement that is made to repeat lasts
-FLOWS = 0.45  # of its mean speed: it goes on across its seam
+FLOWS = 0.3  # of its greatest speed: what is so fast at its ends goes on across its seam
+TURNS = 0.45  # of its mean speed: what is so fast near its ends only turns round at its seam
 STROKES: Mapping[Layer, float] = {"arms": 0.15, "head": 0.08}  # heights a second: no breathing goes so fast
 STRIDE = 0.05  # heights by which each foot passes the other in a walk, at least
 BREATHES = 0.008  # heights a second that arms on a breathing chest move while the head moves
@@ -89,16 +90,17 @@ def resting(traits: Traits) -> float:
     )
 
 
-def is_cycle(traits: Traits, named: bool = False) -> bool:
+def is_cycle(traits: Traits, named: bool = False, away: bool = False) -> bool:
     """Return whether a clip is one cycle of a gesture: short, with ends that meet amid the movement, and
     with hands or a head that go faster than an idle's. `named`: its name says that it is a gesture, so it
-    may be small, or of the whole body.
+    may be small, or of the whole body. `away`: it begins in no stance, so it may turn round at its ends.
     """
     moves = find_layer_moving_most(traits).value
     x = traits.layers[moves]
     apart = max(y.loop_error / TYPICAL[layer] for layer, y in traits.layers.items())
     short = CYCLE[0] <= traits.duration <= CYCLE[1] and traits.face == 0
-    if not short or apart >= 0.1 or x.flow < FLOWS or is_walk(traits):
+    flows = x.flow >= FLOWS or (away and x.turning >= TURNS)
+    if not short or apart >= 0.1 or not flows or is_walk(traits):
         return False
     return named or x.peak >= STROKES.get(moves, inf)
 

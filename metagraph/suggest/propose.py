@@ -69,6 +69,7 @@ __all__ = [
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
+AWAY = 0.5  # chance that a clip begins in a stance, below which it begins in none
 TAUGHT = 0.5  # confidence of a kind learned from labelled clips, from which on no clip is skipped
 TOLD = 0.7  # confidence of a name's stance, below which it does not define stances
 LEADS = 0.8  # confidence of the motion that a clip named after a stance goes there
@@ -157,9 +158,9 @@ def propose(
     fresh = not any(True for _ in project.actions())
     whole = moving and (is_whole_body_carried(project) or (fresh and are_whole_body_recordings(mine, begun)))
     cycles = {c for c, t in mine.items() if _is_cycle(t, called[c])} if moving else set()
-    standing = {  # nobody stands where fights begin, nor in the midst of a wave
-        c: t for c, t in mine.items() if called[c].other is None and c not in cycles
-    }
+    standing = {c: t for c, t in mine.items() if called[c].other is None}  # nobody stands where fights begin
+    still = {c: t for c, t in standing.items() if not (moving and _is_cycle(t, called[c], True))}
+    standing = still or standing  # nor in the midst of a wave
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
@@ -173,6 +174,11 @@ def propose(
             each.cycle = c in cycles
             on = CARRIER if each.posture else None
             each.motion = guess(each.traits, shapes, on, each.posture, each.cycle)
+            in_stance = sum(chance for chance, _ in each.motion.begins)
+            away = each.motion.stance is not None and in_stance < AWAY
+            if away and not each.cycle and _is_cycle(each.traits, each.said, away):
+                each.cycle = True
+                each.motion = guess(each.traits, shapes, on, each.posture, True)
         if alike.examples:
             each.learned = alike.guess(name_words(each.name), measures_of(each.traits))
         each.said = _leading(each.said, each.motion)
@@ -237,10 +243,13 @@ def _going_away(out: Mapping[str, Proposal], traits: Mapping[str, Traits]) -> di
     }
 
 
-def _is_cycle(traits: Traits, said: NameGuess) -> bool:
-    """Return whether a clip is one cycle of a gesture, as its name allows: an idle is none."""
+def _is_cycle(traits: Traits, said: NameGuess, away: bool = False) -> bool:
+    """Return whether a clip is one cycle of a gesture, as its name allows: an idle is none, nor a small
+    movement that is named after one.
+    """
     kind = said.kind.value if said.kind is not None else None
-    return kind != "stance" and is_cycle(traits, kind in ("gesture", "fidget"))
+    named = kind in ("gesture", "fidget") and said.stance is None
+    return kind != "stance" and is_cycle(traits, named, away)
 
 
 def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:

@@ -48,8 +48,9 @@ class LayerTraits:
     is the mean speed; `peak` and `peak_at` are the greatest speed and its time in seconds. `rest` is the
     share of the time below RESTING. `bouts` is how often it speeds up. `farthest` `[n, 3]` is the pose at
     `extent_at`; `low` and `high` `[n, 3]` are the least and the greatest of each coordinate. `stroke_at` is
-    when it is fastest on its way there, in seconds. `flow` is how fast it goes across its seam, when it
-    repeats, relative to its mean; 0 where it would jerk.
+    when it is fastest on its way there, in seconds. `flow` is how fast it goes at its seam, if it repeats,
+    relative to its greatest speed, and `turning` within a tenth of a second of it, relative to its mean; both
+    are 0 where it would jerk.
     """
 
     names: tuple[str, ...]
@@ -70,6 +71,7 @@ class LayerTraits:
     rest: float
     bouts: int
     flow: float = 0.0
+    turning: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,25 +266,26 @@ def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, t
         float(times[_greatest(fast[: far + 1])]),
         float(_mean((fast < RESTING).astype(float), times)),
         _bouts(fast),
-        _flow(tracks, times),
+        *_flow(tracks, times),
     )
 
 
-def _flow(tracks: Array, times: Array) -> float:
-    """Return how fast points `[F, n, 3]` go within `NEAR_SEAM` of the seam of a loop, relative to their mean
-    speed; 0 where their velocity jumps there.
+def _flow(tracks: Array, times: Array) -> tuple[float, float]:
+    """Return how fast points `[F, n, 3]` go at the seam of a loop, relative to their greatest speed, and
+    within `NEAR_SEAM` of it, relative to their mean; 0 where their velocity jumps there.
     """
     if len(times) < 4:
-        return 0.0
+        return 0.0, 0.0
     velocity = np.diff(tracks.astype(np.float64), axis=0) / np.diff(times)[:, None, None]
     speed = np.linalg.norm(velocity, axis=-1)
     point = int(np.argmax(speed.max(0)))
     fastest, jump = speed[:, point].max(), np.linalg.norm(velocity[0, point] - velocity[-1, point])
     if fastest < 1e-4 or jump > JERKS * fastest:
-        return 0.0
+        return 0.0, 0.0
     count = max(1, int(NEAR_SEAM / float(times[1] - times[0]) + 0.5))
     sides = speed[:count, point].mean(), speed[-count:, point].mean()
-    return float(min(sides) / speed[:, point].mean())
+    ends = min(speed[0, point], speed[-1, point])
+    return float(ends / fastest), float(min(sides) / speed[:, point].mean())
 
 
 def _greatest(x: Array) -> int:

@@ -76,6 +76,7 @@ def with_whole_body(traits: Traits) -> Traits:
         rest=min(x.rest for x, _ in parts),
         bouts=fast.bouts,
         flow=far.flow,
+        turning=far.turning,
     )
     return replace(traits, layers={**traits.layers, CARRIER: whole})
 

@@ -14,7 +14,7 @@ from metagraph.graph.repeating import LEAST_CYCLE, cycle_of, usual_repeat
 
 NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
 SHARE = 0.45  # of a clip that a blend may take
-SHARE_REPEATED = 0.4  # of the seconds that an action repeats
+SHARE_REPEATED = 0.38  # of the seconds that an action repeats
 LONGEST = 3.0  # seconds that one repeats to have room for its blends
 SLOWER = 1.1  # times as long a blend for one that repeats, whose own movement is added
 
