@@ -134,5 +134,5 @@ def test_several_cycles_in_one_clip_play_once() -> None:
 
 def test_steps_in_place_do_not_repeat() -> None:
     legs = {"LeftUpperLeg": (25, 0, 0), "RightUpperLeg": (-25, 0, 0), "LeftUpperArm": (15, 0, 0)}
-    project, found = labelled(moved("March", 0.9, lambda x: added({}, legs, np.sin(2 * np.pi * x))))
+    _, found = labelled(moved("March", 0.9, lambda x: added({}, legs, np.sin(2 * np.pi * x))))
     assert not any("repeat" in p.timing for p in found.proposals.values())
