@@ -69,6 +69,7 @@ __all__ = [
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
+CALLED = 0.9  # confidence of a name that says a gesture itself, not a variation of a stance
 AWAY = 0.5  # chance that a clip begins in a stance, below which it begins in none
 TAUGHT = 0.5  # confidence of a kind learned from labelled clips, from which on no clip is skipped
 TOLD = 0.7  # confidence of a name's stance, below which it does not define stances
@@ -248,7 +249,7 @@ def _is_cycle(traits: Traits, said: NameGuess, away: bool = False) -> bool:
     movement that is named after one.
     """
     kind = said.kind.value if said.kind is not None else None
-    named = kind in ("gesture", "fidget") and said.stance is None
+    named = kind == "gesture" and said.kind is not None and said.kind.confidence >= CALLED
     return kind != "stance" and is_cycle(traits, named, away)
 
 

@@ -93,6 +93,14 @@ def test_one_cycle_is_a_gesture_that_repeats_wherever_it_is_cut(name: str, cut: 
     assert p.layer.value == ("arms" if name in ARMS else "head")
 
 
+def test_a_name_that_says_a_gesture_makes_a_small_movement_one() -> None:
+    small = moved("Clapping", 0.77, lambda x: added(AHEAD, {"RightHand": (9, 0, 0)}, np.sin(6.283 * x)))
+    project, found = labelled(small)
+    assert proposal(project, found, "Clapping").cycle
+    project, found = labelled(small, named=False)
+    assert not proposal(project, found, "Clapping").cycle
+
+
 @pytest.mark.parametrize("named", [True, False], ids=["named", "unnamed"])
 def test_all_of_them_together_are_seen_when_they_play(named: bool) -> None:
     project, found = labelled(*(cycle(name) for name in CYCLES), named=named)
