@@ -11,6 +11,7 @@ import pytest
 from metagraph.engines.engine_machine import animations, machines
 from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
+from metagraph.formats.project.data import action_data, action_from
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Play, request_from
@@ -160,7 +161,17 @@ def test_plain_numbers_say_the_same_as_arrays(project: Project, wave: str) -> No
     assert cue.once.end == pytest.approx(cue.start + cue.cycle_to - cue.entry) and not cue.once.repeats
 
 
-# --- exports
+# --- files
+
+
+def test_a_gesture_of_an_older_file_that_loops_plays_once(project: Project, wave: str) -> None:
+    action = project.action(wave)
+    assert action is not None
+    data = action_data(replace(action, timing=replace(action.timing, loop=True, repeat=0.0)))
+    assert "repeat" not in data and data["loop"] is True
+    old = edits.update_actions(project, [wave], timing=action_from(data, "arms", "$").timing)
+    cue = played(planned(old, asked(wave, duration=3.0)))
+    assert cue.end - cue.start == pytest.approx(CYCLE) and not cue.repeats
 
 
 def test_an_export_says_that_it_repeats_and_nothing_of_what_plays_once(
