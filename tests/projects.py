@@ -183,6 +183,7 @@ def _update(draw: Any, project: Project) -> Project:
                         "loop": st.booleans(),
                         "earliest_exit": st.none() | times,
                         "stroke": st.none() | times,
+                        "repeat": times,
                     },
                 ),
             },

@@ -33,6 +33,7 @@ class Fix:
     in_place: str | None = None  # the clip to keep in place
     scaled: str | None = None  # the clip whose actions' times are scaled to its length
     kept: str | None = None  # the clip whose actions' times are right as they are
+    repeated: str | None = None  # the action to repeat
     stance: str | None = None
     tip: str = field(default_factory=partial(tr, "One step that can be undone"))
     instead: Fix | None = None
@@ -43,6 +44,10 @@ class Fix:
             from metagraph.suggest.jumps.bridges import bridge_stance
 
             return bridge_stance(project, self.stance)[0]
+        if self.repeated is not None:
+            from metagraph.suggest.jumps.soft_blends import repeat_actions
+
+            return repeat_actions(project, [self.repeated])
         clip = self.in_place or self.scaled or self.kept
         if clip is not None:
             return self._of_clip(project, clip) if clip in project.clips else project
@@ -62,7 +67,8 @@ class Fix:
 
 def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
     """Return fixes that give actions back the clips they were made of, if those are in the project; otherwise
-    fixes that keep the clips they have. Clips that travel are kept in place.
+    fixes that keep the clips they have. Clips that travel are kept in place, and actions that are hardly seen
+    repeat.
     """
     out: dict[Problem, Fix] = {}
     for problem in problems:
@@ -73,6 +79,8 @@ def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fi
         if action is not None and problem.code == "other-length":
             keep = Fix(tr("Keep the times"), kept=action.clip)
             out[problem] = Fix(tr("Scale the times"), scaled=action.clip, instead=keep)
+        if action is not None and problem.code == "hardly-seen" and action.timing.repeat <= 0:
+            out[problem] = Fix(tr("Repeat it"), repeated=action.id)
         if action is not None and problem.code == "moment":
             phases = dict.fromkeys(("stroke", "ready", "stroke_end", "relax"))
             out[problem] = Fix(tr("Clear the stroke"), action.id, {"timing": phases})

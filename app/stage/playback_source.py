@@ -16,6 +16,7 @@ import numpy as np
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import find_added_actions, place_clips
 from metagraph.graph.model import Action, Layer, Project
+from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.evaluator import Evaluator, Poses
@@ -119,9 +120,10 @@ class ShownPlayback:
         if self.clip is not None:
             return moment if self.clip == action.clip else None
         for cue in self.plan.layers[action.layer].cues:
-            if cue.action.id == action.id and cue.entry - 1e-6 <= moment <= cue.last + 1e-6:
-                times = np.linspace(cue.start, cue.end, 64)
-                return float(np.interp(moment, cue.clip_seconds(times), times))
+            once = cue.once
+            if cue.action.id == action.id and cue.entry - 1e-6 <= moment <= once.last + 1e-6:
+                times = np.linspace(cue.start, once.end, 64)
+                return float(np.interp(moment, once.clip_seconds(times), times))
         return None
 
     @cached_property
@@ -210,5 +212,5 @@ def play_in_context(
         )
     request = MetaRequest("shown", action.layer, action.kind, LEAD, action=action.id)
     start, end = scratch.span(action)
-    length = LEAD + max(0.0, end - start) + LEAD
+    length = LEAD + max(0.0, seconds_played(action.kind, action.timing, start, end)) + LEAD
     return ShownPlayback(scratch, make_plan(scratch, length, (request,), stances=begin, idle=False), length)

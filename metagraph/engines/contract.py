@@ -107,7 +107,9 @@ class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
     relax as the user set them, null if found. cooldown: seconds in which it is not drawn again; spacing: how
     many others come between, null for as never_twice says. vigour: how fast its hands, head or trunk move
     beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast. contacts: where
-    its hands stay. joint_weights: how far joints move that move in part; 1 for those not listed.
+    its hands stay. joint_weights: how far joints move that move in part; 1 for those not listed. repeat: for
+    how many seconds a gesture or fidget repeats its part where nobody says how long, left out of those that
+    play once; its blends may be longer than the part.
     """
 
     id: Id
@@ -135,6 +137,7 @@ class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
     contacts: list[ExportedContact] = []
     vigour: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     joint_weights: dict[str, Annotated[float, Meta(gt=0, le=1)]] = {}
+    repeat: Seconds | msgspec.UnsetType = msgspec.UNSET
 
 
 class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):

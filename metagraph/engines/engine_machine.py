@@ -23,10 +23,12 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.expand import chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Project
+from metagraph.graph.repeating import cycle_of, seconds_played
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import unique_names
-from metagraph.playback.posing.layers import keep_to
+from metagraph.playback.plan import Cue
+from metagraph.playback.posing.layers import keep_to, sample_cue
 
 Array = NDArray[Any]
 
@@ -134,9 +136,8 @@ def _machine(project: Project, graph: MetaGraph, named: Mapping[str, str]) -> Ma
     states: dict[str, EngineState] = {}
     for number, action in enumerate(_playing(graph), 1):
         start, end = project.span(action)
-        states[action.id] = EngineState(
-            number, named[action.id], action, end - start, action.kind == "stance"
-        )
+        seconds = seconds_played(action.kind, action.timing, start, end)
+        states[action.id] = EngineState(number, named[action.id], action, seconds, action.kind == "stance")
     part = anatomy.project_parts(project)
     joints = tuple(
         n
@@ -198,10 +199,9 @@ def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
     if clip is None:
         raise ValueError(f"the file of clip '{project.clips[state.action.clip].name}' is missing")
     start, end = project.span(playing)
-    frames = max(2, round((end - start) * clip.fps) + 1)
-    times = np.linspace(start, end, frames)
-    pose = clip.pose_at(times)
-    rotations, translations = np.array(pose.rotations), np.array(pose.translations)
+    seconds = seconds_played(playing.kind, playing.timing, start, end)
+    frames = max(2, round(seconds * clip.fps) + 1)
+    rotations, translations = _played(playing, clip, start, end, np.linspace(0.0, seconds, frames))
     mask = anatomy.action_mask(project, state.action)
     if mask is not None and loop is not None:
         stance = loop.pose_at(project.span(rest)[0])
@@ -213,8 +213,23 @@ def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
         keep_to((rotations, translations), rests, mask)
     moved = np.flatnonzero(np.abs(translations - anatomy.base_pose(project).translations).max((0, 2)) > 1e-6)
     translated = tuple(sorted({0, *moved.tolist()}))
-    fps = (frames - 1) / max(end - start, 1e-3) if end > start else clip.fps
+    fps = (frames - 1) / max(seconds, 1e-3) if end > start else clip.fps
     return Clip(state.name, project.skeleton, fps, rotations, translations[:, list(translated)], translated)
+
+
+def _played(action: Action, clip: Clip, start: float, end: float, times: Array) -> tuple[Array, Array]:
+    """Return rotations `[F, J, 4]` and translations `[F, J, 3]` of the part from start to end of a clip, at
+    `times` `[F]` from its beginning, again and again where its action repeats it.
+    """
+
+    def sample(seconds: Array) -> tuple[Array, Array]:
+        pose = clip.pose_at(seconds)
+        return np.array(pose.rotations), np.array(pose.translations)
+
+    if cycle_of(action.kind, action.timing, start, end) <= 0:
+        return sample(start + times)
+    cue = Cue(action, 0.0, float(times[-1]), start, 0.0, 0.0, "", "", "", cycle_from=start, cycle_to=end)
+    return sample_cue(cue, times, sample)
 
 
 def write_machine_glb(

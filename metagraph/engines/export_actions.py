@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from msgspec import UNSET
+
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import contacts_of
 from metagraph.graph.model import MetaGraph, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.playback.planning.vigour import mean_speed_within, vigours
 from metagraph.playback.timing.phases import find_phases_within
 
@@ -62,6 +65,7 @@ def actions_of(project: Project, graph: MetaGraph) -> list[c.ExportedAction]:
                 contacts_of(action) if action.contacts else NONE,
                 0.0,
                 dict(action.joint_weights) if action.joint_weights else {},
+                timing.repeat if cycle_of(action.kind, timing, start, end) > 0.0 else UNSET,
             )
         )
     found_vigours = vigours(project, graph, speeds)

@@ -276,7 +276,10 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
             a.loop,
             a.earliest_exit,
             stroke,
-            *own,
+            own[0],
+            own[1],
+            own[2],
+            0.0 if a.repeat is msgspec.UNSET else a.repeat,
         )
         actions[a.id] = Action(
             a.id,

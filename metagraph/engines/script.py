@@ -17,6 +17,7 @@ from metagraph.engines.script_parts import Ask, ScriptCase, ScriptStep
 from metagraph.engines.script_parts import ask as _ask
 from metagraph.engines.script_parts import list_some_actions as _some
 from metagraph.engines.script_parts import make_case as _once
+from metagraph.engines.script_repeats import list_repeat_cases
 from metagraph.engines.script_replaced import list_replaced_cases
 from metagraph.engines.script_shades import list_shade_cases
 from metagraph.engines.script_timely import list_timely_cases
@@ -32,6 +33,7 @@ def cases(project: Project) -> Iterator[ScriptCase]:
         _layers,
         _requests,
         list_timely_cases,
+        list_repeat_cases,
         _conflicts,
         _stances,
         _refused,

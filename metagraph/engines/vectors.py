@@ -154,6 +154,7 @@ def _layer(plan: LayerPlan) -> dict[str, Any]:
                 "hold": _time(c.hold),
                 **({"extent": _time(c.extent)} if c.extent != 1 else {}),
                 **({"tempo": _time(c.tempo)} if c.tempo != 1 else {}),
+                **({"cycle_from": _time(c.cycle_from), "cycle_to": _time(c.cycle_to)} if c.repeats else {}),
             }
             for c in plan.cues
         ],

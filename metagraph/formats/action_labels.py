@@ -48,6 +48,7 @@ class LabelRow(Struct, forbid_unknown_fields=True, omit_defaults=True):
     blend_in: Seconds | None = None
     blend_out: Seconds | None = None
     loop: bool | None = None
+    repeat: Seconds | None = None
     earliest_exit: Maybe = UNSET
     stroke: Maybe = UNSET
     ready: Maybe = UNSET
@@ -61,7 +62,7 @@ class LabelFile(Struct, forbid_unknown_fields=True):
 
 
 _OWN = ("name", "limb", "likelihood", "cooldown")
-_TIMES = ("start", "blend_in", "blend_out", "loop")
+_TIMES = ("start", "blend_in", "blend_out", "loop", "repeat")
 _MAYBE = ("end", "earliest_exit", "stroke", "ready", "stroke_end", "relax")
 
 

@@ -19,6 +19,7 @@ from metagraph.graph.expand import reachable
 from metagraph.graph.manual.check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
+from metagraph.graph.repeating import seconds_played
 from metagraph.motion.in_place import travel_of
 
 Array = NDArray[Any]
@@ -292,6 +293,8 @@ class _ActionCheck:
         tolerance = 0.5 / entry.fps
         latest = entry.duration + tolerance
         blends = timing.blend_in + timing.blend_out
+        length = seconds_played(self.action.kind, timing, timing.start, end)
+        repeats = length > end - timing.start
         if not (0 <= timing.start <= latest and end <= latest):  # also true if one of them is NaN
             yield self.at(
                 "error",
@@ -315,31 +318,29 @@ class _ActionCheck:
                 ),
                 phrase("Move its end after its start."),
             )
-        elif self.action.kind != "stance" and _sound(blends) and blends > end - timing.start + tolerance:
+        elif self.action.kind != "stance" and _sound(blends) and blends > length + tolerance:
             yield self.at(
                 "warning",
                 "blend",
                 phrase(
                     "blends for {blends:.2f} s but is only {length:.2f} s long",
                     blends=blends,
-                    length=end - timing.start,
+                    length=length,
                 ),
                 phrase("Shorten its blends."),
             )
-        elif (
-            self.action.kind in ("gesture", "fidget")
-            and entry.frames > 1
-            and blends > (1 - SEEN) * (end - timing.start)
-        ):
+        elif self.action.kind in ("gesture", "fidget") and entry.frames > 1 and blends > (1 - SEEN) * length:
             yield self.at(
                 "warning",
                 "hardly-seen",
                 phrase(
                     "is hardly seen: {blends:.2f} of its {length:.2f} s are blends",
                     blends=blends,
-                    length=end - timing.start,
+                    length=length,
                 ),
-                phrase("Shorten its blends, or use a clip that plays the movement several times."),
+                phrase("Shorten its blends, or let it repeat for longer.")
+                if repeats
+                else phrase("Let it repeat, shorten its blends, or use a clip that plays it several times."),
             )
 
     def blends(self) -> Iterator[Problem]:

@@ -74,7 +74,9 @@ class Timing:
     `blend_in` is the overlap at the loop's seam. `loop` repeats the part. From `earliest_exit` on the action
     may be left; None plays it through. `stroke` is its most telling moment. `ready`, `stroke_end` and `relax`
     are the ends of a gesture's preparation, stroke and hold; its retraction ends with the action. None takes
-    the times found from the motion (`playback.timing.phases`).
+    the times found from the motion (`playback.timing.phases`). `repeat` is for how many seconds a gesture or
+    fidget repeats its part where nobody says how long, as near as a whole number of times comes; 0 plays it
+    once.
     """
 
     start: float = 0.0
@@ -87,6 +89,7 @@ class Timing:
     ready: float | None = None
     stroke_end: float | None = None
     relax: float | None = None
+    repeat: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

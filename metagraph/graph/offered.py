@@ -13,6 +13,7 @@ import msgspec
 from metagraph.graph import anatomy
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, MetaGraph, Project
+from metagraph.graph.repeating import seconds_played
 from metagraph.graph.words import MODES
 
 EVERYTHING: Mapping[str, int] = {}
@@ -68,7 +69,7 @@ def _action(project: Project, action: Action) -> dict[str, Any]:
         "name": action.name,
         "kind": action.kind,
         "stance": action.stance,
-        "seconds": round(end - start, 6),
+        "seconds": round(seconds_played(action.kind, action.timing, start, end), 6),
     }
     if action.kind == "transition":
         out["to"] = action.end_stance

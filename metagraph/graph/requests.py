@@ -93,12 +93,14 @@ class Fidget(Request, frozen=True, tag="fidget"):
 
 
 class Play(Request, frozen=True, tag="action"):
-    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare, late, mood,
+    """One action, by id or name; the layer goes to its stance first. duration: for how long it goes on if it
+    repeats, null for as long as it is set to; others take their own time. stroke, hold, prepare, late, mood,
     intensity: as for a gesture.
     """
 
     action: Id
     layer: Layer | None = None
+    duration: Seconds | None = None
     stroke: Seconds | None = None
     hold: Annotated[float, Meta(ge=0, le=600)] | None = None
     prepare: bool = True

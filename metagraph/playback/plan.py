@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import isfinite
 from typing import Any, Literal
@@ -111,7 +111,8 @@ class Cue:
     hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not
     stretched. blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it
     leaves the layer in. meta: key of the meta action it realises. extent: how large it is played, a factor of
-    its turns away from the stance.
+    its turns away from the stance. cycle_from, cycle_to: clip seconds between which it repeats; 0, 0 where
+    it plays once.
     """
 
     action: Action
@@ -128,16 +129,35 @@ class Cue:
     hold: float = 0.0
     extent: float = 1.0
     tempo: float = 1.0
+    cycle_from: float = 0.0
+    cycle_to: float = 0.0
+
+    @property
+    def repeats(self) -> bool:
+        """Whether it plays a cycle again and again."""
+        return self.cycle_to > self.cycle_from
 
     def clip_seconds(self, times: Any) -> Any:
         """Return the clip seconds shown at `times`, a number or an array `[...]` within the cue."""
         elapsed = times - self.start
+        if self.repeats:
+            cycle = self.cycle_to - self.cycle_from
+            into = self.entry - self.cycle_from + elapsed * self.tempo
+            return self.cycle_from + into - cycle * np.floor(into / cycle)
         if self.hold <= 0:
             return self.entry + elapsed * self.tempo
         before, natural = (self.hold_from - self.entry) / self.tempo, self.hold_to - self.hold_from
         held = np.clip(elapsed - before, 0.0, self.hold)
         more = (elapsed - held) * (self.tempo - 1)  # none at its own speed, to the last digit
         return self.entry + elapsed - held + more + held * (natural / self.hold)
+
+    @property
+    def once(self) -> Cue:
+        """The cue until it begins its cycle again; itself where it plays once."""
+        if not self.repeats:
+            return self
+        end = min(self.end, self.start + (self.cycle_to - self.entry) / self.tempo)
+        return replace(self, end=end, cycle_from=0.0, cycle_to=0.0)
 
     @property
     def last(self) -> float:

@@ -18,6 +18,7 @@ from metagraph.common.wording import Phrase, join_phrases, phrase, plural_phrase
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.problem import Problem, Severity
+from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
 from metagraph.motion.in_place import travel_of
 from metagraph.motion.skeleton import Skeleton
@@ -140,7 +141,7 @@ def _ask_for_each(project: Project) -> tuple[list[Play], float]:
                 continue
             asks.append(Play(id=f"rehearse {action.id}", action=action.id, layer=layer, at=at))
             start, end = project.span(action)
-            at += end - start + GAP
+            at += seconds_played(action.kind, action.timing, start, end) + GAP
         longest = max(longest, at)
     return asks, longest + 2.0 if asks else 0.0
 

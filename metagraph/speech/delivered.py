@@ -72,6 +72,8 @@ def _told(cue: Cue, project: Project) -> tuple[float, float]:
     """Return when a gesture's stroke is, and when its hold ends."""
     found = phases(project, cue.action)
     stroke = cue.start + (found.stroke - cue.entry) / cue.tempo
+    if cue.repeats:
+        return stroke, cue.end - cue.blend_out
     longer = cue.hold - (cue.hold_to - cue.hold_from) if cue.hold > 0 else 0.0
     return stroke, min(cue.end, stroke + (found.relax - found.stroke) / cue.tempo + longer)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import log, sqrt
+from math import inf, log, sqrt
 
 from metagraph.common.wording import phrase
 from metagraph.graph.words import Layer
@@ -20,6 +20,10 @@ TYPICAL: Mapping[Layer, float] = {
 }  # heights that another stance is away, about
 HELD = 1.0  # seconds without movement after which it is a pose to stand in
 FLOWING = 0.2  # of its greatest speed: a clip that is so fast at its ends is a flowing loop
+CYCLE = (0.2, 1.25)  # seconds that one cycle of a movement that is made to repeat lasts
+FLOWS = 0.3  # of its greatest speed: what is so fast at its ends goes on across its seam
+TURNS = 0.45  # of its mean speed: what is so fast near its ends only turns round at its seam
+STROKES: Mapping[Layer, float] = {"arms": 0.15, "head": 0.08}  # heights a second: no breathing goes so fast
 STRIDE = 0.05  # heights by which each foot passes the other in a walk, at least
 BREATHES = 0.008  # heights a second that arms on a breathing chest move while the head moves
 SEVERAL = 8  # clips from which on the movement of the calmest belongs to the recording
@@ -66,6 +70,8 @@ def resting(traits: Traits) -> float:
     """Return the logit of a stance: little movement, for a long time, steady, with ends that meet."""
     if traits.frames < 2 or traits.duration <= 0:
         return 3.0
+    if is_cycle(traits):
+        return -3.0
     if no_measures(traits):  # held, or a clip of the face
         return 3.0 if traits.duration >= HELD else 0.0
     x = max(traits.layers.values(), key=lambda y: y.peak)
@@ -82,6 +88,21 @@ def resting(traits: Traits) -> float:
         - 6.0 * max(0.0, apart - 0.3)
         + flows * (max(0.0, -long) + small)
     )
+
+
+def is_cycle(traits: Traits, named: bool = False, away: bool = False) -> bool:
+    """Return whether a clip is one cycle of a gesture: short, with ends that meet amid the movement, and
+    with hands or a head that go faster than an idle's. `named`: its name says that it is a gesture, so it
+    may be small, or of the whole body. `away`: it begins in no stance, so it may turn round at its ends.
+    """
+    moves = find_layer_moving_most(traits).value
+    x = traits.layers[moves]
+    apart = max(y.loop_error / TYPICAL[layer] for layer, y in traits.layers.items())
+    short = CYCLE[0] <= traits.duration <= CYCLE[1] and traits.face == 0
+    flows = x.flow >= FLOWS or (away and x.turning >= TURNS)
+    if not short or apart >= 0.1 or not flows or is_walk(traits):
+        return False
+    return named or x.peak >= STROKES.get(moves, inf)
 
 
 def is_walk(traits: Traits) -> bool:

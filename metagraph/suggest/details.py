@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
+from metagraph.graph.repeating import usual_repeat
 from metagraph.motion.clip import Clip
+from metagraph.playback.timing.phase_times import LEAST_BLEND
 from metagraph.playback.timing.phases import phases
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.jumps import compatibility
@@ -29,6 +31,7 @@ STILL = np.radians(2.0)  # the most that a joint turns in a moment that is still
 STAYS = 0.01  # heights that the hips move in it, at most
 LONGEST = 2.0  # seconds: the longest such moment
 MANY = 12  # clips that are searched for one
+LATE = 2 / 3  # of a cycle: its stroke is sought from there on
 
 
 def with_timing(
@@ -61,6 +64,8 @@ def with_timing(
                 continue
             if p.kind.value == "stance":
                 times = compatibility.loop_times(stats, motion, roles)
+            elif _repeats(p):
+                times = _whole_cycle(motion)
             else:
                 start = frames.get(p.stance.value if p.stance is not None else "")
                 if start is None:
@@ -79,9 +84,19 @@ def with_timing(
     return out
 
 
+def _repeats(p: Proposal) -> bool:
+    return p.cycle and p.kind.value in ("gesture", "fidget")
+
+
+def _whole_cycle(motion: Clip) -> compatibility.ProposedTimes:
+    """Return the timing of a clip that is one cycle: all of it, blended in and out over any distance."""
+    blend, reason = min(LEAST_BLEND, motion.duration), phrase("is one cycle, which ends as it begins")
+    return compatibility.ProposedTimes(0.0, motion.duration, blend, blend, None, True, reason)
+
+
 def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -> Proposal:
     loop = p.kind.value == "stance"
-    timing = {
+    timing: dict[str, Any] = {
         "start": round(times.start, 3),
         "end": None if times.end >= motion.duration - 1e-3 else round(times.end, 3),
         "blend_in": round(times.blend_in, 3),
@@ -89,10 +104,17 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -
         "earliest_exit": None if times.earliest_exit is None else round(times.earliest_exit, 3),
         "loop": loop,
     }
-    sure = 0.9 if times.good else 0.5
     reasons = dict.fromkeys(timing, times.reason)
     reasons["loop"] = _plays(p.kind.value)
-    if times.earliest_exit is None:
+    if _repeats(p):
+        timing["repeat"] = usual_repeat(motion.duration)
+        reasons["repeat"] = phrase(
+            "one cycle of {seconds:.2f} s, played {count} times, or for as long as a request asks",
+            seconds=motion.duration,
+            count=round(timing["repeat"] / motion.duration),
+        )
+        reasons["earliest_exit"] = reasons["loop"] = phrase("it may be left after its first cycle")
+    elif times.earliest_exit is None:
         reasons["earliest_exit"] = (
             phrase("a stance can exit at any time")
             if loop
@@ -102,6 +124,7 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -
         reasons["earliest_exit"] = phrase(
             "looks like the stance it ends in from {seconds:.2f} s on", seconds=times.earliest_exit
         )
+    sure = 0.9 if times.good else 0.5
     details = {
         key: Belief(value, p.kind.confidence if key == "loop" else sure, reasons[key])
         for key, value in timing.items()
@@ -153,9 +176,10 @@ def with_stroke(project: Project, p: Proposal, motion: MotionGuess | None) -> Pr
     """
     if p.kind.value != "gesture" or motion is None or project.clips[p.clip].motion is None:
         return p
-    action = Action(
-        "", p.clip, "gesture", p.layer.value, "", "", timing=Timing(**p.timing), limb=p.limb.value
-    )
+    timing = Timing(**p.timing)
+    if _repeats(p):  # of the first cycle late, when it has mostly come in
+        timing = replace(timing, start=LATE * project.clips[p.clip].duration)
+    action = Action("", p.clip, "gesture", p.layer.value, "", "", timing=timing, limb=p.limb.value)
     found = phases(project, action)
     near = motion.stroke is not None and abs(motion.stroke.value - found.stroke) < 0.1
     reason = _fastest(p.layer.value, found.stroke)

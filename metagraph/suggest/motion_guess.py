@@ -63,11 +63,15 @@ class MotionGuess:
 
 
 def guess(
-    traits: Traits, stances: Stances, on: Layer | None = None, posture: LayerTraits | None = None
+    traits: Traits,
+    stances: Stances,
+    on: Layer | None = None,
+    posture: LayerTraits | None = None,
+    cycle: bool = False,
 ) -> MotionGuess:
     """Return what a clip seems to be from its motion alone, beside known or discovered stances; there may be
     none. `on` is its layer, if that is known from elsewhere. `posture` has its poses in the form of the
-    stances, if that is not the layer's (see `whole_body`).
+    stances, if that is not the layer's (see `whole_body`). `cycle` says whether it is one cycle of a gesture.
     """
     layer = _layer_beside(traits, stances) if on is None else Belief(on, SUREST, "")
     x = traits.layers[layer.value]
@@ -85,6 +89,8 @@ def guess(
     moves = layer if posture is None else find_layer_moving_most(traits)
     x = traits.layers[moves.value]
     rest, gesture = _sigmoid(rests), _gesturing(traits, moves)
+    if cycle:
+        rest, gesture = 0.0, max(gesture, SUREST)
     chances: dict[Kind, float] = {
         "transition": moved,
         "stance": (1 - moved) * rest,
@@ -111,6 +117,12 @@ def guess(
             stride=traits.stride * cm,
         ),
         "gesture": phrase(
+            "is one cycle: it ends as it begins, in a movement of {length:.0f} cm at up to {speed:.0f} cm/s",
+            length=x.extent * cm,
+            speed=x.peak * cm,
+        )
+        if cycle
+        else phrase(
             "moves {length:.0f} cm away and back in {times}, at up to {speed:.0f} cm/s",
             length=x.extent * cm,
             times=_times(x.bouts),

@@ -54,7 +54,8 @@ class Proposal:
     disagree. `timing` has fields of `Timing` that the motion gives. `good` says whether neither its beginning
     nor its end would jump, None if unknown. `details` has what else is known of the action, by its name in
     the model: the fields of `timing`, `mask` (names of the only joints it moves, empty for all), `stroke`
-    (seconds, for gestures) and `likelihood`. `said` says whether its name says its kind.
+    (seconds, for gestures) and `likelihood`. `said` says whether its name says its kind, `cycle` whether its
+    clip is one cycle of a gesture, which repeats.
     """
 
     clip: str
@@ -70,6 +71,7 @@ class Proposal:
     good: bool | None = None
     details: Mapping[str, Belief[Any]] = field(default_factory=dict)
     said: bool = False
+    cycle: bool = False
 
     @property
     def confidence(self) -> float:

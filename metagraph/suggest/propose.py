@@ -18,7 +18,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import AcceptedProposals, accept
 from metagraph.suggest.alike import Alike, LabelledExample
-from metagraph.suggest.clip_measures import layer_of, with_tremble
+from metagraph.suggest.clip_measures import is_cycle, layer_of, with_tremble
 from metagraph.suggest.details import rest_of, with_likelihoods, with_moved_joints, with_stroke, with_timing
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.left_aside import FAR, MANY, explain_skipping
@@ -69,6 +69,8 @@ __all__ = [
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
+CALLED = 0.9  # confidence of a name that says a gesture itself, not a variation of a stance
+AWAY = 0.5  # chance that a clip begins in a stance, below which it begins in none
 TAUGHT = 0.5  # confidence of a kind learned from labelled clips, from which on no clip is skipped
 TOLD = 0.7  # confidence of a name's stance, below which it does not define stances
 LEADS = 0.8  # confidence of the motion that a clip named after a stance goes there
@@ -156,7 +158,10 @@ def propose(
     }
     fresh = not any(True for _ in project.actions())
     whole = moving and (is_whole_body_carried(project) or (fresh and are_whole_body_recordings(mine, begun)))
+    cycles = {c for c, t in mine.items() if _is_cycle(t, called[c])} if moving else set()
     standing = {c: t for c, t in mine.items() if called[c].other is None}  # nobody stands where fights begin
+    still = {c: t for c, t in standing.items() if not (moving and _is_cycle(t, called[c], True))}
+    standing = still or standing  # nor in the midst of a wave
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
@@ -167,7 +172,14 @@ def propose(
         if whole and each.traits is not None and each.traits.face == 0:
             each.posture = with_whole_body(each.traits).layers[CARRIER]
         if each.traits is not None and moving:
-            each.motion = guess(each.traits, shapes, CARRIER if each.posture else None, each.posture)
+            each.cycle = c in cycles
+            on = CARRIER if each.posture else None
+            each.motion = guess(each.traits, shapes, on, each.posture, each.cycle)
+            in_stance = sum(chance for chance, _ in each.motion.begins)
+            away = each.motion.stance is not None and in_stance < AWAY
+            if away and not each.cycle and _is_cycle(each.traits, each.said, away):
+                each.cycle = True
+                each.motion = guess(each.traits, shapes, on, each.posture, True)
         if alike.examples:
             each.learned = alike.guess(name_words(each.name), measures_of(each.traits))
         each.said = _leading(each.said, each.motion)
@@ -177,7 +189,7 @@ def propose(
         each.layer = layer.belief.value if layer is not None else "arms"
         each.beside = each.motion
         if each.traits is not None and each.motion is not None and each.motion.layer.value != each.layer:
-            each.beside = guess(each.traits, shapes, each.layer, each.posture)
+            each.beside = guess(each.traits, shapes, each.layer, each.posture, each.cycle)
         taught = each.learned.get("kind")
         if why and (taught is None or taught.confidence < TAUGHT):
             aside[c] = why
@@ -230,6 +242,15 @@ def _going_away(out: Mapping[str, Proposal], traits: Mapping[str, Traits]) -> di
         for c, p in far.items()
         if p.end_stance is None or p.end_stance.value not in played
     }
+
+
+def _is_cycle(traits: Traits, said: NameGuess, away: bool = False) -> bool:
+    """Return whether a clip is one cycle of a gesture, as its name allows: an idle is none, nor a small
+    movement that is named after one.
+    """
+    kind = said.kind.value if said.kind is not None else None
+    named = kind == "gesture" and said.kind is not None and said.kind.confidence >= CALLED
+    return kind != "stance" and is_cycle(traits, named, away)
 
 
 def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:
@@ -406,4 +427,5 @@ def _proposal(each: ClipEvidence, places: StancePlaces, anyway: bool = False) ->
         each.said.tags,
         tuple(x.conflict for x in found if x.conflict),
         said=each.said.kind is not None and each.said.kind.value == kind.belief.value,
+        cycle=each.cycle,
     )

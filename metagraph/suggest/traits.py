@@ -31,6 +31,8 @@ BATCH = 6000  # frames posed at once
 SMOOTH = 0.06  # seconds: standard deviation of the filter on speeds
 RESTING = 0.05  # heights a second: slower is rest
 _BACK = np.array([-1.0, 1.0])  # turns a facing direction into its inverse
+NEAR_SEAM = 0.1  # seconds on either side of a loop's seam
+JERKS = 0.5  # of the greatest speed: a change of velocity at a loop's seam that is seen as a jerk
 TOUCH = 0.12  # heights from a wrist to what its hand touches, at most
 PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
 
@@ -46,7 +48,9 @@ class LayerTraits:
     is the mean speed; `peak` and `peak_at` are the greatest speed and its time in seconds. `rest` is the
     share of the time below RESTING. `bouts` is how often it speeds up. `farthest` `[n, 3]` is the pose at
     `extent_at`; `low` and `high` `[n, 3]` are the least and the greatest of each coordinate. `stroke_at` is
-    when it is fastest on its way there, in seconds.
+    when it is fastest on its way there, in seconds. `flow` is how fast it goes at its seam, if it repeats,
+    relative to its greatest speed, and `turning` within a tenth of a second of it, relative to its mean; both
+    are 0 where it would jerk.
     """
 
     names: tuple[str, ...]
@@ -66,6 +70,8 @@ class LayerTraits:
     stroke_at: float
     rest: float
     bouts: int
+    flow: float = 0.0
+    turning: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,7 +266,26 @@ def _layer(names: tuple[str, ...], poses: Array, tracks: Array, speeds: Array, t
         float(times[_greatest(fast[: far + 1])]),
         float(_mean((fast < RESTING).astype(float), times)),
         _bouts(fast),
+        *_flow(tracks, times),
     )
+
+
+def _flow(tracks: Array, times: Array) -> tuple[float, float]:
+    """Return how fast points `[F, n, 3]` go at the seam of a loop, relative to their greatest speed, and
+    within `NEAR_SEAM` of it, relative to their mean; 0 where their velocity jumps there.
+    """
+    if len(times) < 4:
+        return 0.0, 0.0
+    velocity = np.diff(tracks.astype(np.float64), axis=0) / np.diff(times)[:, None, None]
+    speed = np.linalg.norm(velocity, axis=-1)
+    point = int(np.argmax(speed.max(0)))
+    fastest, jump = speed[:, point].max(), np.linalg.norm(velocity[0, point] - velocity[-1, point])
+    if fastest < 1e-4 or jump > JERKS * fastest:
+        return 0.0, 0.0
+    count = max(1, int(NEAR_SEAM / float(times[1] - times[0]) + 0.5))
+    sides = speed[:count, point].mean(), speed[-count:, point].mean()
+    ends = min(speed[0, point], speed[-1, point])
+    return float(ends / fastest), float(min(sides) / speed[:, point].mean())
 
 
 def _greatest(x: Array) -> int:

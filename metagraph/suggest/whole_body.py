@@ -75,6 +75,8 @@ def with_whole_body(traits: Traits) -> Traits:
         stroke_at=fast.stroke_at,
         rest=min(x.rest for x, _ in parts),
         bouts=fast.bouts,
+        flow=far.flow,
+        turning=far.turning,
     )
     return replace(traits, layers={**traits.layers, CARRIER: whole})
 

@@ -11,11 +11,13 @@ import numpy as np
 
 from metagraph import engines
 from metagraph.engines.export import write_project_files
+from metagraph.engines.script_repeats import list_repeat_cases
 from metagraph.engines.vectors import list_cases, write_vectors
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from sample_clips.make.conformance_projects import (
     BOTH_EYES,
+    repeating,
     sparse,
     standing,
     stepping,
@@ -91,7 +93,7 @@ def without_authors(path: Path) -> None:
 
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
-    for project in (stick(), varied(), sparse(), standing(), stepping(), *touched, *still()):
+    for project in (stick(), varied(), sparse(), standing(), stepping(), repeating(), *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
@@ -106,6 +108,8 @@ def main() -> None:
             chosen = [case for case in list_cases(project) if case.name.startswith(STANDING)]
         if project.name == "stepping":
             chosen = [case for case in list_cases(project) if case.name.startswith("feet")]
+        if project.name == "repeating":
+            chosen = [*list_repeat_cases(project), *(c for c in list_cases(project) if c.name == "chatter 1")]
         path = write_vectors(made.json, chosen)
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "

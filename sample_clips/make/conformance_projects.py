@@ -540,6 +540,30 @@ def standing() -> Project:
     return replace(project, life=life)
 
 
+@numbered_ids()
+def repeating() -> Project:
+    """Return the project of `standing` with actions on every layer that repeat a part of their clip, whose
+    ends do not meet: with a longer blend than the part, of one arm, that may be left before its first end.
+    """
+    project = replace(standing(), name="repeating")
+    changes = {}
+    for layer, kind, fields in (
+        ("body", "gesture", {"repeat": 1.7}),
+        ("arms", "gesture", {"repeat": 2.4, "blend_in": 0.9, "blend_out": 0.5}),
+        ("head", "gesture", {"repeat": 1.5, "blend_out": 0.0}),
+        ("arms", "fidget", {"repeat": 60.1}),
+    ):
+        graph = project.graphs[layer]  # type: ignore[index]
+        action = graph.of(graph.start or "", kind)[0]  # type: ignore[arg-type]
+        length = project.clips[action.clip].duration
+        timing = replace(action.timing, start=0.2 * length, end=0.6 * length, **fields)  # type: ignore[arg-type]
+        if layer == "head":
+            timing = replace(timing, earliest_exit=0.45 * length)
+        whole = dict.fromkeys(("ready", "stroke", "stroke_end", "relax"))
+        changes[action.id] = {"timing": replace(timing, **whole), "tags": (*action.tags, "again")}  # type: ignore[arg-type]
+    return edits.update_each(project, changes)
+
+
 LEGS = tuple(f"{side}{part}" for side in ("Left", "Right") for part in ("UpperLeg", "LowerLeg", "Foot"))
 
 

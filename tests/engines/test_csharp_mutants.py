@@ -102,6 +102,12 @@ MUTATIONS = [
         "cue.ClipSeconds(cue.End)",
         "the edge a clip is led in from",
     ),
+    (
+        "Pose.cs",
+        "double left = CueTimesRules.SeamLeft(cue, time);",
+        "double left = 0;",
+        "the seam of a cycle",
+    ),
     ("Pose.cs", "old = 1 - Basics.Ease(phase / seam);", "old = 0.0;", "the seam of a loop"),
     ("Clip.cs", "Basics.Clamp((time - keys[low]) / gap, 0, 1)", "0.0", "keys that were thinned out"),
     ("Loading.cs", "joint.Side == other", "joint.Side != other", "the arm that a gesture leaves alone"),

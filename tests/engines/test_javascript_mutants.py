@@ -228,6 +228,14 @@ MUTATIONS = [
         "cue.entry",
         "the edge a cue is led out from",
     ),
+    ("pose.js", "const left = seamLeft(cue, time);", "const left = 0;", "the seam of a cycle"),
+    ("pose.js", "blending && cue.repeats", "false", "how a cycle blends"),
+    (
+        "repeating.js",
+        "seconds / cycle, MOST_TIMES) + 0.5",
+        "seconds / cycle, MOST_TIMES)",
+        "the nearest number of cycles",
+    ),
     ("pose.js", "w * added.translations", "added.translations", "weights of translations"),
     ("pose.js", "Math.min(period + phase, length)", "phase", "the seam of a loop"),
     (

@@ -157,6 +157,7 @@ def whole() -> Data:
         "ready": 0.3,
         "stroke_end": 0.5,
         "relax": 0.6,
+        "repeat": 2.5,
         "joint_weights": {"Head": 0.5},
         "contacts": [contact],
     }

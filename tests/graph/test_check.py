@@ -343,6 +343,32 @@ def test_a_gesture_that_is_almost_all_blends_is_hardly_seen(
     assert [p.code for p in found if p.action == wave] == ([] if seen else ["hardly-seen"])
 
 
+def test_a_gesture_that_is_hardly_seen_repeats_by_its_button_and_is_seen(toy: Any) -> None:
+    from app.stage.fixes import fix_clips
+
+    project = toy.project()
+    wave = toy.id(project, "rest beat lf")  # 0.9 s
+    project = edits.update_actions(project, [wave], timing={"blend_in": 0.4, "blend_out": 0.4})
+    (found,) = [p for p in check_project(project) if p.code == "hardly-seen"]
+    after = fix_clips(project, [found])[found](project)
+    assert after.action(wave).timing.repeat == pytest.approx(2.7)  # three times
+    assert not [p for p in check_project(after) if p.action == wave]
+
+
+def test_what_repeats_may_blend_for_longer_than_its_part(toy: Any) -> None:
+    project = toy.project()
+    wave = toy.id(project, "rest beat lf")  # 0.9 s
+    timing = {"blend_in": 1.0, "blend_out": 1.0, "repeat": 2.7}
+    assert not [
+        p for p in check_project(edits.update_actions(project, [wave], timing=timing)) if p.action == wave
+    ]
+    timing["repeat"] = 1.8
+    found = check_project(edits.update_actions(project, [wave], timing=timing))
+    assert [p.message for p in found if p.action == wave] == [
+        "'rest beat lf' blends for 2.00 s but is only 1.80 s long"
+    ]
+
+
 @pytest.mark.parametrize(
     ("name", "metres", "words"),
     [

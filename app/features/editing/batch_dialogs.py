@@ -36,6 +36,7 @@ TITLES = lazy_texts(
         "blends": tr("Blend in and out"),
         "part": tr("Start and end"),
         "exit": tr("Earliest exit"),
+        "repeat": tr("Repeats"),
         "phases": tr("Ready, stroke, hold"),
         "limb": tr("Limb"),
         "joints": tr("Joints it moves"),

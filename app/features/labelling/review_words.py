@@ -102,6 +102,8 @@ def timing(p: Proposal, duration: float) -> str:
         )
     if t.get("earliest_exit") is not None:
         parts.append(tr("can exit from {seconds:.2f} s", seconds=t["earliest_exit"]))
+    if t.get("repeat"):
+        parts.append(tr("repeats for {seconds:.2f} s", seconds=t["repeat"]))
     if t.get("loop"):
         parts.append(tr("loops"))
     words = [", ".join(parts)]

@@ -32,6 +32,7 @@ from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Action
 from metagraph.playback.timing.handles import set_timing_field
+from metagraph.suggest.jumps.soft_blends import repeat_actions
 
 
 class ActionPage(Halves):
@@ -109,6 +110,13 @@ class ActionPage(Halves):
         self.earliest = Seconds(page, tr("Earliest exit: from here on, the next action can start"))
         self.earliest.valueChanged.connect(lambda v: self._timing("earliest_exit", v))
         self.leave_row = self._add_pair(page, tr("Exit"), self.leave, self.earliest)
+        self.repeats = QCheckBox(tr("for about"), page)
+        self.repeats.setAccessibleName(tr("Repeats"))
+        self.repeats.setToolTip(tr("Its part plays again and again, for a clip that shows a movement once"))
+        self.repeats.clicked.connect(self._repeat)
+        self.repeat = Seconds(page, tr("How long it repeats if a request does not say"))
+        self.repeat.valueChanged.connect(self._repeat_for)
+        self.repeat_row = self._add_pair(page, tr("Repeats"), self.repeats, self.repeat)
 
     def _add_choices(self, page: QWidget) -> None:
         """Add by what it is chosen, from where it leads where, and what it moves."""
@@ -180,15 +188,13 @@ class ActionPage(Halves):
         self.form.setRowVisible(self.leave_row, not stance)
         exits = common_value([a.timing.earliest_exit for a in actions])
         leaves = common_value([a.timing.earliest_exit is not None for a in actions])
-        self.leave.blockSignals(True)
-        self.leave.setTristate(leaves is Mixed)
-        state = Qt.CheckState
-        checked = state.PartiallyChecked if leaves is Mixed else state.Checked if leaves else state.Unchecked
-        if self.leave.checkState() != checked:
-            self.leave.setCheckState(checked)
-        self.leave.blockSignals(False)
+        _check(self.leave, leaves)
         self.earliest.setEnabled(exits is not None)
         self.earliest.show_value(0.0 if exits is None else exits)
+        self.form.setRowVisible(self.repeat_row, all(a.kind in ("gesture", "fidget") for a in actions))
+        _check(self.repeats, common_value([a.timing.repeat > 0 for a in actions]))
+        self.repeat.setEnabled(any(a.timing.repeat > 0 for a in actions))
+        self.repeat.show_value(common_value([a.timing.repeat for a in actions]))
         arms = layer == "arms" and not stance
         self.form.setRowVisible(self.limb, arms)
         self.limb.show_limb(common_value([a.limb for a in actions]))
@@ -261,6 +267,15 @@ class ActionPage(Halves):
             }
         self.edit(tr("Change earliest exit"), lambda p: edits.update_each(p, exits))
 
+    def _repeat(self) -> None:
+        on, chosen = self.repeats.checkState() != Qt.CheckState.Unchecked, self.session.selection.actions
+        self.edit(tr("Change repeats"), lambda p: repeat_actions(p, chosen, on))
+
+    def _repeat_for(self, seconds: float) -> None:
+        if seconds >= 0:
+            self._set(tr("Change repeats"), timing={"repeat": round(seconds, 3)})
+        self.show_actions(self.session.selection.selected_actions())
+
     def _rename(self) -> None:
         actions = self.session.selection.selected_actions()
         name = " ".join(self.name.text().split())
@@ -293,6 +308,17 @@ class ActionPage(Halves):
         from app.widgets.joint_mask import MaskDialog
 
         MaskDialog(self.document, self.session, self).open()
+
+
+def _check(box: QCheckBox, value: Any) -> None:
+    """Show in a box, without a signal, whether something is so: True, False or Mixed."""
+    state = Qt.CheckState
+    checked = state.PartiallyChecked if value is Mixed else state.Checked if value else state.Unchecked
+    box.blockSignals(True)
+    box.setTristate(value is Mixed)
+    if box.checkState() != checked:
+        box.setCheckState(checked)
+    box.blockSignals(False)
 
 
 def _moved(joints: tuple[str, ...], weights: tuple[tuple[str, float], ...]) -> str:

@@ -31,6 +31,7 @@ from app.widgets.mime import load_of
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Action, Layer, Project
+from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
 
 GAP = 0.1  # seconds between two that are dropped at once
@@ -118,7 +119,7 @@ def ask_for_drop(project: Project, drop: LaneDrop, load: Load) -> tuple[Project,
         if action is not None:
             out.append(Play(action=action.id, at=round(at, 2)))
             start, end = project.span(action)
-            at += end - start + GAP
+            at += seconds_played(action.kind, action.timing, start, end) + GAP
     return project, out
 
 

@@ -67,7 +67,7 @@ def snap_lines(
             ]
             if cue.action.kind == "gesture" and (cue.end - cue.start) * scale.each >= WIDE:
                 stroke = phases(shown.project, cue.action).stroke
-                if cue.entry <= stroke <= cue.last:
+                if cue.entry <= stroke <= cue.once.last:
                     out.append(
                         SnapLine(
                             cue.start + (stroke - cue.entry) / cue.tempo, tr("stroke of {name}", name=name)

@@ -24,6 +24,11 @@ class Translated:
 
 LISTING = (
     Translated("metagraph.graph.model", "model", ("Timing", "Stance", "Markov", "Settings"), ("Action",)),
+    Translated(
+        "metagraph.graph.repeating",
+        "repeating",
+        ("LEAST_CYCLE", "MOST_TIMES", "LONGEST_REPEAT", "cycle_of", "times_played", "seconds_played"),
+    ),
     Translated("metagraph.motion.plain_vectors", "plain_vectors"),
     Translated("metagraph.motion.contact_spans", "contact_spans"),
     Translated("metagraph.motion.contact_solve", "contact_solve"),
@@ -53,6 +58,7 @@ LISTING = (
         without=(
             "Cue.clip_seconds",
             "Cue.last",
+            "Cue.once",
             "LayerPlan.starts",
             "LayerPlan.ends",
             "LayerPlan.full_from",

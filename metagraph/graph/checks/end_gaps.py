@@ -16,6 +16,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import PARTS, Action, MetaGraph, Part, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
 from metagraph.motion.rig_controls import rig_controls
@@ -29,6 +30,7 @@ FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it s
 OPEN_LOOP = 0.05  # metres a loop may be open if its seam is not blended
 LONG = 0.4  # seconds: a longer blend is a movement of its own, not a hidden seam
 UNHURRIED = 1.0  # metres a second: how fast, on average, the farthest joint may move in such a blend
+BRISK = 1.4  # times as far for what repeats: an arm that comes up to wave is a movement that is meant
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,8 @@ def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[En
         target = motion_of(project, loop)
         if stance is not None and loop is not None and target is not None:
             metres = _gap(ref(motion), moment, ref(target), project.span(loop)[0], joints)
-            out.append(EndGap(edge, stance, metres, hidden(height, blend), blend))
+            most = hidden(height, blend) * (BRISK if cycle_of(action.kind, t, start, end) > 0 else 1.0)
+            out.append(EndGap(edge, stance, metres, most, blend))
     return out
 
 

@@ -18,6 +18,7 @@ PROPERTIES: Mapping[str, tuple[str, ...]] = {
     "blends": ("timing.blend_in", "timing.blend_out"),
     "part": ("timing.start", "timing.end"),
     "exit": ("timing.earliest_exit",),
+    "repeat": ("timing.repeat",),
     "phases": ("timing.ready", "timing.stroke", "timing.stroke_end", "timing.relax"),
     "limb": ("limb",),
     "joints": ("joints", "joint_weights"),

@@ -56,7 +56,7 @@ def _element(ask: a.AnyRequest) -> str:
             return _tag("metagraph:fidget", own | _layered(ask.layer) | times | {"end": end})
         case a.Play():
             own |= {"name": ask.action, "metagraph:layer": ask.layer}
-            return _tag("animation", own | times | _phased(ask))
+            return _tag("animation", own | times | _phased(ask) | {"end": end})
         case a.Go():
             own |= {"metagraph:layer": ask.layer, "metagraph:stay": _flag(ask.stay, False)}
             return _tag("postureShift", own | times, _tag("stance", {"type": ask.stance}))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Action, Project
+from metagraph.graph.repeating import seconds_played
 from metagraph.playback.planning.line_lengths import find_spoken_seconds
 from metagraph.playback.planning.understand import lead
 
@@ -41,7 +42,8 @@ def _in_performances(project: Project, action: Action) -> Iterator[tuple[bool, A
                 line = project.lines.get(str(say.line))
                 length = find_spoken_seconds(project, str(say.line), line.text, say.duration) if line else 0.0
                 start, end = project.span(action)
-                if line is not None and at < begins + end - start and at + length > begins:
+                lasts = seconds_played(action.kind, action.timing, start, end)
+                if line is not None and at < begins + lasts and at + length > begins:
                     yield named, AskedLine(str(say.line), at - begins)
 
 

@@ -6,10 +6,11 @@ retraction may be cut (Borer et al., section 6.2).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from metagraph.graph.model import Action, Project
-from metagraph.playback.plan import MetaRequest
+from metagraph.graph.repeating import LONGEST_REPEAT, cycle_of, times_played
+from metagraph.playback.plan import MetaAction, MetaRequest
 from metagraph.playback.planning.mood import drag
 from metagraph.playback.timing.phases import phases
 
@@ -43,6 +44,7 @@ def shape_of(
     """
     start, end = project.span(action)
     begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0
+    cycle = cycle_of(action.kind, action.timing, start, end)
     if (
         request is not None
         and action.kind == "gesture"
@@ -56,7 +58,7 @@ def shape_of(
             begin = max(now, request.stroke - (found.stroke - entry) / speed)
             missed = found.stroke - max(0.0, request.stroke - begin) * speed
             entry = min(max(entry, missed), max(entry, latest))
-        if request.hold is not None:
+        if request.hold is not None and cycle <= 0:
             hold_from, hold_to = found.stroke_end, found.relax
             hold = max(request.hold, (hold_to - hold_from) / HURRY)
             if hold <= 0:
@@ -64,6 +66,12 @@ def shape_of(
     natural = hold_to - hold_from
     length = end - entry + hold - natural + drag(end - entry - natural, speed)
     shortest, exit_at = length, action.timing.earliest_exit
+    if cycle > 0:
+        wanted = min(action.timing.repeat, LONGEST_REPEAT)
+        if request is not None and request.duration is not None:
+            wanted = request.duration
+        length += (times_played(cycle, wanted * speed) - 1.0) * cycle / speed
+        exit_at = end if exit_at is None else exit_at
     if exit_at is not None:
         left = exit_at - entry + (hold - natural if exit_at >= hold_to else 0.0)
         left += drag(exit_at - entry - (natural if exit_at >= hold_to else 0.0), speed)
@@ -96,7 +104,9 @@ def hurried(project: Project, action: Action, shape: CueShape) -> float:
     """Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless
     it was asked for.
     """
-    if action.kind != "gesture" or action.timing.earliest_exit is not None:
+    start, end = project.span(action)
+    repeats = cycle_of(action.kind, action.timing, start, end) > 0
+    if action.kind != "gesture" or action.timing.earliest_exit is not None or repeats:
         return shape.shortest
     found = phases(project, action)
     left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
@@ -128,3 +138,11 @@ def meets(action: Action, request: MetaRequest) -> bool:
         and (request.limb is None or action.limb == request.limb)
         and (len(request.among) == 0 or action.id in request.among)
     )
+
+
+def remaining(meta: MetaAction, now: float) -> MetaRequest:
+    """Return what a meta action asks for; of a remainder, for as long as is left. A model says no length."""
+    request = meta.request
+    if request.duration is None or (meta.part == 0 and not meta.written):
+        return request
+    return replace(request, duration=None if meta.written else max(0.0, meta.end - now))

@@ -160,8 +160,9 @@ class Meaning:
                 return f"there is no action '{ask.action}'{where}"
             if stroke is not None:
                 start = max(0.0, stroke - lead(self.project, action))
+            duration = ask.duration if action.timing.repeat > 0 else None
             request = MetaRequest(
-                ident, action.layer, action.kind, start, None, action.id, (), None, None, priority, False,
+                ident, action.layer, action.kind, start, duration, action.id, (), None, None, priority, False,
                 stroke, ask.hold, ask.prepare, (), ask.late, ask.valence, ask.arousal, ask.intensity,
             )  # fmt: skip
             self.requests.append(request)

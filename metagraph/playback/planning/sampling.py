@@ -9,6 +9,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 
 from metagraph.graph.model import Action, MetaGraph, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
 from metagraph.playback.planning.bounds import Bound, begins, bounds
 from metagraph.playback.planning.choice import pick
@@ -21,6 +22,7 @@ from metagraph.playback.planning.cue_shapes import (
     lateness,
     may_share,
     meets,
+    remaining,
     shape_of,
     slack_of,
 )
@@ -134,7 +136,7 @@ class Performer:
         stance = self.stance
         for step in steps:
             hops = step.hop != ""
-            asked = None if hops else meta.request
+            asked = None if hops else remaining(meta, now)
             mood = self._mood(asked, now)
             fitting = list(step.candidates)
             if limit < float("inf"):  # else all fit
@@ -272,8 +274,11 @@ class Performer:
             return
         soonest = now + max(cue.blend_out, RETRACTION)
         if not running.written:
+            once = cue.end - cue.start
+            if cue.repeats:
+                once = min(once, (cue.cycle_to - cue.entry) / cue.tempo + max(cue.blend_out, RETRACTION))
             shape = CueShape(
-                cue.start, cue.entry, cue.end - cue.start, cue.end - cue.start,
+                cue.start, cue.entry, cue.end - cue.start, once,
                 cue.hold_from, cue.hold_to, cue.hold, cue.tempo,
             )  # fmt: skip
             soonest = max(soonest, cue.start + hurried(self.project, cue.action, shape))
@@ -508,14 +513,16 @@ class Performer:
         length = shape.length
         into = max(0.0, action.timing.blend_in)
         out = max(0.0, action.timing.blend_out)
-        if action.timing.earliest_exit is not None:
+        begin, until = self.project.span(action)
+        cycle = cycle_of(action.kind, action.timing, begin, until)
+        if action.timing.earliest_exit is not None or cycle > 0:
             wish = float("inf") if hops else bound.wish
             length = min(length, max(shape.shortest, min(bound.limit, wish) - shape.start))
         elif not hops:
             length = min(length, self._until(action, shape, bound) - shape.start)
             if length < shape.length:
                 out = max(out, RETRACTION)
-        if shape.entry > self.project.span(action)[0]:
+        if shape.entry > begin:
             into = max(into, LEAST_BLEND)
         squeeze = min(1.0, length / (into + out)) if into + out > 0 else 1.0
         then = stance
@@ -526,6 +533,7 @@ class Performer:
             action, shape.start, end, shape.entry, into * squeeze, out * squeeze, stance, then,
             bound.meta.key,
             shape.hold_from, shape.hold_to, shape.hold, self._extent(action, mood), shape.tempo,
+            begin if cycle > 0 else 0.0, begin + cycle if cycle > 0 else 0.0,
         )  # fmt: skip
 
     def _keep(self, cue: Cue) -> None:

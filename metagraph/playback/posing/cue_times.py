@@ -10,6 +10,8 @@ from math import floor
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Rest
 
+SEAM = 0.4  # clip seconds in which a cue that repeats makes its cycle's ends meet, at most half of the cycle
+
 
 @dataclass(frozen=True, slots=True)
 class LoopSpot:
@@ -55,11 +57,26 @@ def cue_weight(cue: Cue, time: float) -> float:
 def cue_seconds(cue: Cue, time: float) -> float:
     """Return the second of its clip that a cue plays at a time."""
     elapsed = time - cue.start
+    if cue.repeats:
+        cycle = cue.cycle_to - cue.cycle_from
+        into = cue.entry - cue.cycle_from + elapsed * cue.tempo
+        return cue.cycle_from + into - cycle * floor(into / cycle)
     if cue.hold <= 0.0:
         return cue.entry + elapsed * cue.tempo
     held = min(max(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
     more = (elapsed - held) * (cue.tempo - 1.0)
     return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
+
+
+def seam_left(cue: Cue, time: float) -> float:
+    """Return how much of the way from where a cycle begins to where the one before it ended is still added at
+    a time, 0..1, so that a cue that repeats goes on without a jump.
+    """
+    cycle = cue.cycle_to - cue.cycle_from
+    into = cue.entry - cue.cycle_from + (time - cue.start) * cue.tempo
+    if not cue.repeats or floor(into / cycle) < 1:
+        return 0.0
+    return 1.0 - ease((into - cycle * floor(into / cycle)) / min(SEAM, 0.5 * cycle))
 
 
 def ease(x: float) -> float:

@@ -78,7 +78,9 @@ def arm_sway(
     row = _row(track, cue_seconds(cue, time))
     rest = _stance(project, tracks, arms, place, time)
     entering = time < cue.start + cue.blend_in
-    if entering or time >= cue.end - cue.blend_out:
+    if cue.repeats:
+        row = [rest[n] + weight * (row[n] - rest[n]) for n in range(NUMBERS)]
+    elif entering or time >= cue.end - cue.blend_out:
         edge = _row(track, cue.entry if entering else cue_seconds(cue, cue.end))
         row = [row[n] + (1.0 - weight) * (rest[n] - edge[n]) for n in range(NUMBERS)]
     left = share * UNIT if _moves(cue.action, "left", hands[0]) else 0.0

@@ -4,6 +4,7 @@ led in from and out to their stances.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
 from typing import Any
 
@@ -17,6 +18,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 from metagraph.playback.posing.composer import ComposerRig, Ground, Reach, playable
+from metagraph.playback.posing.cue_times import seam_left
 
 Array = NDArray[Any]
 # Offsets on the joints a layer reaches: rotations [N, n, 4], translations [N, n, 3].
@@ -100,13 +102,15 @@ class _LayerStage:
         motion = playable(project, cue.action) if cue is not None else None
         if cue is None or motion is None:
             return self._stance(times, current, fading)
-        shown = self._sample(motion, cue.clip_seconds(times))
+        shown = sample_cue(cue, times, lambda seconds: self._sample(motion, seconds))
         mask = anatomy.action_mask(project, cue.action)
         moved = None if mask is None or (mask[reach.joints] == 1).all() else mask[reach.joints]
         if phase == _FULL and moved is None and cue.extent == 1:
             return shown
         stance = self._stance(times, current, fading)
-        if phase != _FULL:
+        if phase != _FULL and cue.repeats:
+            shown = crossfade(stance, shown, weight_of_cue(cue, times))  # at its ends it moves
+        elif phase != _FULL:
             edge = self._sample(motion, np.array([cue.entry if phase == _ENTERING else cue.last]))
             shown = _lead(shown, stance, edge, 1 - weight_of_cue(cue, times))
         if cue.extent != 1:
@@ -145,6 +149,19 @@ def ease_blend(x: Array) -> Array:
     """Return the blending curve: 3x^2 - 2x^3 of x clamped to 0..1."""
     x = np.clip(x, 0.0, 1.0)
     return np.asarray(x * x * (3 - 2 * x))
+
+
+def sample_cue(cue: Cue, times: Array, sample: Callable[[Array], Sample]) -> Sample:
+    """Return what a cue shows of its clip at `times [N]`, without its blends. Where it repeats, it goes on
+    from where the cycle before it ended. `sample` returns the clip at seconds of it.
+    """
+    shown = sample(cue.clip_seconds(times))
+    if not cue.repeats:
+        return shown
+    left = np.array([seam_left(cue, float(time)) for time in times])
+    if not left.any():
+        return shown
+    return _lead(shown, sample(np.array([cue.cycle_to])), sample(np.array([cue.cycle_from])), left)
 
 
 def weight_of_cue(cue: Cue, times: Array) -> Array:

@@ -10,6 +10,7 @@ from typing import Any
 
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project
+from metagraph.graph.repeating import seconds_played
 from metagraph.playback.timing.phases import phases
 
 HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "relax")
@@ -76,10 +77,11 @@ def move_handle(project: Project, action: Action, handle: str, seconds: float) -
         at = max(at, round(start + shortest, 3))
         whole = at >= entry.duration - shortest / 2
         return {"end": None if whole else at, **_within(action, start, entry.duration if whole else at)}
+    longest = seconds_played(action.kind, action.timing, start, end)  # a blend may span cycles
     if handle == "in":
-        return {"blend_in": round(min(max(0.0, at - start), end - start), 3)}
+        return {"blend_in": round(min(max(0.0, seconds - start), longest), 3)}
     if handle == "out":
-        return {"blend_out": round(min(max(0.0, end - at), end - start), 3)}
+        return {"blend_out": round(min(max(0.0, end - seconds), longest), 3)}
     if handle == "exit":
         return {"earliest_exit": min(max(at, start), end)}
     if handle in PHASES:

@@ -5,14 +5,18 @@ back, at the pace of a movement instead of jumping.
 from __future__ import annotations
 
 from collections.abc import Collection
-from math import ceil
+from math import ceil, floor
 
 from metagraph.graph import edits
 from metagraph.graph.checks.end_gaps import TALL, UNHURRIED, find_end_gaps
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.repeating import LEAST_CYCLE, cycle_of, usual_repeat
 
 NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
 SHARE = 0.45  # of a clip that a blend may take
+SHARE_REPEATED = 0.38  # of the seconds that an action repeats
+LONGEST = 3.0  # seconds that one repeats to have room for its blends
+SLOWER = 1.1  # times as long a blend for one that repeats, whose own movement is added
 
 
 def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
@@ -28,10 +32,16 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
             if action.kind == "stance" or action.clip not in project.clips or action.id in but:
                 continue
             start, end = project.span(action)
-            most, timing = SHARE * (end - start), action.timing
+            timing = action.timing
             far = {g.edge: g.metres for g in find_end_gaps(project, project.graphs[layer], action)}
+            most, own, repeat = SHARE * (end - start), pace, timing.repeat
+            if (cycle := cycle_of(action.kind, timing, start, end)) > 0:
+                own = pace / SLOWER
+                needed = max(far.values(), default=0.0) / own / SHARE_REPEATED
+                repeat = max(repeat, round(cycle * min(ceil(needed / cycle), floor(LONGEST / cycle)), 3))
+                most = SHARE_REPEATED * repeat
             into, out = (
-                min(most, gap / pace) if (gap := far.get(edge, 0.0)) > near else 0.0
+                min(most, gap / own) if (gap := far.get(edge, 0.0)) > near else 0.0
                 for edge in ("begins", "ends")
             )
             longer = {
@@ -39,9 +49,32 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
                 for name, value, now in (
                     ("blend_in", into, timing.blend_in),
                     ("blend_out", out, timing.blend_out),
+                    ("repeat", repeat, timing.repeat),
                 )
                 if value > now
             }
             if longer:
                 changes[action.id] = {"timing": longer}
     return edits.update_each(project, changes) if changes else project
+
+
+def repeat_actions(project: Project, actions: Collection[str], on: bool = True) -> Project:
+    """Return the project with gestures and fidgets that repeat, or play once. Those that begin to repeat do
+    it for the usual time, and come and go at the pace of a movement.
+    """
+    changes = {}
+    for ident in actions:
+        action = project.action(ident)
+        if action is None or action.kind not in ("gesture", "fidget") or (action.timing.repeat > 0) == on:
+            continue
+        start, end = project.span(action)
+        timing: dict[str, float] = {"repeat": usual_repeat(max(LEAST_CYCLE, end - start))}
+        if not on:
+            most = round(SHARE * (end - start), 3)
+            now = {"blend_in": action.timing.blend_in, "blend_out": action.timing.blend_out}
+            timing = {"repeat": 0.0, **{name: min(most, blend) for name, blend in now.items()}}
+        changes[ident] = {"timing": timing}
+    if not changes:
+        return project
+    after = edits.update_each(project, changes)
+    return soften_blends(after, {a.id for a in after.actions()} - changes.keys()) if on else after

@@ -42,7 +42,7 @@ NEVER = 0.3  # of how sure a source is at least, so that its vote counts
 @dataclass
 class ClipEvidence:
     """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer
-    that all agree on. posture: its poses as stances are told.
+    that all agree on. posture: its poses as stances are told. cycle: whether it is one cycle of a gesture.
     """
 
     clip: str
@@ -54,6 +54,7 @@ class ClipEvidence:
     beside: MotionGuess | None = None
     layer: Layer = "arms"
     learned: dict[str, Belief[str]] = field(default_factory=dict)
+    cycle: bool = False
 
     def votes(self, what: str) -> list[Belief[Any]]:
         """Return what is believed of a field, source by source."""

@@ -428,6 +428,28 @@ def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     assert p.ends.currentText() == "up"
 
 
+def test_ticking_repeats_repeats_actions_in_one_step_and_only_what_can_repeat_has_the_row(toys):
+    drive, p = toys, toys.properties.action
+    beat, wave = drive.id("rest beat lf"), drive.id("rest wave rt")
+    drive.session.selection.select_actions((beat, wave))
+    steps = count(drive)
+
+    def both() -> list[float]:
+        return [drive.document.project.action(i).timing.repeat for i in (beat, wave)]
+
+    assert p.form.isRowVisible(p.repeat_row) and not p.repeat.isEnabled()
+    QTest.mouseClick(p.repeats, Qt.MouseButton.LeftButton, pos=p.repeats.rect().center() * 0.2)
+    assert both() == pytest.approx([2.7, 2.4]) and count(drive) == steps + 1
+    assert p.repeat.isEnabled() and p.repeat.text() == "mixed"
+    p.repeat.setValue(1.6)
+    assert both() == [1.6, 1.6] and count(drive) == steps + 2
+    drive.key(KEY.Key_Z, CTRL)
+    drive.key(KEY.Key_Z, CTRL)
+    assert both() == [0.0, 0.0] and p.repeats.checkState() == Qt.CheckState.Unchecked
+    drive.session.selection.select_actions((drive.id("rest to up"),))
+    assert not p.form.isRowVisible(p.repeat_row)
+
+
 def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
     drive, p = toys, toys.properties.layer
     drive.session.selection.select_actions(())

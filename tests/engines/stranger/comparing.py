@@ -18,7 +18,7 @@ from tests.engines.stranger.stepping import planted
 from tests.engines.stranger.weighing import answered
 
 SHIPPED = Path(__file__).resolve().parents[3] / "metagraph" / "engines" / "conformance"
-NAMES = ("stick", "sparse", "varied", "standing", "stepping")
+NAMES = ("stick", "sparse", "varied", "standing", "stepping", "repeating")
 Vectors = tuple[Character, dict[str, Any]]
 
 
@@ -49,6 +49,8 @@ def kinds(character: Character, case: dict[str, Any], t: float) -> Iterator[str]
             yield "blending out"
         else:
             yield "between the blends"
+        if "cycle_to" in cue:
+            yield "a cycle that repeats"
         if cue["hold"] > 0.0:
             yield "a stretched hold"
         if action["limb"] != "both":

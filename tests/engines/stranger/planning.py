@@ -5,7 +5,7 @@ actions and ways to stances. Words, modes and what lasts are left out.
 
 from bisect import insort
 from dataclasses import dataclass, replace
-from math import cos, exp, inf, log, pi, sqrt
+from math import cos, exp, floor, inf, log, pi, sqrt
 from typing import Any
 
 from tests.engines.stranger.drawing import begins_in, pick, uniform
@@ -19,7 +19,7 @@ PLANNED = {
         "stroke", "hold", "prepare",
     },
     "fidget": {"do", "id", "at", "layer", "tags", "limb", "duration", "priority", "resume"},
-    "action": {"do", "id", "at", "action", "priority", "stroke", "hold", "prepare"},
+    "action": {"do", "id", "at", "action", "duration", "priority", "stroke", "hold", "prepare"},
     "stance": {"do", "id", "at", "layer", "stance", "priority"},
 }  # fmt: skip
 
@@ -57,6 +57,7 @@ class Meta:
     stroke: float | None = None
     hold: float | None = None
     prepare: bool = True
+    seconds: float = 0.0
 
     @property
     def key(self) -> str:
@@ -82,6 +83,7 @@ def asked(character: Character, layer: str, case: dict[str, Any]) -> list[Meta]:
         if where != layer:
             continue
         start, timed = ask.get("at", 0.0), ask.get("duration") is not None
+        timed = timed and (action is None or action.get("repeat", 0.0) > 0.0)
         seconds = ask["duration"] if timed else character.data["planner"]["window"]
         stroke, tags = ask.get("stroke"), tuple(ask.get("tags", ()))
         if stroke is not None:
@@ -94,7 +96,7 @@ def asked(character: Character, layer: str, case: dict[str, Any]) -> list[Meta]:
             Meta(
                 ask["id"], kind, start, start + seconds, ask.get("priority", 1), start, timed,
                 tags, ask.get("limb"), ask.get("stance"), ask.get("action"), ask.get("resume", False), 0,
-                stroke, ask.get("hold"), ask.get("prepare", True),
+                stroke, ask.get("hold"), ask.get("prepare", True), ask.get("duration") or 0.0,
             )
         )  # fmt: skip
     return out
@@ -122,6 +124,13 @@ class Shape:
     hold: float = 0.0
 
 
+def cycle(action: dict[str, Any]) -> float:
+    """ "Limits": p, 0 where an action plays once."""
+    p = float(action["end"] - action["start"])
+    repeats = action["kind"] in ("gesture", "fidget") and action.get("repeat", 0.0) > 0.0
+    return p if repeats and p >= 0.1 else 0.0
+
+
 def shape(planner: dict[str, Any], action: dict[str, Any], meta: Meta | None, now: float) -> Shape:
     """ "Phases" and "Limits"; meta: None for a hop on the way."""
     begin, entry, hold_from, hold_to, hold = now, action["start"], 0.0, 0.0, 0.0
@@ -132,12 +141,18 @@ def shape(planner: dict[str, Any], action: dict[str, Any], meta: Meta | None, no
         if meta.stroke is not None:
             begin = max(now, meta.stroke - (stroke - entry))
             entry = min(max(entry, stroke - max(0.0, meta.stroke - begin)), max(entry, latest))
-        if meta.hold is not None:
+        if meta.hold is not None and not cycle(action):
             hold = max(meta.hold, (relax - stroke_end) / planner["hurry"])
             hold_from, hold_to = (stroke_end, relax) if hold > 0.0 else (0.0, 0.0)
     longer = hold - (hold_to - hold_from)
     length = least = action["end"] - entry + longer
-    leave = action["earliest_exit"]
+    leave, p = action["earliest_exit"], cycle(action)
+    if p > 0.0:
+        s = min(action["repeat"], 60.0)
+        if meta is not None and meta.timed and meta.rank != WRITTEN:
+            s = meta.end - now if meta.part else meta.seconds
+        length += (max(1.0, floor(min(s / p, 1e6) + 0.5)) - 1.0) * p
+        leave = action["end"] if leave is None else leave
     if leave is not None:
         left = leave - entry + (longer if leave >= hold_to else 0.0)
         least = min(length, max(0.0, left) + action["blend_out"])
@@ -303,7 +318,7 @@ class Sampler:
             action = self.draw(left, f"{meta.key}/{hop}" if hop else meta.key, now)
             of = shapes[action["id"]]
             length = of.length
-            if action["earliest_exit"] is not None:
+            if action["earliest_exit"] is not None or cycle(action) > 0.0:
                 until = min(limit, inf if hop else wish)
                 length = min(length, max(of.least, until - of.begin))
             into = action["blend_in"]
@@ -312,12 +327,15 @@ class Sampler:
             blends = into + action["blend_out"]
             squeeze = min(1.0, length / blends) if blends > 0.0 else 1.0
             then = action["end_stance"] or stance
+            ends = {"cycle_from": action["start"], "cycle_to": action["end"]}
+            around = ends if cycle(action) > 0.0 else {}
             cues.append(
                 {
                     "action": action["id"], "start": of.begin, "end": of.begin + length, "entry": of.entry,
                     "blend_in": into * squeeze, "blend_out": action["blend_out"] * squeeze,
                     "stance": stance, "then": then, "meta": meta.key,
                     "hold_from": of.hold_from, "hold_to": of.hold_to, "hold": of.hold,
+                    **around,
                 }
             )  # fmt: skip
             now, stance = of.begin + length, then

@@ -35,6 +35,9 @@ def sampled(clip: Clip, second: float) -> Pose:
 def cue_second(cue: dict[str, Any], t: float) -> float:
     """docs/reference, "Time in a cue"."""
     x, tempo = t - cue["start"], cue.get("tempo", 1.0)
+    if "cycle_to" in cue:
+        y = cue["entry"] - cue["cycle_from"] + x * tempo
+        return float(cue["cycle_from"] + y % (cue["cycle_to"] - cue["cycle_from"]))
     if cue["hold"] <= 0.0:
         return float(cue["entry"] + x * tempo)
     h = min(max(x - (cue["hold_from"] - cue["entry"]) / tempo, 0.0), cue["hold"])
@@ -120,6 +123,8 @@ def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
         return rest
     action = character.actions[cue["action"]]
     d, e = offset(character, action, cue_second(cue, t))
+    if "cycle_to" in cue:
+        return repeated(character, cue, (d, e), rest, t)
     if t < cue["start"] + cue["blend_in"]:
         edge = cue["entry"]
     elif t >= cue["end"] - cue["blend_out"]:
@@ -129,9 +134,33 @@ def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
     if edge is not None:
         left = 1.0 - cue_weight(cue, t)
         d_edge, e_edge = offset(character, action, edge)
-        d = times(d, nlerp(np.broadcast_to(STILL, d.shape), times(inverse(d_edge), rest[0]), left))
-        e = e + left * (rest[1] - e_edge)
-    d, e = sized(character, (d, e), rest, cue.get("extent", 1.0))
+        d, e = led((d, e), rest, (d_edge, e_edge), left)
+    return masked(character, cue, (d, e), rest)
+
+
+def led(shown: Pose, to: Pose, since: Pose, left: float) -> Pose:
+    """docs/reference, "Blending"."""
+    still = np.broadcast_to(STILL, shown[0].shape)
+    d = times(shown[0], nlerp(still, times(inverse(since[0]), to[0]), left))
+    return d, shown[1] + left * (to[1] - since[1])
+
+
+def repeated(character: Character, cue: dict[str, Any], shown: Pose, rest: Pose, t: float) -> Pose:
+    """docs/reference, "Time in a cue" and "Blending"."""
+    action, p = character.actions[cue["action"]], cue["cycle_to"] - cue["cycle_from"]
+    y = cue["entry"] - cue["cycle_from"] + (t - cue["start"]) * cue.get("tempo", 1.0)
+    if y >= p:
+        ends = [offset(character, action, cue[name]) for name in ("cycle_to", "cycle_from")]
+        shown = led(shown, *ends, 1.0 - ease(y % p / min(0.4, p / 2.0)))
+    if t < cue["start"] + cue["blend_in"] or t >= cue["end"] - cue["blend_out"]:
+        shown = mix(rest, shown, cue_weight(cue, t))
+    return masked(character, cue, shown, rest)
+
+
+def masked(character: Character, cue: dict[str, Any], shown: Pose, rest: Pose) -> Pose:
+    """docs/reference, "Joints an action does not move"."""
+    action = character.actions[cue["action"]]
+    d, e = sized(character, shown, rest, cue.get("extent", 1.0))
     moved = moves(character, action)[:, None]
     some = (moved > 0.0) & (moved < 1.0)
     d = np.where(some, nlerp(rest[0], d, moved), d)

@@ -77,7 +77,9 @@ def moment(character: Character, layers: dict[str, Any], hands: list[str], t: fl
     r = stance(character, plan["rests"], t) if plan["rests"] else NONE
     out = row(character, action, cue_second(cue, t)) - r
     entering = t < cue["start"] + cue["blend_in"]
-    if entering or t >= cue["end"] - cue["blend_out"]:
+    if "cycle_to" in cue:
+        out = w * out
+    elif entering or t >= cue["end"] - cue["blend_out"]:
         edge = cue["entry"] if entering else cue_second(cue, cue["end"])
         out = out + (1.0 - w) * (r - row(character, action, edge))
     moves = [

@@ -126,7 +126,7 @@ inline const Map<std::string, List<Field>>& fields() {
     static const Map<std::string, List<Field>> out = {
         {"gesture", {layer_, tags_, limb_, duration, stroke, hold_, prepare, resume, late_, mood_, intensity_}},
         {"fidget", {layer_, tags_, limb_, duration, resume, late_, mood_, intensity_}},
-        {"action", {{"action", Json(), name, true}, any_layer, stroke, hold_, prepare, late_, mood_, intensity_}},
+        {"action", {{"action", Json(), name, true}, any_layer, duration, stroke, hold_, prepare, late_, mood_, intensity_}},
         {"stance", {{"stance", Json(), name, true}, any_layer, {"stay", false, flag}, late_}},
         {"change", {layer_, limb_, duration, late_}},
         {"nod", {tags_, late_, mood_, intensity_}},

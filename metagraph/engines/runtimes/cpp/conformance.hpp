@@ -53,6 +53,10 @@ inline Json cue_data(const Cue& cue) {
     });
     if (cue.extent != 1) out.set("extent", cue.extent);
     if (cue.tempo != 1) out.set("tempo", cue.tempo);
+    if (cue.repeats()) {
+        out.set("cycle_from", cue.cycle_from);
+        out.set("cycle_to", cue.cycle_to);
+    }
     return out;
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "model.hpp"
+#include "repeating.hpp"
 #include "meta_plan.hpp"
 #include "mood.hpp"
 #include "phase_times.hpp"
@@ -43,6 +44,7 @@ inline double slack_of(const Ref<MetaRequest>& request);
 inline double hurried(const Ref<Project>& project, const Ref<Action>& action, const Ref<CueShape>& shape);
 inline bool may_share(const Ref<MetaRequest>& request, const Ref<MetaRequest>& other);
 inline bool meets(const Ref<Action>& action, const Ref<MetaRequest>& request);
+inline Ref<MetaRequest> remaining(const Ref<MetaAction>& meta, double now);
 
 }  // namespace cue_shapes
 
@@ -94,6 +96,7 @@ inline Ref<CueShape> shape_of(
     double hold_from = 0.0;
     double hold_to = 0.0;
     double hold = 0.0;
+    double cycle = repeating::cycle_of(action->kind, action->timing, start, end);
     if (request != nullptr
         && action->kind == "gesture"
         && (request->hold.has_value() || request->stroke.has_value() || !request->prepare)) {
@@ -106,7 +109,7 @@ inline Ref<CueShape> shape_of(
             double missed = found->stroke - std::max(0.0, *request->stroke - begin) * speed;
             entry = std::min(std::max(entry, missed), std::max(entry, latest));
         }
-        if (request->hold.has_value()) {
+        if (request->hold.has_value() && cycle <= 0) {
             hold_from = found->stroke_end;
             hold_to = found->relax;
             hold = std::max(*request->hold, (hold_to - hold_from) / cue_shapes::HURRY);
@@ -120,6 +123,14 @@ inline Ref<CueShape> shape_of(
     double length = end - entry + hold - natural + mood::drag(end - entry - natural, speed);
     double shortest = length;
     std::optional<double> exit_at = action->timing->earliest_exit;
+    if (cycle > 0) {
+        double wanted = std::min(action->timing->repeat, repeating::LONGEST_REPEAT);
+        if (request != nullptr && request->duration.has_value()) {
+            wanted = *request->duration;
+        }
+        length += (repeating::times_played(cycle, wanted * speed) - 1.0) * cycle / speed;
+        exit_at = !exit_at.has_value() ? end : *exit_at;
+    }
     if (exit_at.has_value()) {
         double left = *exit_at - entry + (*exit_at >= hold_to ? hold - natural : 0.0);
         left += mood::drag(*exit_at - entry - (*exit_at >= hold_to ? natural : 0.0), speed);
@@ -157,7 +168,9 @@ inline double slack_of(const Ref<MetaRequest>& request) {
 /// Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked
 /// for.
 inline double hurried(const Ref<Project>& project, const Ref<Action>& action, const Ref<CueShape>& shape) {
-    if (action->kind != "gesture" || action->timing->earliest_exit.has_value()) {
+    auto [start, end] = project->span(action);
+    bool repeats = repeating::cycle_of(action->kind, action->timing, start, end) > 0;
+    if (action->kind != "gesture" || action->timing->earliest_exit.has_value() || repeats) {
         return shape->shortest;
     }
     Ref<Phases> found = phases::phases(project, action);
@@ -195,6 +208,35 @@ inline bool meets(const Ref<Action>& action, const Ref<MetaRequest>& request) {
     return are_all
         && (!request->limb.has_value() || action->limb == *request->limb)
         && (lang::len(request->among) == 0 || lang::contains(request->among, action->id));
+}
+
+/// Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+inline Ref<MetaRequest> remaining(const Ref<MetaAction>& meta, double now) {
+    Ref<MetaRequest> request = meta->request;
+    if (!request->duration.has_value() || (meta->part == 0 && !meta->written)) {
+        return request;
+    }
+    return lang::made<MetaRequest>(
+        request->id,
+        request->layer,
+        request->kind,
+        request->start,
+        meta->written ? std::nullopt : std::optional<double>(std::max(0.0, meta->end - now)),
+        request->action,
+        request->tags,
+        request->limb,
+        request->stance,
+        request->priority,
+        request->resume,
+        request->stroke,
+        request->hold,
+        request->prepare,
+        request->among,
+        request->late,
+        request->valence,
+        request->arousal,
+        request->intensity
+    );
 }
 
 }  // namespace cue_shapes

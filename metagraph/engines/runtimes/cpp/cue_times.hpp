@@ -15,9 +15,12 @@ struct LoopSpot;
 
 namespace cue_times {
 
+// clip seconds in which a cue that repeats makes its cycle's ends meet, at most half of the cycle
+inline constexpr double SEAM = 0.4;
 inline Ref<LoopSpot> loop_spot(const Ref<Project>& project, const Ref<Rest>& rest, double time);
 inline double cue_weight(const Ref<Cue>& cue, double time);
 inline double cue_seconds(const Ref<Cue>& cue, double time);
+inline double seam_left(const Ref<Cue>& cue, double time);
 inline double ease(double x);
 
 }  // namespace cue_times
@@ -70,12 +73,31 @@ inline double cue_weight(const Ref<Cue>& cue, double time) {
 /// Return the second of its clip that a cue plays at a time.
 inline double cue_seconds(const Ref<Cue>& cue, double time) {
     double elapsed = time - cue->start;
+    if (cue->repeats()) {
+        double cycle = cue->cycle_to - cue->cycle_from;
+        double into = cue->entry - cue->cycle_from + elapsed * cue->tempo;
+        return cue->cycle_from + into - cycle * static_cast<int>(std::floor(into / cycle));
+    }
     if (cue->hold <= 0.0) {
         return cue->entry + elapsed * cue->tempo;
     }
     double held = std::min(std::max(elapsed - (cue->hold_from - cue->entry) / cue->tempo, 0.0), cue->hold);
     double more = (elapsed - held) * (cue->tempo - 1.0);
     return cue->entry + elapsed - held + more + held * ((cue->hold_to - cue->hold_from) / cue->hold);
+}
+
+/// Return how much of the way from where a cycle begins to where the one before it ended is still added at a time,
+/// 0..1, so that a cue that repeats goes on without a jump.
+inline double seam_left(const Ref<Cue>& cue, double time) {
+    double cycle = cue->cycle_to - cue->cycle_from;
+    double into = cue->entry - cue->cycle_from + (time - cue->start) * cue->tempo;
+    if (!cue->repeats() || static_cast<int>(std::floor(into / cycle)) < 1) {
+        return 0.0;
+    }
+    return 1.0
+        - cue_times::ease(
+            (into - cycle * static_cast<int>(std::floor(into / cycle))) / std::min(cue_times::SEAM, 0.5 * cycle)
+        );
 }
 
 /// Return 3 x^2 - 2 x^3 of x clamped to 0..1.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "asks.hpp"
+#include "repeating.hpp"
 
 namespace metagraph {
 
@@ -10,7 +11,7 @@ namespace description {
 inline Json action(const Action& action, const Phases& phases) {
     Json out = Json::object({
         {"id", action.id}, {"name", action.name}, {"kind", action.kind}, {"stance", action.stance},
-        {"seconds", phases.end - phases.start},
+        {"seconds", repeating::seconds_played(action.kind, action.timing, phases.start, phases.end)},
     });
     if (action.kind == "transition") out.set("to", Json::maybe(action.end_stance));
     if (action.limb != "both") out.set("limb", action.limb);

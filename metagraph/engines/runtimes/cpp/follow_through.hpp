@@ -128,13 +128,19 @@ inline List<double> arm_sway(
     List<double> row = follow_through::_row(track, cue_times::cue_seconds(cue, time));
     List<double> rest = follow_through::_stance(project, tracks, arms, place, time);
     bool entering = time < cue->start + cue->blend_in;
-    if (entering || time >= cue->end - cue->blend_out) {
-        List<double> edge = follow_through::_row(track, entering ? cue->entry : cue_times::cue_seconds(cue, cue->end));
+    if (cue->repeats()) {
         List<double> found;
         for (int n3 = 0; n3 < follow_through::NUMBERS; n3++) {
-            found.push_back(lang::at(row, n3) + (1.0 - weight) * (lang::at(rest, n3) - lang::at(edge, n3)));
+            found.push_back(lang::at(rest, n3) + weight * (lang::at(row, n3) - lang::at(rest, n3)));
         }
         row = found;
+    } else if (entering || time >= cue->end - cue->blend_out) {
+        List<double> edge = follow_through::_row(track, entering ? cue->entry : cue_times::cue_seconds(cue, cue->end));
+        List<double> found2;
+        for (int n4 = 0; n4 < follow_through::NUMBERS; n4++) {
+            found2.push_back(lang::at(row, n4) + (1.0 - weight) * (lang::at(rest, n4) - lang::at(edge, n4)));
+        }
+        row = found2;
     }
     double left = follow_through::_moves(cue->action, "left", lang::at(hands, 0)) ? share * follow_through::UNIT : 0.0;
     double right = follow_through::_moves(cue->action, "right", lang::at(hands, 1))

@@ -126,7 +126,8 @@ inline std::pair<Ref<PlacedAction>, Ref<Phases>> read_action(const std::string& 
         json["id"].text(), clip, json["kind"].one_of(graph::KINDS), layer, json["stance"].text(), json["name"].text(),
         json["end_stance"].text_or_null(),
         lang::made<Timing>(
-            start, end, json["blend_in"].within(0, 1e9), json["blend_out"].within(0, 1e9), json["loop"].flag(), earliest, stroke
+            start, end, json["blend_in"].within(0, 1e9), json["blend_out"].within(0, 1e9), json["loop"].flag(), earliest, stroke,
+            std::nullopt, std::nullopt, std::nullopt, json.maybe("repeat").within_or(0, 1e9, 0)
         ),
         json["limb"].one_of(graph::LIMBS), json["joints"].texts(), json["tags"].texts(), json["likelihood"].within(0, 1e15),
         json.maybe("cooldown").within_or(0, 1e9, 0),

@@ -347,12 +347,13 @@ inline std::string Meaning::add(
         if (stroke.has_value()) {
             start = std::max(0.0, *stroke - phases::lead(this->project, action));
         }
+        std::optional<double> duration = action->timing->repeat > 0 ? ask->duration : std::nullopt;
         Ref<MetaRequest> request = lang::made<MetaRequest>(
             ident,
             action->layer,
             action->kind,
             start,
-            std::nullopt,
+            duration,
             action->id,
             List<std::string>{},
             std::nullopt,

@@ -135,7 +135,7 @@ struct MetaAction {
 /// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched.
 /// blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in.
 /// meta: key of the meta action it realises. extent: how large it is played, a factor of its turns away from the
-/// stance.
+/// stance. cycle_from, cycle_to: clip seconds between which it repeats; 0, 0 where it plays once.
 struct Cue {
     Ref<Action> action;
     double start;
@@ -151,6 +151,8 @@ struct Cue {
     double hold;
     double extent;
     double tempo;
+    double cycle_from;
+    double cycle_to;
 
     Cue(
         Ref<Action> action_,
@@ -166,7 +168,9 @@ struct Cue {
         double hold_to_ = 0.0,
         double hold_ = 0.0,
         double extent_ = 1.0,
-        double tempo_ = 1.0
+        double tempo_ = 1.0,
+        double cycle_from_ = 0.0,
+        double cycle_to_ = 0.0
     )
         : action(std::move(action_)),
             start(start_),
@@ -181,7 +185,12 @@ struct Cue {
             hold_to(hold_to_),
             hold(hold_),
             extent(extent_),
-            tempo(tempo_) {}
+            tempo(tempo_),
+            cycle_from(cycle_from_),
+            cycle_to(cycle_to_) {}
+
+    /// Whether it plays a cycle again and again.
+    bool repeats() const;
 };
 
 /// The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.
@@ -296,6 +305,10 @@ inline double MetaAction::rank() const {
 
 inline std::string MetaAction::key() const {
     return this->part == 0 ? this->request->id : lang::text(this->request->id, "+", this->part);
+}
+
+inline bool Cue::repeats() const {
+    return this->cycle_to > this->cycle_from;
 }
 
 }  // namespace metagraph

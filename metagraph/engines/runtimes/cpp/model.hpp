@@ -23,7 +23,8 @@ struct Settings;
 /// loop's seam. `loop` repeats the part. From `earliest_exit` on the action may be left; None plays it through.
 /// `stroke` is its most telling moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation,
 /// stroke and hold; its retraction ends with the action. None takes the times found from the motion
-/// (`playback.timing.phases`).
+/// (`playback.timing.phases`). `repeat` is for how many seconds a gesture or fidget repeats its part where nobody says
+/// how long, as near as a whole number of times comes; 0 plays it once.
 struct Timing {
     double start;
     std::optional<double> end;
@@ -35,6 +36,7 @@ struct Timing {
     std::optional<double> ready;
     std::optional<double> stroke_end;
     std::optional<double> relax;
+    double repeat;
 
     explicit Timing(
         double start_ = 0.0,
@@ -46,7 +48,8 @@ struct Timing {
         std::optional<double> stroke_ = std::nullopt,
         std::optional<double> ready_ = std::nullopt,
         std::optional<double> stroke_end_ = std::nullopt,
-        std::optional<double> relax_ = std::nullopt
+        std::optional<double> relax_ = std::nullopt,
+        double repeat_ = 0.0
     )
         : start(start_),
             end(end_),
@@ -57,7 +60,8 @@ struct Timing {
             stroke(stroke_),
             ready(ready_),
             stroke_end(stroke_end_),
-            relax(relax_) {}
+            relax(relax_),
+            repeat(repeat_) {}
 };
 
 /// One use of a clip in the graph.

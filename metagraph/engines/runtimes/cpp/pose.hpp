@@ -12,12 +12,13 @@ namespace metagraph {
 
 namespace pose {
 
-/// The clip seconds a cue shows at a time: its tempo, but for its hold.
-inline double clip_seconds(const Cue& cue, double time) {
-    const double elapsed = time - cue.start;
-    if (cue.hold <= 0) return cue.entry + elapsed * cue.tempo;
-    const double held = std::clamp(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0, cue.hold);
-    return cue.entry + (elapsed - held) * cue.tempo + held * ((cue.hold_to - cue.hold_from) / cue.hold);
+/// The clip seconds a cue shows at a time: its tempo, but for its hold; again and again what it repeats.
+inline double clip_seconds(const Ref<Cue>& cue, double time) {
+    if (cue->repeats()) return cue_times::cue_seconds(cue, time);
+    const double elapsed = time - cue->start;
+    if (cue->hold <= 0) return cue->entry + elapsed * cue->tempo;
+    const double held = std::clamp(elapsed - (cue->hold_from - cue->entry) / cue->tempo, 0.0, cue->hold);
+    return cue->entry + (elapsed - held) * cue->tempo + held * ((cue->hold_to - cue->hold_from) / cue->hold);
 }
 
 /// How much of a cue shows at a time within it: rising over its blend in, falling over its blend out.
@@ -82,11 +83,11 @@ public:
         if (out.empty()) return;
         List<const Cue*> cues;
         for (Layer& layer : layers_) {
-            const Cue* cue = cue_at(layer, time);
+            const Ref<Cue> cue = cue_at(layer, time);
             const double weight = cue == nullptr ? 0 : pose::cue_weight(*cue, time);
             if (cue != nullptr) {
-                cues.push_back(cue);
-                add_morphs(*cue->action, pose::clip_seconds(*cue, time), weight, out);
+                cues.push_back(cue.get());
+                add_morphs(*cue->action, pose::clip_seconds(cue, time), weight, out);
             }
             if (layer.plan->rests.empty()) continue;
             const Rest& rest = *lang::at(layer.plan->rests, rest_at(layer, time));
@@ -216,24 +217,21 @@ private:
 
     /// Return a layer's offsets at a time, on the joints it reaches.
     const List<Joined>& layer(Layer& layer, double time, std::size_t count) {
-        const Cue* cue = cue_at(layer, time);
+        const Ref<Cue> cue = cue_at(layer, time);
         if (cue == nullptr || placed(*cue->action).offsets == nullptr) return stance(layer, time, count);
         const PlacedAction& action = placed(*cue->action);
-        sample(action, pose::clip_seconds(*cue, time), shown_, count);
+        show(cue, time, count);
         const bool entering = time < cue->start + cue->blend_in;
         const bool blending = entering || time >= cue->end - cue->blend_out;
         if (!blending && action.partly.empty() && cue->extent == 1) return shown_;
         stance(layer, time, count);
-        if (blending) {
+        if (blending && cue->repeats()) {  // at its ends it moves
+            mix(stance_, shown_, pose::cue_weight(*cue, time), count, shown_);
+        } else if (blending) {
             // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A
             // crossfade would hold the clip back and then hurry it.
-            sample(action, entering ? cue->entry : pose::clip_seconds(*cue, cue->end), other_, count);
-            const double weight = 1 - pose::cue_weight(*cue, time);
-            for (std::size_t i = 0; i < count; i++) {
-                const Quat away = rotation::multiply(other_[i].rotation.back(), stance_[i].rotation);
-                shown_[i].rotation = rotation::multiply(shown_[i].rotation, rotation::nlerp(Quat{}, away, weight));
-                shown_[i].translation += (stance_[i].translation - other_[i].translation) * weight;
-            }
+            sample(action, entering ? cue->entry : pose::clip_seconds(cue, cue->end), other_, count);
+            lead(other_, stance_, 1 - pose::cue_weight(*cue, time), count);
         }
         if (cue->extent != 1) extend(cue->extent, graph_->layer(action.layer).reach);
         for (const auto& [place, weight] : action.partly) {
@@ -243,6 +241,26 @@ private:
             joint.translation = rest.translation + (joint.translation - rest.translation) * weight;
         }
         return shown_;
+    }
+
+    /// Show what a cue plays of its clip, without its blends. Where it repeats, it goes on from where the cycle before it ended.
+    void show(const Ref<Cue>& cue, double time, std::size_t count) {
+        const PlacedAction& action = placed(*cue->action);
+        sample(action, pose::clip_seconds(cue, time), shown_, count);
+        const double left = cue_times::seam_left(cue, time);
+        if (left <= 0) return;
+        sample(action, cue->cycle_from, other_, count);
+        sample(action, cue->cycle_to, spare_, count);
+        lead(other_, spare_, left, count);
+    }
+
+    /// Add to what is shown a part of the way from a pose to another.
+    void lead(const List<Joined>& from, const List<Joined>& to, double weight, std::size_t count) {
+        for (std::size_t i = 0; i < count; i++) {
+            const Quat away = rotation::multiply(from[i].rotation.back(), to[i].rotation);
+            shown_[i].rotation = rotation::multiply(shown_[i].rotation, rotation::nlerp(Quat{}, away, weight));
+            shown_[i].translation += (to[i].translation - from[i].translation) * weight;
+        }
     }
 
     /// Play what is shown larger or smaller round the stance.
@@ -285,13 +303,13 @@ private:
     }
 
     /// Return the cue playing at a time, none while the stance rests.
-    static const Cue* cue_at(Layer& layer, double time) {
+    static Ref<Cue> cue_at(Layer& layer, double time) {
         const auto& cues = layer.plan->cues;
         int& cue = layer.cue;
         cue = std::min(cue, lang::len(cues));
         while (cue > 0 && lang::at(cues, cue - 1)->start > time) cue--;
         while (cue < lang::len(cues) && lang::at(cues, cue)->start <= time) cue++;
-        const Cue* found = cue > 0 ? lang::at(cues, cue - 1).get() : nullptr;
+        const Ref<Cue> found = cue > 0 ? lang::at(cues, cue - 1) : nullptr;
         return found != nullptr && time < found->end ? found : nullptr;
     }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "model.hpp"
+#include "repeating.hpp"
 #include "meta_plan.hpp"
 #include "bounds.hpp"
 #include "choice.hpp"
@@ -277,7 +278,7 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
     std::string stance = this->stance;
     for (const auto& step : *steps) {
         bool hops = step->hop != "";
-        Ref<MetaRequest> asked = hops ? nullptr : meta->request;
+        Ref<MetaRequest> asked = hops ? nullptr : cue_shapes::remaining(meta, now);
         Ref<Mood> mood = this->_mood(asked, now);
         List<Ref<Action>> fitting = step->candidates;
         if (limit < INFINITY) { // else all fit
@@ -511,11 +512,18 @@ inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<M
     }
     double soonest = now + std::max(cue->blend_out, cue_shapes::RETRACTION);
     if (!running->written) {
+        double once = cue->end - cue->start;
+        if (cue->repeats()) {
+            once = std::min(
+                once,
+                (cue->cycle_to - cue->entry) / cue->tempo + std::max(cue->blend_out, cue_shapes::RETRACTION)
+            );
+        }
         Ref<CueShape> shape = lang::made<CueShape>(
             cue->start,
             cue->entry,
             cue->end - cue->start,
-            cue->end - cue->start,
+            once,
             cue->hold_from,
             cue->hold_to,
             cue->hold,
@@ -550,7 +558,9 @@ inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<M
                 cue->hold_to,
                 cue->hold,
                 cue->extent,
-                cue->tempo
+                cue->tempo,
+                cue->cycle_from,
+                cue->cycle_to
             );
             this->free = end;
             this->ended[cue->action->id] = end;
@@ -923,7 +933,9 @@ inline Ref<Cue> Performer::_cue(
     double length = shape->length;
     double into = std::max(0.0, action->timing->blend_in);
     double out = std::max(0.0, action->timing->blend_out);
-    if (action->timing->earliest_exit.has_value()) {
+    auto [begin, until] = this->project->span(action);
+    double cycle = repeating::cycle_of(action->kind, action->timing, begin, until);
+    if (action->timing->earliest_exit.has_value() || cycle > 0) {
         double wish = hops ? INFINITY : bound->wish;
         length = std::min(length, std::max(shape->shortest, std::min(bound->limit, wish) - shape->start));
     } else if (!hops) {
@@ -932,7 +944,7 @@ inline Ref<Cue> Performer::_cue(
             out = std::max(out, cue_shapes::RETRACTION);
         }
     }
-    if (shape->entry > std::get<0>(this->project->span(action))) {
+    if (shape->entry > begin) {
         into = std::max(into, phase_times::LEAST_BLEND);
     }
     double squeeze = into + out > 0 ? std::min(1.0, length / (into + out)) : 1.0;
@@ -955,7 +967,9 @@ inline Ref<Cue> Performer::_cue(
         shape->hold_to,
         shape->hold,
         this->_extent(action, mood),
-        shape->tempo
+        shape->tempo,
+        cycle > 0 ? begin : 0.0,
+        cycle > 0 ? begin + cycle : 0.0
     );
 }
 

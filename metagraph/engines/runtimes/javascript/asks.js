@@ -36,7 +36,10 @@ const FIELDS = {
     resume: [false, flag], late: LATE, ...MOOD,
   },
   fidget: { layer: LAYER, tags: TAGS, limb: LIMB, duration: [null, seconds], resume: [false, flag], late: LATE, ...MOOD },
-  action: { action: [undefined, name], layer: ANY_LAYER, stroke: [null, seconds], hold: HOLD, prepare: [true, flag], late: LATE, ...MOOD },
+  action: {
+    action: [undefined, name], layer: ANY_LAYER, duration: [null, seconds], stroke: [null, seconds], hold: HOLD, prepare: [true, flag],
+    late: LATE, ...MOOD,
+  },
   stance: { stance: [undefined, name], layer: ANY_LAYER, stay: [false, flag], late: LATE },
   change: { layer: LAYER, limb: LIMB, duration: [null, seconds], late: LATE },
   nod: { tags: TAGS, late: LATE, ...MOOD },

@@ -105,6 +105,7 @@ function cueData(cue) {
     action: cue.action.id, start: cue.start, end: cue.end, entry: cue.entry, blend_in: cue.blendIn, blend_out: cue.blendOut,
     stance: cue.stance, then: cue.then, meta: cue.meta, hold_from: cue.holdFrom, hold_to: cue.holdTo, hold: cue.hold,
     ...(cue.extent !== 1 && { extent: cue.extent }), ...(cue.tempo !== 1 && { tempo: cue.tempo }),
+    ...(cue.repeats && { cycle_from: cue.cycleFrom, cycle_to: cue.cycleTo }),
   };
 }
 

@@ -7,8 +7,10 @@
  * Translated from metagraph/playback/planning/cue_shapes.py; change that, and translate anew.
  */
 
+import { LONGEST_REPEAT, cycleOf, timesPlayed } from "./repeating.js";
 import { drag } from "./mood.js";
 import { phases } from "./phases.js";
+import { but } from "./basics.js";
 
 export const FITS = 1e-06; // seconds by which sums of times may be off
 export const HURRY = 2; // a hold is played at most this many times as fast as it was made
@@ -50,6 +52,7 @@ export function shapeOf(project, action, request, now, speed) {
   let holdFrom = 0;
   let holdTo = 0;
   let hold = 0;
+  const cycle = cycleOf(action.kind, action.timing, start, end);
   if (request !== null
     && action.kind === "gesture"
     && (request.hold !== null || request.stroke !== null || !request.prepare)) {
@@ -62,7 +65,7 @@ export function shapeOf(project, action, request, now, speed) {
       const missed = found.stroke - Math.max(0, request.stroke - begin) * speed;
       entry = Math.min(Math.max(entry, missed), Math.max(entry, latest));
     }
-    if (request.hold !== null) {
+    if (request.hold !== null && cycle <= 0) {
       holdFrom = found.strokeEnd;
       holdTo = found.relax;
       hold = Math.max(request.hold, (holdTo - holdFrom) / HURRY);
@@ -73,9 +76,17 @@ export function shapeOf(project, action, request, now, speed) {
     }
   }
   const natural = holdTo - holdFrom;
-  const length = end - entry + hold - natural + drag(end - entry - natural, speed);
+  let length = end - entry + hold - natural + drag(end - entry - natural, speed);
   let shortest = length;
-  const exitAt = action.timing.earliestExit;
+  let exitAt = action.timing.earliestExit;
+  if (cycle > 0) {
+    let wanted = Math.min(action.timing.repeat, LONGEST_REPEAT);
+    if (request !== null && request.duration !== null) {
+      wanted = request.duration;
+    }
+    length += (timesPlayed(cycle, wanted * speed) - 1) * cycle / speed;
+    exitAt = exitAt === null ? end : exitAt;
+  }
   if (exitAt !== null) {
     let left = exitAt - entry + (exitAt >= holdTo ? hold - natural : 0);
     left += drag(exitAt - entry - (exitAt >= holdTo ? natural : 0), speed);
@@ -129,7 +140,9 @@ export function slackOf(request) {
  * @returns {number}
  */
 export function hurried(project, action, shape) {
-  if (action.kind !== "gesture" || action.timing.earliestExit !== null) {
+  const [start, end] = project.span(action);
+  const repeats = cycleOf(action.kind, action.timing, start, end) > 0;
+  if (action.kind !== "gesture" || action.timing.earliestExit !== null || repeats) {
     return shape.shortest;
   }
   const found = phases(project, action);
@@ -170,4 +183,18 @@ export function meets(action, request) {
   return request.tags.every((tag) => action.tags.includes(tag))
     && (request.limb === null || action.limb === request.limb)
     && (request.among.length === 0 || request.among.includes(action.id));
+}
+
+/**
+ * Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+ * @param {MetaAction} meta
+ * @param {number} now
+ * @returns {MetaRequest}
+ */
+export function remaining(meta, now) {
+  const request = meta.request;
+  if (request.duration === null || (meta.part === 0 && !meta.written)) {
+    return request;
+  }
+  return but(request, { duration: meta.written ? null : Math.max(0, meta.end - now) });
 }

@@ -6,6 +6,8 @@
  */
 
 
+export const SEAM = 0.4; // clip seconds in which a cue that repeats makes its cycle's ends meet, at most half of the cycle
+
 /**
  * Where a loop is.
  *
@@ -71,12 +73,33 @@ export function cueWeight(cue, time) {
  */
 export function cueSeconds(cue, time) {
   const elapsed = time - cue.start;
+  if (cue.repeats) {
+    const cycle = cue.cycleTo - cue.cycleFrom;
+    const into = cue.entry - cue.cycleFrom + elapsed * cue.tempo;
+    return cue.cycleFrom + into - cycle * Math.floor(into / cycle);
+  }
   if (cue.hold <= 0) {
     return cue.entry + elapsed * cue.tempo;
   }
   const held = Math.min(Math.max(elapsed - (cue.holdFrom - cue.entry) / cue.tempo, 0), cue.hold);
   const more = (elapsed - held) * (cue.tempo - 1);
   return cue.entry + elapsed - held + more + held * ((cue.holdTo - cue.holdFrom) / cue.hold);
+}
+
+/**
+ * Return how much of the way from where a cycle begins to where the one before it ended is still added at a time, 0..1, so
+ * that a cue that repeats goes on without a jump.
+ * @param {Cue} cue
+ * @param {number} time
+ * @returns {number}
+ */
+export function seamLeft(cue, time) {
+  const cycle = cue.cycleTo - cue.cycleFrom;
+  const into = cue.entry - cue.cycleFrom + (time - cue.start) * cue.tempo;
+  if (!cue.repeats || Math.floor(into / cycle) < 1) {
+    return 0;
+  }
+  return 1 - ease((into - cycle * Math.floor(into / cycle)) / Math.min(SEAM, 0.5 * cycle));
 }
 
 /**

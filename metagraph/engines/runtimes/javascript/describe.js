@@ -2,6 +2,7 @@
 
 import { WORDS } from "./asks.js";
 import { compareText } from "./basics.js";
+import { secondsPlayed } from "./repeating.js";
 import { LAYERS, MODES } from "./words.js";
 
 /**
@@ -28,9 +29,10 @@ function describeLayer({ start, stances, actions }) {
   };
 }
 
-function describeAction({ id, name, kind, stance, start, end, endStance, limb, tags }) {
+function describeAction({ id, name, kind, stance, start, end, endStance, limb, tags, timing }) {
   return {
-    id, name, kind, stance, seconds: end - start, ...(kind === "transition" && { to: endStance }), ...(limb !== "both" && { limb }),
+    id, name, kind, stance, seconds: secondsPlayed(kind, timing, start, end), ...(kind === "transition" && { to: endStance }),
+    ...(limb !== "both" && { limb }),
     ...(tags.length > 0 && { tags }),
   };
 }

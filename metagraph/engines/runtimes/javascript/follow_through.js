@@ -86,7 +86,9 @@ export function armSway(project, tracks, hands, arms, cue, place, body, bodyCue,
   let row = _row(track, cueSeconds(cue, time));
   const rest = _stance(project, tracks, arms, place, time);
   const entering = time < cue.start + cue.blendIn;
-  if (entering || time >= cue.end - cue.blendOut) {
+  if (cue.repeats) {
+    row = range(NUMBERS).map((n) => rest[n] + weight * (row[n] - rest[n]));
+  } else if (entering || time >= cue.end - cue.blendOut) {
     const edge = _row(track, entering ? cue.entry : cueSeconds(cue, cue.end));
     row = range(NUMBERS).map((n) => row[n] + (1 - weight) * (rest[n] - edge[n]));
   }

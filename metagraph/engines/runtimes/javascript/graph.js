@@ -200,7 +200,9 @@ export class LayerGraph {
       id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion,
       tags: data.tags, joints: data.joints, jointWeights: weights, contacts: readContacts(data.contacts),
       endStance: data.end_stance ?? null,
-      timing: new Timing(start, end, number("blend_in"), number("blend_out"), kind === "stance", data.earliest_exit ?? null),
+      timing: new Timing(
+        start, end, number("blend_in"), number("blend_out"), kind === "stance", data.earliest_exit ?? null, null, null, null, null, number("repeat", 0),
+      ),
       phases: new Phases(start, ready, stroke, strokeEnd, relax, end), cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
       vigour: inRange(data.vigour ?? 0, -1, 1, `action ${id}'s vigour`),
       /** Made when they are first needed; null where the clip is missing. */

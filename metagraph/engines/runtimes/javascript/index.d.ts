@@ -158,6 +158,11 @@ export interface Cue {
   readonly holdFrom: number;
   readonly holdTo: number;
   readonly hold: number;
+  readonly extent: number;
+  readonly tempo: number;
+  readonly cycleFrom: number;
+  readonly cycleTo: number;
+  readonly repeats: boolean;
 }
 
 export interface Rest {

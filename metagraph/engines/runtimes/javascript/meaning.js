@@ -252,12 +252,13 @@ export class Meaning {
       if (stroke !== null) {
         start = Math.max(0, stroke - lead(this.project, action));
       }
+      const duration = action.timing.repeat > 0 ? ask.duration : null;
       let request = new MetaRequest(
         ident,
         action.layer,
         action.kind,
         start,
-        null,
+        duration,
         action.id,
         [],
         null,

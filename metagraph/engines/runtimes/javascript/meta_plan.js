@@ -113,10 +113,12 @@ export class MetaAction {
  *
  * hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
  * blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the
- * meta action it realises. extent: how large it is played, a factor of its turns away from the stance.
+ * meta action it realises. extent: how large it is played, a factor of its turns away from the stance. cycle_from, cycle_to:
+ * clip seconds between which it repeats; 0, 0 where it plays once.
  *
  * action: Action; start: number; end: number; entry: number; blendIn: number; blendOut: number; stance: string; then:
- * string; meta: string; holdFrom: number; holdTo: number; hold: number; extent: number; tempo: number.
+ * string; meta: string; holdFrom: number; holdTo: number; hold: number; extent: number; tempo: number; cycleFrom: number;
+ * cycleTo: number.
  */
 export class Cue {
   constructor(
@@ -134,6 +136,8 @@ export class Cue {
     hold = 0,
     extent = 1,
     tempo = 1,
+    cycleFrom = 0,
+    cycleTo = 0,
   ) {
     this.action = action;
     this.start = start;
@@ -149,6 +153,13 @@ export class Cue {
     this.hold = hold;
     this.extent = extent;
     this.tempo = tempo;
+    this.cycleFrom = cycleFrom;
+    this.cycleTo = cycleTo;
+  }
+
+  /** Whether it plays a cycle again and again. */
+  get repeats() {
+    return this.cycleTo > this.cycleFrom;
   }
 }
 

@@ -14,10 +14,12 @@
  * seconds of blending from and to the stance, inside that part. For a looping stance, `blend_in` is the overlap at the
  * loop's seam. `loop` repeats the part. From `earliest_exit` on the action may be left; None plays it through. `stroke` is
  * its most telling moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation, stroke and hold; its
- * retraction ends with the action. None takes the times found from the motion (`playback.timing.phases`).
+ * retraction ends with the action. None takes the times found from the motion (`playback.timing.phases`). `repeat` is for
+ * how many seconds a gesture or fidget repeats its part where nobody says how long, as near as a whole number of times
+ * comes; 0 plays it once.
  *
  * start: number; end: ?number; blendIn: number; blendOut: number; loop: boolean; earliestExit: ?number; stroke: ?number;
- * ready: ?number; strokeEnd: ?number; relax: ?number.
+ * ready: ?number; strokeEnd: ?number; relax: ?number; repeat: number.
  */
 export class Timing {
   constructor(
@@ -31,6 +33,7 @@ export class Timing {
     ready = null,
     strokeEnd = null,
     relax = null,
+    repeat = 0,
   ) {
     this.start = start;
     this.end = end;
@@ -42,6 +45,7 @@ export class Timing {
     this.ready = ready;
     this.strokeEnd = strokeEnd;
     this.relax = relax;
+    this.repeat = repeat;
   }
 }
 

@@ -10,6 +10,7 @@
  *   life: import("./schedule.js").Schedule}} Plan
  */
 
+import { cueSeconds } from "./cue_times.js";
 import { LayerPlan } from "./meta_plan.js";
 import { Schedule } from "./schedule.js";
 import { Track } from "./track.js";
@@ -24,8 +25,9 @@ export function emptyPlan(seed) {
 /** What keys a meta action's random draws. @param {MetaAction} meta */
 export const keyOf = (meta) => meta.key;
 
-/** Return the clip seconds a cue shows at a time: its tempo, but for its hold. @param {Cue} cue @param {number} time */
+/** Return the clip seconds a cue shows at a time: its tempo, but for its hold; again and again what it repeats. @param {Cue} cue @param {number} time */
 export function clipSeconds(cue, time) {
+  if (cue.repeats) return cueSeconds(cue, time);
   const elapsed = time - cue.start;
   if (cue.hold <= 0) return cue.entry + elapsed * cue.tempo;
   const held = Math.min(Math.max(elapsed - (cue.holdFrom - cue.entry) / cue.tempo, 0), cue.hold);

@@ -8,6 +8,7 @@ import { ease } from "./life/gaze.js";
 import { Enlivener } from "./life/evaluate.js";
 import { touch } from "./contacts.js";
 import { turnExtent } from "./mood.js";
+import { seamLeft } from "./cue_times.js";
 import { clipSeconds } from "./plan.js";
 import { multiply, nlerp, normalize, power } from "./rotation.js";
 import { Swaying } from "./weight.js";
@@ -153,30 +154,21 @@ export class Player {
 
   /** Return a layer's offsets at a time, on the joints it reaches; the room's own arrays. */
   layer(n, layer, time, count) {
-    const { shown, stance, other, turn } = this.room;
+    const { shown, stance, other } = this.room;
     const cue = this.cueAt(n, layer, time);
     const action = cue?.action;
     if (!cue || !action.offsets) return this.stance(n, layer, time, count);
-    sample(action, clipSeconds(cue, time), shown, count);
+    this.cue(cue, time, count);
     const entering = time < cue.start + cue.blendIn;
     const blending = entering || time >= cue.end - cue.blendOut;
     if (!blending && !action.partly.length && cue.extent === 1) return shown;
     this.stance(n, layer, time, count);
-    if (blending) {
+    if (blending && cue.repeats) mix(shown, stance, shown, cueWeight(cue, time), count); // at its ends it moves
+    else if (blending) {
       // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A crossfade
       // would hold the clip back and then hurry it.
       sample(action, entering ? cue.entry : clipSeconds(cue, cue.end), other, count);
-      const weight = 1 - cueWeight(cue, time);
-      for (let q = 0; q < 4 * count; q += 4) {
-        turnBack(other.rotations, q);
-        multiply(turn, 0, other.rotations, q, stance.rotations, q);
-        const w = turn[3] < 0 ? -weight : weight;
-        for (let k = 0; k < 4; k++) turn[k] *= w;
-        turn[3] += 1 - weight;
-        normalize(turn, 0);
-        multiply(shown.rotations, q, shown.rotations, q, turn, 0);
-      }
-      for (let k = 0; k < 3 * count; k++) shown.translations[k] += weight * (stance.translations[k] - other.translations[k]);
+      this.lead(stance, 1 - cueWeight(cue, time), count);
     }
     if (cue.extent !== 1) this.extend(cue.extent, this.graph.layers[LAYERS[n]], count);
     for (let s = 0; s < action.partly.length; s++) {
@@ -191,6 +183,32 @@ export class Player {
       }
     }
     return shown;
+  }
+
+  /** Show what a cue plays of its clip, without its blends. Where it repeats, it goes on from where the cycle before it ended. */
+  cue(cue, time, count) {
+    const { shown, other, spare } = this.room;
+    sample(cue.action, clipSeconds(cue, time), shown, count);
+    const left = seamLeft(cue, time);
+    if (left <= 0) return;
+    sample(cue.action, cue.cycleFrom, other, count);
+    sample(cue.action, cue.cycleTo, spare, count);
+    this.lead(spare, left, count);
+  }
+
+  /** Add to what is shown a part of the way from the room's other pose to a pose. */
+  lead(to, weight, count) {
+    const { shown, other, turn } = this.room;
+    for (let q = 0; q < 4 * count; q += 4) {
+      turnBack(other.rotations, q);
+      multiply(turn, 0, other.rotations, q, to.rotations, q);
+      const w = turn[3] < 0 ? -weight : weight;
+      for (let k = 0; k < 4; k++) turn[k] *= w;
+      turn[3] += 1 - weight;
+      normalize(turn, 0);
+      multiply(shown.rotations, q, shown.rotations, q, turn, 0);
+    }
+    for (let k = 0; k < 3 * count; k++) shown.translations[k] += weight * (to.translations[k] - other.translations[k]);
   }
 
   /** Play what is shown larger or smaller round the stance. */

@@ -4,10 +4,23 @@
  * Translated from metagraph/playback/planning/sampling.py; change that, and translate anew.
  */
 
+import { cycleOf } from "./repeating.js";
 import { Cue, Report, Rest } from "./meta_plan.js";
 import { begins, bounds } from "./bounds.js";
 import { pick } from "./choice.js";
-import { CueShape, FITS, RETRACTION, fitsBefore, hurried, lateness, mayShare, meets, shapeOf, slackOf } from "./cue_shapes.js";
+import { 
+  CueShape,
+  FITS,
+  RETRACTION,
+  fitsBefore,
+  hurried,
+  lateness,
+  mayShare,
+  meets,
+  remaining,
+  shapeOf,
+  slackOf,
+} from "./cue_shapes.js";
 import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./mood.js";
 import { node, remember, rested } from "./remembering.js";
 import { vigour } from "./vigour.js";
@@ -142,7 +155,7 @@ export class Performer {
     let stance = this.stance;
     for (const step of steps) {
       const hops = step.hop !== "";
-      const asked = hops ? null : meta.request;
+      const asked = hops ? null : remaining(meta, now);
       const mood = this.mood(asked, now);
       let fitting = [...step.candidates];
       if (limit < Infinity) { // else all fit
@@ -310,11 +323,15 @@ export class Performer {
     }
     let soonest = now + Math.max(cue.blendOut, RETRACTION);
     if (!running.written) {
+      let once = cue.end - cue.start;
+      if (cue.repeats) {
+        once = Math.min(once, (cue.cycleTo - cue.entry) / cue.tempo + Math.max(cue.blendOut, RETRACTION));
+      }
       const shape = new CueShape(
         cue.start,
         cue.entry,
         cue.end - cue.start,
-        cue.end - cue.start,
+        once,
         cue.holdFrom,
         cue.holdTo,
         cue.hold,
@@ -598,7 +615,9 @@ export class Performer {
     let length = shape.length;
     let into = Math.max(0, action.timing.blendIn);
     let out = Math.max(0, action.timing.blendOut);
-    if (action.timing.earliestExit !== null) {
+    const [begin, until] = this.project.span(action);
+    const cycle = cycleOf(action.kind, action.timing, begin, until);
+    if (action.timing.earliestExit !== null || cycle > 0) {
       const wish = hops ? Infinity : bound.wish;
       length = Math.min(length, Math.max(shape.shortest, Math.min(bound.limit, wish) - shape.start));
     } else if (!hops) {
@@ -607,7 +626,7 @@ export class Performer {
         out = Math.max(out, RETRACTION);
       }
     }
-    if (shape.entry > this.project.span(action)[0]) {
+    if (shape.entry > begin) {
       into = Math.max(into, LEAST_BLEND);
     }
     const squeeze = into + out > 0 ? Math.min(1, length / (into + out)) : 1;
@@ -631,6 +650,8 @@ export class Performer {
       shape.hold,
       this.extent(action, mood),
       shape.tempo,
+      cycle > 0 ? begin : 0,
+      cycle > 0 ? begin + cycle : 0,
     );
   }
 

@@ -191,7 +191,8 @@ public static class Conformance
                 "metas", of.Metas.ConvertAll<object>(m => Row(m.Key, m.Start, m.End, m.Written)),
                 "cues", of.Cues.ConvertAll(c => Fields(
                     "action", c.Action.Id, "start", c.Start, "end", c.End, "entry", c.Entry, "blend_in", c.BlendIn, "blend_out", c.BlendOut,
-                    "stance", c.Stance, "then", c.Then, "meta", c.Meta, "hold_from", c.HoldFrom, "hold_to", c.HoldTo, "hold", c.Hold, "extent", c.Extent, "tempo", c.Tempo)),
+                    "stance", c.Stance, "then", c.Then, "meta", c.Meta, "hold_from", c.HoldFrom, "hold_to", c.HoldTo, "hold", c.Hold, "extent", c.Extent, "tempo", c.Tempo,
+                    "cycle_from", c.CycleFrom, "cycle_to", c.CycleTo)),
                 "rests", of.Rests.ConvertAll<object>(r => Row(r.Stance, r.Action.Id, r.Start, r.FadeStart, r.Fade)));
         }
         return found;

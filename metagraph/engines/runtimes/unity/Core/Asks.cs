@@ -41,7 +41,7 @@ namespace Metagraph
         {
             { "gesture", "layer tags limb duration stroke hold prepare resume late mood intensity" },
             { "fidget", "layer tags limb duration resume late mood intensity" },
-            { "action", "action layer stroke hold prepare late mood intensity" },
+            { "action", "action layer duration stroke hold prepare late mood intensity" },
             { "stance", "stance layer stay late" },
             { "change", "layer limb duration late" },
             { "nod", "tags late mood intensity" },

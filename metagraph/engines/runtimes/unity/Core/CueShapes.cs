@@ -63,6 +63,7 @@ namespace Metagraph
             var holdFrom = 0.0;
             var holdTo = 0.0;
             var hold = 0.0;
+            var cycle = RepeatingRules.CycleOf(action.Kind, action.Timing, start, end);
             if (request != null
                 && action.Kind == "gesture"
                 && (request.Hold != null || request.Stroke != null || !request.Prepare))
@@ -77,7 +78,7 @@ namespace Metagraph
                     var missed = found.Stroke - Math.Max(0.0, request.Stroke.Value - begin) * speed;
                     entry = Math.Min(Math.Max(entry, missed), Math.Max(entry, latest));
                 }
-                if (request.Hold != null)
+                if (request.Hold != null && cycle <= 0)
                 {
                     holdFrom = found.StrokeEnd;
                     holdTo = found.Relax;
@@ -93,6 +94,16 @@ namespace Metagraph
             var length = end - entry + hold - natural + MoodRules.Drag(end - entry - natural, speed);
             var shortest = length;
             var exitAt = action.Timing.EarliestExit;
+            if (cycle > 0)
+            {
+                var wanted = Math.Min(action.Timing.Repeat, RepeatingRules.LongestRepeat);
+                if (request != null && request.Duration != null)
+                {
+                    wanted = request.Duration.Value;
+                }
+                length += (RepeatingRules.TimesPlayed(cycle, wanted * speed) - 1.0) * cycle / speed;
+                exitAt = exitAt == null ? end : exitAt.Value;
+            }
             if (exitAt != null)
             {
                 var left = exitAt.Value - entry + (exitAt.Value >= holdTo ? hold - natural : 0.0);
@@ -134,7 +145,11 @@ namespace Metagraph
         /// </summary>
         public static double Hurried(Graph project, GraphAction action, CueShape shape)
         {
-            if (action.Kind != "gesture" || action.Timing.EarliestExit != null)
+            var both = project.Span(action);
+            double start = both.Item1;
+            double end = both.Item2;
+            var repeats = RepeatingRules.CycleOf(action.Kind, action.Timing, start, end) > 0;
+            if (action.Kind != "gesture" || action.Timing.EarliestExit != null || repeats)
             {
                 return shape.Shortest;
             }
@@ -170,6 +185,39 @@ namespace Metagraph
             return request.Tags.All(tag => action.Tags.Contains(tag))
                 && (request.Limb == null || action.Limb == request.Limb)
                 && (request.Among.Count == 0 || request.Among.Contains(action.Id));
+        }
+
+        /// <summary>
+        /// Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+        /// </summary>
+        public static MetaRequest Remaining(MetaAction meta, double now)
+        {
+            var request = meta.Request;
+            if (request.Duration == null || (meta.Part == 0 && !meta.Written))
+            {
+                return request;
+            }
+            return new MetaRequest(
+                request.Id,
+                request.Layer,
+                request.Kind,
+                request.Start,
+                meta.Written ? (double?)null : Math.Max(0.0, meta.End - now),
+                request.Action,
+                request.Tags,
+                request.Limb,
+                request.Stance,
+                request.Priority,
+                request.Resume,
+                request.Stroke,
+                request.Hold,
+                request.Prepare,
+                request.Among,
+                request.Late,
+                request.Valence,
+                request.Arousal,
+                request.Intensity
+            );
         }
     }
 }

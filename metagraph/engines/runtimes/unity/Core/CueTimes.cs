@@ -32,6 +32,9 @@ namespace Metagraph
 
     public static class CueTimesRules
     {
+        // clip seconds in which a cue that repeats makes its cycle's ends meet, at most half of the cycle
+        public const double Seam = 0.4;
+
         /// <summary>Return where a stance's loop is at a time, as `player.loop_seconds` does.</summary>
         public static LoopSpot LoopSpot(Graph project, Rest rest, double time)
         {
@@ -69,6 +72,12 @@ namespace Metagraph
         public static double CueSeconds(Cue cue, double time)
         {
             var elapsed = time - cue.Start;
+            if (cue.Repeats)
+            {
+                var cycle = cue.CycleTo - cue.CycleFrom;
+                var into = cue.Entry - cue.CycleFrom + elapsed * cue.Tempo;
+                return cue.CycleFrom + into - cycle * (int)Math.Floor(into / cycle);
+            }
             if (cue.Hold <= 0.0)
             {
                 return cue.Entry + elapsed * cue.Tempo;
@@ -76,6 +85,21 @@ namespace Metagraph
             var held = Math.Min(Math.Max(elapsed - (cue.HoldFrom - cue.Entry) / cue.Tempo, 0.0), cue.Hold);
             var more = (elapsed - held) * (cue.Tempo - 1.0);
             return cue.Entry + elapsed - held + more + held * ((cue.HoldTo - cue.HoldFrom) / cue.Hold);
+        }
+
+        /// <summary>
+        /// Return how much of the way from where a cycle begins to where the one before it ended is still added at a time, 0..1,
+        /// so that a cue that repeats goes on without a jump.
+        /// </summary>
+        public static double SeamLeft(Cue cue, double time)
+        {
+            var cycle = cue.CycleTo - cue.CycleFrom;
+            var into = cue.Entry - cue.CycleFrom + (time - cue.Start) * cue.Tempo;
+            if (!cue.Repeats || (int)Math.Floor(into / cycle) < 1)
+            {
+                return 0.0;
+            }
+            return 1.0 - Ease((into - cycle * (int)Math.Floor(into / cycle)) / Math.Min(Seam, 0.5 * cycle));
         }
 
         /// <summary>Return 3 x^2 - 2 x^3 of x clamped to 0..1.</summary>

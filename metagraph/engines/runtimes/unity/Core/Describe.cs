@@ -61,7 +61,8 @@ namespace Metagraph
         private static JsonObject Told(GraphAction action)
         {
             JsonObject found = Record(
-                "id", action.Id, "name", action.Name, "kind", action.Kind, "stance", action.Stance, "seconds", action.Length);
+                "id", action.Id, "name", action.Name, "kind", action.Kind, "stance", action.Stance,
+                "seconds", RepeatingRules.SecondsPlayed(action.Kind, action.Timing, action.Start, action.End));
             if (action.Kind == "transition")
             {
                 found["to"] = action.EndStance;

@@ -84,7 +84,11 @@ namespace Metagraph
             var row = Row(track, CueTimesRules.CueSeconds(cue, time));
             var rest = Stance(project, tracks, arms, place, time);
             var entering = time < cue.Start + cue.BlendIn;
-            if (entering || time >= cue.End - cue.BlendOut)
+            if (cue.Repeats)
+            {
+                row = PlainNumbers.Range(Numbers).Select(n => rest[n] + weight * (row[n] - rest[n])).ToList();
+            }
+            else if (entering || time >= cue.End - cue.BlendOut)
             {
                 var edge = Row(track, entering ? cue.Entry : CueTimesRules.CueSeconds(cue, cue.End));
                 row = PlainNumbers.Range(Numbers).Select(n => row[n] + (1.0 - weight) * (rest[n] - edge[n])).ToList();

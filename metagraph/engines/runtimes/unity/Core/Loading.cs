@@ -201,14 +201,14 @@ namespace Metagraph
                 Joints = json["joints"].Texts.ToList(), Tags = json["tags"].Texts.ToList(),
             };
             action.End = json["end"].Within(action.Start, 1e9);
+            Node found;
             action.Timing = new Timing(
                 action.Start, action.End, json["blend_in"].Within(0, 1e9), json["blend_out"].Within(0, 1e9), action.Kind == "stance",
-                json["earliest_exit"].NumberOrNull);
+                json["earliest_exit"].NumberOrNull, repeat: json.Maybe("repeat", out found) ? found.Within(0, 1e9) : 0.0);
             if (!Clips.TryGetValue(json["clip"].Text, out action.Clip))
             {
                 throw json["clip"].Wrong("is no clip of the export");
             }
-            Node found;
             action.Cooldown = json.Maybe("cooldown", out found) ? found.Within(0, 1e9) : 0.0;
             action.Vigour = json.Maybe("vigour", out found) ? found.Within(-1, 1) : 0.0;
             action.Spacing = json.Maybe("spacing", out found) && !found.IsNull ? (int)found.Within(0, 1000) : (int?)null;

@@ -312,12 +312,13 @@ namespace Metagraph
                 {
                     start = Math.Max(0.0, stroke.Value - PhasesRules.Lead(Project, action));
                 }
+                var duration = action.Timing.Repeat > 0 ? ask.Duration : (double?)null;
                 var request = new MetaRequest(
                     ident,
                     action.Layer,
                     action.Kind,
                     start,
-                    null,
+                    duration,
                     action.Id,
                     new List<string>(),
                     null,

@@ -148,7 +148,8 @@ namespace Metagraph
     ///
     /// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
     /// blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the
-    /// meta action it realises. extent: how large it is played, a factor of its turns away from the stance.
+    /// meta action it realises. extent: how large it is played, a factor of its turns away from the stance. cycle_from, cycle_to:
+    /// clip seconds between which it repeats; 0, 0 where it plays once.
     /// </summary>
     public sealed class Cue
     {
@@ -166,6 +167,8 @@ namespace Metagraph
         public readonly double Hold;
         public readonly double Extent;
         public readonly double Tempo;
+        public readonly double CycleFrom;
+        public readonly double CycleTo;
 
         public Cue(
             GraphAction action,
@@ -181,7 +184,9 @@ namespace Metagraph
             double holdTo = 0.0,
             double hold = 0.0,
             double extent = 1.0,
-            double tempo = 1.0
+            double tempo = 1.0,
+            double cycleFrom = 0.0,
+            double cycleTo = 0.0
         )
         {
             Action = action;
@@ -198,6 +203,17 @@ namespace Metagraph
             Hold = hold;
             Extent = extent;
             Tempo = tempo;
+            CycleFrom = cycleFrom;
+            CycleTo = cycleTo;
+        }
+
+        /// <summary>Whether it plays a cycle again and again.</summary>
+        public bool Repeats
+        {
+            get
+            {
+                return CycleTo > CycleFrom;
+            }
         }
     }
 

@@ -12,7 +12,9 @@ namespace Metagraph
     /// seconds of blending from and to the stance, inside that part. For a looping stance, `blend_in` is the overlap at the
     /// loop's seam. `loop` repeats the part. From `earliest_exit` on the action may be left; None plays it through. `stroke` is
     /// its most telling moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation, stroke and hold; its
-    /// retraction ends with the action. None takes the times found from the motion (`playback.timing.phases`).
+    /// retraction ends with the action. None takes the times found from the motion (`playback.timing.phases`). `repeat` is for
+    /// how many seconds a gesture or fidget repeats its part where nobody says how long, as near as a whole number of times
+    /// comes; 0 plays it once.
     /// </summary>
     public sealed class Timing
     {
@@ -26,6 +28,7 @@ namespace Metagraph
         public readonly double? Ready;
         public readonly double? StrokeEnd;
         public readonly double? Relax;
+        public readonly double Repeat;
 
         public Timing(
             double start = 0.0,
@@ -37,7 +40,8 @@ namespace Metagraph
             double? stroke = null,
             double? ready = null,
             double? strokeEnd = null,
-            double? relax = null
+            double? relax = null,
+            double repeat = 0.0
         )
         {
             Start = start;
@@ -50,6 +54,7 @@ namespace Metagraph
             Ready = ready;
             StrokeEnd = strokeEnd;
             Relax = relax;
+            Repeat = repeat;
         }
     }
 

@@ -12,6 +12,10 @@ namespace Metagraph
         /// <summary>The clip seconds that a cue shows.</summary>
         public static double ClipSeconds(this Cue cue, double time)
         {
+            if (cue.Repeats)
+            {
+                return CueTimesRules.CueSeconds(cue, time);
+            }
             double elapsed = time - cue.Start;
             if (cue.Hold <= 0)
             {

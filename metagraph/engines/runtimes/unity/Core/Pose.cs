@@ -149,7 +149,7 @@ namespace Metagraph
                 Stance(plan, reach, time);
                 return stance;
             }
-            Show(motion, cue.ClipSeconds(time), reach, shown);
+            ShowCue(motion, cue, reach, time);
             bool entering = time < cue.Start + cue.BlendIn, leaving = time >= cue.End - cue.BlendOut;
             double[] mask = cue.Action.Mask;
             if (!entering && !leaving && mask == null && cue.Extent == 1)
@@ -157,16 +157,14 @@ namespace Metagraph
                 return shown;
             }
             Stance(plan, reach, time);
-            if (entering || leaving)
+            if ((entering || leaving) && cue.Repeats) // at its ends it moves
+            {
+                Mix(stance, shown, cue.Weight(time), reach, shown);
+            }
+            else if (entering || leaving)
             {
                 Show(motion, entering ? cue.Entry : cue.ClipSeconds(cue.End), reach, edge);
-                double left = 1 - cue.Weight(time);
-                foreach (int j in reach)
-                {
-                    Quat apart = edge.Turns[j].Inverse * stance.Turns[j];
-                    shown.Turns[j] = shown.Turns[j] * Quat.Nlerp(Quat.Identity, apart, left);
-                    shown.Moves[j] += (stance.Moves[j] - edge.Moves[j]) * left;
-                }
+                Lead(edge, stance, 1 - cue.Weight(time), reach);
             }
             if (cue.Extent != 1)
             {
@@ -181,6 +179,31 @@ namespace Metagraph
                 }
             }
             return shown;
+        }
+
+        /// <summary>
+        /// Show what a cue plays of its clip, without its blends. Where it repeats, it goes on from where the cycle before it ended.
+        /// </summary>
+        private void ShowCue(Clip motion, Cue cue, int[] reach, double time)
+        {
+            Show(motion, cue.ClipSeconds(time), reach, shown);
+            double left = CueTimesRules.SeamLeft(cue, time);
+            if (left > 0)
+            {
+                Show(motion, cue.CycleFrom, reach, edge);
+                Show(motion, cue.CycleTo, reach, seam);
+                Lead(edge, seam, left, reach);
+            }
+        }
+
+        /// <summary>Add to what is shown a part of the way from a pose to another.</summary>
+        private void Lead(Sample from, Sample to, double weight, int[] reach)
+        {
+            foreach (int j in reach)
+            {
+                shown.Turns[j] = shown.Turns[j] * Quat.Nlerp(Quat.Identity, from.Turns[j].Inverse * to.Turns[j], weight);
+                shown.Moves[j] += (to.Moves[j] - from.Moves[j]) * weight;
+            }
         }
 
         /// <summary>Play what is shown larger or smaller round the stance.</summary>

@@ -167,7 +167,7 @@ namespace Metagraph
             foreach (SamplingStep step in steps)
             {
                 var hops = step.Hop != "";
-                var asked = hops ? null : meta.Request;
+                var asked = hops ? null : CueShapesRules.Remaining(meta, now);
                 var mood = Mood(asked, now);
                 var fitting = step.Candidates.ToList();
                 if (limit < double.PositiveInfinity) // else all fit
@@ -384,11 +384,19 @@ namespace Metagraph
             var soonest = now + Math.Max(cue.BlendOut, CueShapesRules.Retraction);
             if (!running.Written)
             {
+                var once = cue.End - cue.Start;
+                if (cue.Repeats)
+                {
+                    once = Math.Min(
+                        once,
+                        (cue.CycleTo - cue.Entry) / cue.Tempo + Math.Max(cue.BlendOut, CueShapesRules.Retraction)
+                    );
+                }
                 var shape = new CueShape(
                     cue.Start,
                     cue.Entry,
                     cue.End - cue.Start,
-                    cue.End - cue.Start,
+                    once,
                     cue.HoldFrom,
                     cue.HoldTo,
                     cue.Hold,
@@ -424,7 +432,9 @@ namespace Metagraph
                         cue.HoldTo,
                         cue.Hold,
                         cue.Extent,
-                        cue.Tempo
+                        cue.Tempo,
+                        cue.CycleFrom,
+                        cue.CycleTo
                     );
                     Free = end;
                     Ended[cue.Action.Id] = end;
@@ -756,7 +766,11 @@ namespace Metagraph
             var length = shape.Length;
             var into = Math.Max(0.0, action.Timing.BlendIn);
             var out_ = Math.Max(0.0, action.Timing.BlendOut);
-            if (action.Timing.EarliestExit != null)
+            var found = Project.Span(action);
+            double begin = found.Item1;
+            double until = found.Item2;
+            var cycle = RepeatingRules.CycleOf(action.Kind, action.Timing, begin, until);
+            if (action.Timing.EarliestExit != null || cycle > 0)
             {
                 var wish = hops ? double.PositiveInfinity : bound.Wish;
                 length = Math.Min(length, Math.Max(shape.Shortest, Math.Min(bound.Limit, wish) - shape.Start));
@@ -769,7 +783,7 @@ namespace Metagraph
                     out_ = Math.Max(out_, CueShapesRules.Retraction);
                 }
             }
-            if (shape.Entry > Project.Span(action).Item1)
+            if (shape.Entry > begin)
             {
                 into = Math.Max(into, PhaseTimesRules.LeastBlend);
             }
@@ -794,7 +808,9 @@ namespace Metagraph
                 shape.HoldTo,
                 shape.Hold,
                 Extent(action, mood),
-                shape.Tempo
+                shape.Tempo,
+                cycle > 0 ? begin : 0.0,
+                cycle > 0 ? begin + cycle : 0.0
             );
         }
 

@@ -194,6 +194,9 @@ func _plan_data(plan, unread):
 				cues[-1].extent = c.extent
 			if c.tempo != 1:
 				cues[-1].tempo = c.tempo
+			if c.repeats:
+				cues[-1].cycle_from = c.cycle_from
+				cues[-1].cycle_to = c.cycle_to
 		var rests = []
 		for r in of.rests:
 			rests.append([r.stance, r.action.id, r.start, r.fade_start, r.fade])

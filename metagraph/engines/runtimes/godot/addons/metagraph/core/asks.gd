@@ -15,8 +15,8 @@ const FIELDS = {
 		intensity = "intensity?"
 	},
 	action = {
-		action = "name", layer = "layer?", stroke = "seconds?", hold = "hold?", prepare = "switch", late = "hold?", mood = "mood?",
-		intensity = "intensity?"
+		action = "name", layer = "layer?", duration = "seconds?", stroke = "seconds?", hold = "hold?", prepare = "switch", late = "hold?",
+		mood = "mood?", intensity = "intensity?"
 	},
 	stance = {stance = "name", layer = "layer?", stay = "switch", late = "hold?"},
 	change = {layer = "layer", limb = "limb?", duration = "seconds?", late = "hold?"},

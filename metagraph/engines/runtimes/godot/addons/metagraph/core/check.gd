@@ -17,7 +17,7 @@ const ACTION = {
 	id = "text", name = "text", clip = "text", kind = "text", stance = "text", end_stance = "text?", start = "number", end = "number",
 	blend_in = "number", blend_out = "number", earliest_exit = "number?", stroke = "number?", limb = "text", joints = "list", tags = "list",
 	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?", contacts = "list?", vigour = "number?",
-	joint_weights = "record?"
+	joint_weights = "record?", repeat = "number?"
 }
 const MARKOV = {
 	states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?", modes = "list?"

@@ -5,6 +5,8 @@
 #
 # Translated from metagraph/playback/planning/cue_shapes.py; change that, and translate anew.
 
+const Repeating = preload("repeating.gd")
+const MetaPlan = preload("meta_plan.gd")
 const Mood = preload("mood.gd")
 const Phases = preload("phases.gd")
 const Util = preload("util.gd")
@@ -46,6 +48,7 @@ static func shape_of(project, action, request, now, speed):
 	var hold_from = 0.0
 	var hold_to = 0.0
 	var hold = 0.0
+	var cycle = Repeating.cycle_of(action.kind, action.timing, start, end)
 	if (request != null and action.kind == "gesture" and (request.hold != null or request.stroke != null or not request.prepare)):
 		var found = Phases.phases(project, action)
 		var latest = found.skip(action.timing.blend_in)
@@ -55,7 +58,7 @@ static func shape_of(project, action, request, now, speed):
 			begin = Util.most(now, request.stroke - (found.stroke - entry) / speed)
 			var missed = found.stroke - Util.most(0.0, request.stroke - begin) * speed
 			entry = Util.least(Util.most(entry, missed), Util.most(entry, latest))
-		if request.hold != null:
+		if request.hold != null and cycle <= 0:
 			hold_from = found.stroke_end
 			hold_to = found.relax
 			hold = Util.most(request.hold, (hold_to - hold_from) / HURRY)
@@ -66,6 +69,12 @@ static func shape_of(project, action, request, now, speed):
 	var length = end - entry + hold - natural + Mood.drag(end - entry - natural, speed)
 	var shortest = length
 	var exit_at = action.timing.earliest_exit
+	if cycle > 0:
+		var wanted = Util.least(action.timing.repeat, Repeating.LONGEST_REPEAT)
+		if request != null and request.duration != null:
+			wanted = request.duration
+		length += (Repeating.times_played(cycle, wanted * speed) - 1.0) * cycle / speed
+		exit_at = end if exit_at == null else exit_at
 	if exit_at != null:
 		var left = exit_at - entry + (hold - natural if exit_at >= hold_to else 0.0)
 		left += Mood.drag(exit_at - entry - (natural if exit_at >= hold_to else 0.0), speed)
@@ -95,7 +104,11 @@ static func slack_of(request):
 
 # Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
 static func hurried(project, action, shape):
-	if action.kind != "gesture" or action.timing.earliest_exit != null:
+	var both = project.span(action)
+	var start = both[0]
+	var end = both[1]
+	var repeats = Repeating.cycle_of(action.kind, action.timing, start, end) > 0
+	if action.kind != "gesture" or action.timing.earliest_exit != null or repeats:
 		return shape.shortest
 	var found = Phases.phases(project, action)
 	var left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
@@ -128,3 +141,31 @@ static func meets(action, request):
 	return (are_all
 		and (request.limb == null or action.limb == request.limb)
 		and (request.among.size() == 0 or request.among.has(action.id)))
+
+
+# Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+static func remaining(meta, now):
+	var request = meta.request
+	if request.duration == null or (meta.part == 0 and not meta.written):
+		return request
+	return MetaPlan.MetaRequest.new(
+		request.id,
+		request.layer,
+		request.kind,
+		request.start,
+		null if meta.written else Util.most(0.0, meta.end - now),
+		request.action,
+		request.tags,
+		request.limb,
+		request.stance,
+		request.priority,
+		request.resume,
+		request.stroke,
+		request.hold,
+		request.prepare,
+		request.among,
+		request.late,
+		request.valence,
+		request.arousal,
+		request.intensity
+	)

@@ -4,6 +4,7 @@
 # Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
 
 const Util = preload("util.gd")
+const SEAM = 0.4  # clip seconds in which a cue that repeats makes its cycle's ends meet, at most half of the cycle
 
 
 # Where a loop is.
@@ -55,11 +56,25 @@ static func cue_weight(cue, time):
 # Return the second of its clip that a cue plays at a time.
 static func cue_seconds(cue, time):
 	var elapsed = time - cue.start
+	if cue.repeats:
+		var cycle = cue.cycle_to - cue.cycle_from
+		var into = cue.entry - cue.cycle_from + elapsed * cue.tempo
+		return cue.cycle_from + into - cycle * int(floor(into / cycle))
 	if cue.hold <= 0.0:
 		return cue.entry + elapsed * cue.tempo
 	var held = Util.least(Util.most(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
 	var more = (elapsed - held) * (cue.tempo - 1.0)
 	return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
+
+
+# Return how much of the way from where a cycle begins to where the one before it ended is still added at a time, 0..1, so that a
+# cue that repeats goes on without a jump.
+static func seam_left(cue, time):
+	var cycle = cue.cycle_to - cue.cycle_from
+	var into = cue.entry - cue.cycle_from + (time - cue.start) * cue.tempo
+	if not cue.repeats or int(floor(into / cycle)) < 1:
+		return 0.0
+	return 1.0 - ease_((into - cycle * int(floor(into / cycle))) / Util.least(SEAM, 0.5 * cycle))
 
 
 # Return 3 x^2 - 2 x^3 of x clamped to 0..1.

@@ -3,6 +3,7 @@
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
 const Words = preload("words.gd")
+const Repeating = preload("repeating.gd")
 
 
 # Returns {project, words: what `do` may be, modes, joints [{name, parent, part}], layers {layer: {start, stances [{id, name}], actions but
@@ -46,7 +47,8 @@ static func _layer(of):
 
 static func _action(action):
 	var out = {
-		id = action.id, name = action.name, kind = action.kind, stance = action.stance, seconds = action.end - action.start
+		id = action.id, name = action.name, kind = action.kind, stance = action.stance,
+		seconds = Repeating.seconds_played(action.kind, action.timing, action.start, action.end)
 	}
 	if action.kind == "transition":
 		out.to = action.end_stance

@@ -60,12 +60,17 @@ static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, b
 	var row = _row(track, CueTimes.cue_seconds(cue, time))
 	var rest = _stance(project, tracks, arms, place, time)
 	var entering = time < cue.start + cue.blend_in
-	if entering or time >= cue.end - cue.blend_out:
-		var edge = _row(track, cue.entry if entering else CueTimes.cue_seconds(cue, cue.end))
+	if cue.repeats:
 		var found = []
 		for n3 in range(NUMBERS):
-			found.append(row[n3] + (1.0 - weight) * (rest[n3] - edge[n3]))
+			found.append(rest[n3] + weight * (row[n3] - rest[n3]))
 		row = found
+	elif entering or time >= cue.end - cue.blend_out:
+		var edge = _row(track, cue.entry if entering else CueTimes.cue_seconds(cue, cue.end))
+		var found2 = []
+		for n4 in range(NUMBERS):
+			found2.append(row[n4] + (1.0 - weight) * (rest[n4] - edge[n4]))
+		row = found2
 	var left = share * UNIT if _moves(cue.action, "left", hands[0]) else 0.0
 	var right = share * UNIT if _moves(cue.action, "right", hands[1]) else 0.0
 	for n in range(NUMBERS):

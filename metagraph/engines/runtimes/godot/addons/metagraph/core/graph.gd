@@ -130,7 +130,10 @@ func _read_layer(layer, data):
 		var action = each.duplicate()
 		action.layer = layer
 		var loops = action.kind == "stance"
-		action.timing = Model.Timing.new(each.start, each.end, each.blend_in, each.blend_out, loops, each.earliest_exit, each.stroke)
+		var repeat = 0.0 if each.repeat == null else each.repeat
+		action.timing = Model.Timing.new(
+			each.start, each.end, each.blend_in, each.blend_out, loops, each.earliest_exit, each.stroke, null, null, null, repeat
+		)
 		var told = each.phases  # ready, stroke, stroke end, relax
 		if told == null or told.size() != 4:
 			var stroke = (each.start + each.end) / 2.0 if each.stroke == null else Util.within(each.stroke, each.start, each.end)

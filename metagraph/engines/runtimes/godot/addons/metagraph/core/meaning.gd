@@ -280,12 +280,13 @@ class Meaning:
 				return "there is no action '%s'%s" % [ask.action, where]
 			if stroke != null:
 				start = Util.most(0.0, stroke - Phases.lead(self.project, action))
+			var duration = ask.duration if action.timing.repeat > 0 else null
 			var request = MetaPlan.MetaRequest.new(
 				ident,
 				action.layer,
 				action.kind,
 				start,
-				null,
+				duration,
 				action.id,
 				[],
 				null,

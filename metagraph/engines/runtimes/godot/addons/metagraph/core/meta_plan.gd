@@ -117,7 +117,8 @@ class MetaAction:
 #
 # hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
 # blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the meta
-# action it realises. extent: how large it is played, a factor of its turns away from the stance.
+# action it realises. extent: how large it is played, a factor of its turns away from the stance. cycle_from, cycle_to: clip
+# seconds between which it repeats; 0, 0 where it plays once.
 class Cue:
 	var action
 	var start
@@ -133,6 +134,9 @@ class Cue:
 	var hold
 	var extent
 	var tempo
+	var cycle_from
+	var cycle_to
+	var repeats  # Whether it plays a cycle again and again.
 
 	func _init(
 		action_,
@@ -148,7 +152,9 @@ class Cue:
 		hold_to_ = 0.0,
 		hold_ = 0.0,
 		extent_ = 1.0,
-		tempo_ = 1.0
+		tempo_ = 1.0,
+		cycle_from_ = 0.0,
+		cycle_to_ = 0.0
 	):
 		self.action = action_
 		self.start = start_
@@ -164,6 +170,9 @@ class Cue:
 		self.hold = hold_
 		self.extent = extent_
 		self.tempo = tempo_
+		self.cycle_from = cycle_from_
+		self.cycle_to = cycle_to_
+		self.repeats = self.cycle_to > self.cycle_from
 
 
 # The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.

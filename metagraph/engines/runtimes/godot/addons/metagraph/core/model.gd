@@ -12,7 +12,8 @@
 # blending from and to the stance, inside that part. For a looping stance, `blend_in` is the overlap at the loop's seam. `loop`
 # repeats the part. From `earliest_exit` on the action may be left; None plays it through. `stroke` is its most telling moment.
 # `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation, stroke and hold; its retraction ends with the action.
-# None takes the times found from the motion (`playback.timing.phases`).
+# None takes the times found from the motion (`playback.timing.phases`). `repeat` is for how many seconds a gesture or fidget
+# repeats its part where nobody says how long, as near as a whole number of times comes; 0 plays it once.
 class Timing:
 	var start
 	var end
@@ -24,6 +25,7 @@ class Timing:
 	var ready
 	var stroke_end
 	var relax
+	var repeat
 
 	func _init(
 		start_ = 0.0,
@@ -35,7 +37,8 @@ class Timing:
 		stroke_ = null,
 		ready_ = null,
 		stroke_end_ = null,
-		relax_ = null
+		relax_ = null,
+		repeat_ = 0.0
 	):
 		self.start = start_
 		self.end = end_
@@ -47,6 +50,7 @@ class Timing:
 		self.ready = ready_
 		self.stroke_end = stroke_end_
 		self.relax = relax_
+		self.repeat = repeat_
 
 
 class Stance:

@@ -7,6 +7,7 @@ const Mood = preload("mood.gd")
 const Evaluate = preload("evaluate.gd")
 const Contacts = preload("contacts.gd")
 const Weight = preload("weight.gd")
+const CueTimes = preload("cue_times.gd")
 
 
 # Returns {rotations [J] local quaternions, translations [J] local, metres, morphs {name: weight 0..1}} at a time. alive: with the life
@@ -84,6 +85,8 @@ static func cue_weight(cue, time):
 
 # Returns the clip second that a cue shows at a time within it.
 static func clip_seconds(cue, time):
+	if cue.repeats:
+		return CueTimes.cue_seconds(cue, time)
 	var elapsed = time - cue.start
 	if cue.hold <= 0:
 		return cue.entry + elapsed * cue.tempo
@@ -120,6 +123,9 @@ static func _layer(graph, plan, time):
 	if clip == null:
 		return _stance(graph, plan, time)
 	var shown = _sample(clip, clip_seconds(cue, time))
+	var left = CueTimes.seam_left(cue, time)
+	if left > 0:  # it goes on from where the cycle before it ended
+		shown = _lead(graph, plan, shown, _sample(clip, cue.cycle_from), _sample(clip, cue.cycle_to), left)
 	var entering = time < cue.start + cue.blend_in
 	var blending = entering or time >= cue.end - cue.blend_out
 	var partly = cue.action.partly
@@ -127,17 +133,12 @@ static func _layer(graph, plan, time):
 		return shown
 	var stance = _stance(graph, plan, time)
 	var out = {turns = shown.turns.duplicate(), shifts = shown.shifts.duplicate()}
-	if blending:
+	if blending and cue.repeats:  # at its ends it moves
+		out = _mix(stance, shown, cue_weight(cue, time))
+	elif blending:
 		# What the stance differs from the clip's pose at that edge is added, so that the clip keeps its own speed.
 		var edge = _sample(clip, cue.entry if entering else clip_seconds(cue, cue.end))
-		var weight = 1.0 - cue_weight(cue, time)
-		for each in graph.layers[plan.layer].reach:
-			var joint = each[0]
-			out.turns[joint] = shown.turns[joint] * Turns.part(Turns.back(edge.turns[joint]) * stance.turns[joint], weight)
-		for joint in stance.shifts:
-			out.shifts[joint] = out.shifts.get(joint, Vector3()) + stance.shifts[joint] * weight
-		for joint in edge.shifts:
-			out.shifts[joint] = out.shifts.get(joint, Vector3()) - edge.shifts[joint] * weight
+		out = _lead(graph, plan, shown, edge, stance, 1.0 - cue_weight(cue, time))
 	if cue.extent != 1:
 		_extend(graph, plan.layer, out, stance, cue.extent)
 	if partly != null:
@@ -146,6 +147,19 @@ static func _layer(graph, plan, time):
 			if stance.shifts.has(joint) or out.shifts.has(joint):
 				var rest = stance.shifts.get(joint, Vector3())
 				out.shifts[joint] = rest + (out.shifts.get(joint, Vector3()) - rest) * partly[joint]
+	return out
+
+
+# Returns what is shown with a part of the way from a pose to another added.
+static func _lead(graph, plan, shown, from, to, weight):
+	var out = {turns = shown.turns.duplicate(), shifts = shown.shifts.duplicate()}
+	for each in graph.layers[plan.layer].reach:
+		var joint = each[0]
+		out.turns[joint] = shown.turns[joint] * Turns.part(Turns.back(from.turns[joint]) * to.turns[joint], weight)
+	for joint in to.shifts:
+		out.shifts[joint] = out.shifts.get(joint, Vector3()) + to.shifts[joint] * weight
+	for joint in from.shifts:
+		out.shifts[joint] = out.shifts.get(joint, Vector3()) - from.shifts[joint] * weight
 	return out
 
 

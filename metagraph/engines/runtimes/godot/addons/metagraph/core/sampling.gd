@@ -2,6 +2,7 @@
 #
 # Translated from metagraph/playback/planning/sampling.py; change that, and translate anew.
 
+const Repeating = preload("repeating.gd")
 const MetaPlan = preload("meta_plan.gd")
 const Bounds = preload("bounds.gd")
 const Choice = preload("choice.gd")
@@ -133,7 +134,7 @@ class Performer:
 		var stance = self.stance
 		for step in steps:
 			var hops = step.hop != ""
-			var asked = null if hops else meta.request
+			var asked = null if hops else CueShapes.remaining(meta, now)
 			var mood = self._mood(asked, now)
 			var fitting = Util.list(step.candidates)
 			if limit < INF:  # else all fit
@@ -286,11 +287,14 @@ class Performer:
 			return
 		var soonest = now + Util.most(cue.blend_out, CueShapes.RETRACTION)
 		if not running.written:
+			var once = cue.end - cue.start
+			if cue.repeats:
+				once = Util.least(once, (cue.cycle_to - cue.entry) / cue.tempo + Util.most(cue.blend_out, CueShapes.RETRACTION))
 			var shape = CueShapes.CueShape.new(
 				cue.start,
 				cue.entry,
 				cue.end - cue.start,
-				cue.end - cue.start,
+				once,
 				cue.hold_from,
 				cue.hold_to,
 				cue.hold,
@@ -321,7 +325,9 @@ class Performer:
 					cue.hold_to,
 					cue.hold,
 					cue.extent,
-					cue.tempo
+					cue.tempo,
+					cue.cycle_from,
+					cue.cycle_to
 				)
 				self.free_ = end
 				self.ended[cue.action.id] = end
@@ -584,14 +590,18 @@ class Performer:
 		var length = shape.length
 		var into = Util.most(0.0, action.timing.blend_in)
 		var out = Util.most(0.0, action.timing.blend_out)
-		if action.timing.earliest_exit != null:
+		var both = self.project.span(action)
+		var begin = both[0]
+		var until = both[1]
+		var cycle = Repeating.cycle_of(action.kind, action.timing, begin, until)
+		if action.timing.earliest_exit != null or cycle > 0:
 			var wish = INF if hops else bound.wish
 			length = Util.least(length, Util.most(shape.shortest, Util.least(bound.limit, wish) - shape.start))
 		elif not hops:
 			length = Util.least(length, self._until(action, shape, bound) - shape.start)
 			if length < shape.length:
 				out = Util.most(out, CueShapes.RETRACTION)
-		if shape.entry > self.project.span(action)[0]:
+		if shape.entry > begin:
 			into = Util.most(into, PhaseTimes.LEAST_BLEND)
 		var squeeze = Util.least(1.0, length / (into + out)) if into + out > 0 else 1.0
 		var then = stance
@@ -612,7 +622,9 @@ class Performer:
 			shape.hold_to,
 			shape.hold,
 			self._extent(action, mood),
-			shape.tempo
+			shape.tempo,
+			begin if cycle > 0 else 0.0,
+			begin + cycle if cycle > 0 else 0.0
 		)
 
 	func _keep(cue):

@@ -1,0 +1,27 @@
+# Say how long actions play that repeat a part of their clip: one cycle of a wave, for as long as wanted.
+#
+# Translated from metagraph/graph/repeating.py; change that, and translate anew.
+
+const Util = preload("util.gd")
+const LEAST_CYCLE = 0.1  # seconds of a part that can repeat
+const MOST_TIMES = 1000000.0  # that a cycle plays in a row
+const LONGEST_REPEAT = 60.0  # seconds that an action repeats at most where nobody says how long
+
+
+# Return the seconds of the part from `start` to `end` of an action's clip if it repeats that, 0 where it plays once.
+static func cycle_of(kind, timing, start, end):
+	var repeats = timing.repeat > 0 and ["gesture", "fidget"].has(kind)
+	return end - start if (repeats and end - start >= LEAST_CYCLE) else 0.0
+
+
+# Return how often a cycle plays to last as long as wanted as nearly as it can, at least once.
+static func times_played(cycle, seconds):
+	return Util.most(1.0, float(int(floor(Util.least(seconds / cycle, MOST_TIMES) + 0.5))))
+
+
+# Return for how many seconds an action plays where nobody says how long, at its own speed.
+static func seconds_played(kind, timing, start, end):
+	var cycle = cycle_of(kind, timing, start, end)
+	if cycle <= 0:
+		return end - start
+	return cycle * times_played(cycle, Util.least(timing.repeat, LONGEST_REPEAT))

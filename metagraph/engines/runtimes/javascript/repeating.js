@@ -1,0 +1,49 @@
+/**
+ * Say how long actions play that repeat a part of their clip: one cycle of a wave, for as long as wanted.
+ *
+ * Translated from metagraph/graph/repeating.py; change that, and translate anew.
+ */
+
+
+export const LEAST_CYCLE = 0.1; // seconds of a part that can repeat
+export const MOST_TIMES = 1000000; // that a cycle plays in a row
+export const LONGEST_REPEAT = 60; // seconds that an action repeats at most where nobody says how long
+
+/**
+ * Return the seconds of the part from `start` to `end` of an action's clip if it repeats that, 0 where it plays once.
+ * @param {string} kind
+ * @param {Timing} timing
+ * @param {number} start
+ * @param {number} end
+ * @returns {number}
+ */
+export function cycleOf(kind, timing, start, end) {
+  const repeats = timing.repeat > 0 && ["gesture", "fidget"].includes(kind);
+  return (repeats && end - start >= LEAST_CYCLE) ? end - start : 0;
+}
+
+/**
+ * Return how often a cycle plays to last as long as wanted as nearly as it can, at least once.
+ * @param {number} cycle
+ * @param {number} seconds
+ * @returns {number}
+ */
+export function timesPlayed(cycle, seconds) {
+  return Math.max(1, Math.floor(Math.min(seconds / cycle, MOST_TIMES) + 0.5));
+}
+
+/**
+ * Return for how many seconds an action plays where nobody says how long, at its own speed.
+ * @param {string} kind
+ * @param {Timing} timing
+ * @param {number} start
+ * @param {number} end
+ * @returns {number}
+ */
+export function secondsPlayed(kind, timing, start, end) {
+  const cycle = cycleOf(kind, timing, start, end);
+  if (cycle <= 0) {
+    return end - start;
+  }
+  return cycle * timesPlayed(cycle, Math.min(timing.repeat, LONGEST_REPEAT));
+}

@@ -1,0 +1,48 @@
+"""Blends as long as their way, and actions that begin to repeat, or end it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+from metagraph.suggest.jumps.soft_blends import repeat_actions, soften_blends
+
+
+@pytest.fixture
+def project(toy: Any) -> Project:
+    """A wave of the stance "rest" that is cut to 0.4 s amid its swing."""
+    project = toy.project()
+    timing = {"start": 0.4, "end": 0.8, "blend_in": 0.1, "blend_out": 0.1}
+    return edits.update_actions(project, [toy.id(project, "rest wave rt")], timing=timing)
+
+
+def test_what_begins_to_repeat_does_for_a_while_and_comes_and_goes_slowly(project: Project, toy: Any) -> None:
+    wave = toy.id(project, "rest wave rt")
+    timing = repeat_actions(project, [wave]).action(wave).timing  # type: ignore[union-attr]
+    assert 1.5 <= timing.repeat <= 3.0 and timing.repeat / 0.4 == pytest.approx(round(timing.repeat / 0.4))
+    assert timing.blend_in > 0.2 and timing.blend_in + timing.blend_out < 0.8 * timing.repeat
+
+
+def test_only_gestures_and_fidgets_begin_to_repeat_and_what_does_is_left(project: Project, toy: Any) -> None:
+    others = [toy.id(project, "rest to up"), toy.id(project, "rest loop"), "gone"]
+    assert repeat_actions(project, others) is project
+    wave = toy.id(project, "rest wave rt")
+    own = edits.update_actions(project, [wave], timing={"repeat": 7.0})
+    assert repeat_actions(own, [wave]) is own
+
+
+def test_what_plays_once_again_has_blends_that_fit_its_part(project: Project, toy: Any) -> None:
+    wave = toy.id(project, "rest wave rt")
+    after = repeat_actions(repeat_actions(project, [wave]), [wave], False)
+    timing = after.action(wave).timing  # type: ignore[union-attr]
+    assert timing.repeat == 0.0 and timing.blend_in + timing.blend_out <= 0.4
+
+
+def test_blends_of_other_actions_stay(project: Project, toy: Any) -> None:
+    wave = toy.id(project, "rest wave rt")
+    after = repeat_actions(project, [wave])
+    assert [a for a in after.actions() if a.id != wave] == [a for a in project.actions() if a.id != wave]
+    assert soften_blends(project, [wave]).action(wave) == project.action(wave)
