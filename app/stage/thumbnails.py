@@ -180,7 +180,9 @@ class Thumbnails(QObject):
         self._number += 1
         self._orders[self._number] = (key, motion)
         paper = (r, g, b) if key[1] == "card" else None
-        order = PictureOrder(self._number, motion, key[1], key[2], paper, character, project.hidden)
+        order = PictureOrder(
+            self._number, motion, key[1], key[2], paper, character, project.hidden, self.figures.sticks
+        )
         if key[1] in KEPT:
             self.kept.ask(order)
         else:
