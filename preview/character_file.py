@@ -9,10 +9,9 @@ from pathlib import Path
 
 from metagraph.formats.gltf.reader import read_character
 from metagraph.motion.character_mesh import explain_no_character
-from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.motion.standing import standing_pose
 from preview.default_body.figure import DefaultBody
+from preview.default_body.footing import Footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 
@@ -20,17 +19,17 @@ def figure_from_file(
     path: Path | None,
     skeleton: Skeleton,
     hidden: Collection[str] = (),
-    clip: Clip | None = None,
+    footing: Footing | None = None,
     sticks: bool = False,
 ) -> MeshFigure:
     """Return the figure that is drawn for a skeleton. If it is not the file's mesh, its `instead` says why.
 
     `path` is the character's file, None for a project without one. `hidden` holds names of meshes that are
-    not drawn. `clip` is one of the skeleton, which tells how it stands where its rest pose does not. `sticks`
-    draws a stick figure in place of the default body. Raises FileError.
+    not drawn. `footing` says how the skeleton stands, for the default body. `sticks` draws a stick figure in
+    place of that. Raises FileError.
     """
     if path is None:
-        return _without_mesh(skeleton, clip, sticks)
+        return _without_mesh(skeleton, footing, sticks)
     body = read_character(path)
     why = explain_no_character(body, skeleton)
     shown = body.without(hidden)
@@ -38,19 +37,18 @@ def figure_from_file(
         why = "is hidden"
     if why is None:
         return SkinnedFigure(shown, skeleton)
-    figure = _without_mesh(skeleton, clip, sticks)
+    figure = _without_mesh(skeleton, footing, sticks)
     reasons = [f"the mesh of {path.name} {why}", figure.instead]
     figure.instead, figure.meshes = ", and ".join(filter(None, reasons)), body.meshes
     return figure
 
 
-def _without_mesh(skeleton: Skeleton, clip: Clip | None, sticks: bool) -> MeshFigure:
+def _without_mesh(skeleton: Skeleton, footing: Footing | None, sticks: bool) -> MeshFigure:
     """Return the default body; a stick figure where it is wanted, or where the skeleton is no person's."""
     if sticks:
         return StickFigure(skeleton)
     try:
-        pose = standing_pose(clip) if clip is not None and clip.skeleton == skeleton else None
-        return DefaultBody(skeleton, pose)
+        return DefaultBody(skeleton, footing)
     except ValueError as reason:
         figure = StickFigure(skeleton)
         figure.instead = str(reason)

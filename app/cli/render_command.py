@@ -74,12 +74,14 @@ def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
     stick figure in place of the default body. Raises FileError.
     """
     from preview.character_file import figure_from_file as drawn
+    from preview.default_body.footing import find_footing
     from preview.figure import StickFigure
 
     assert project.skeleton is not None
     path = folder / project.character if project.character is not None else None
     clip = next((e.motion for e in project.clips.values() if e.motion is not None), None)
-    figure = drawn(path, project.skeleton, project.hidden, clip, sticks)
+    footing = find_footing(clip) if clip is not None and clip.skeleton == project.skeleton else None
+    figure = drawn(path, project.skeleton, project.hidden, footing, sticks)
     if figure.instead:
         kind = "a stick figure" if isinstance(figure, StickFigure) else "the default body"
         print(f"note: {figure.instead}; {kind} is drawn", file=sys.stderr)

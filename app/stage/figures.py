@@ -15,9 +15,9 @@ from app.stage.watch import Watch
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from preview.character_file import figure_from_file
+from preview.default_body.footing import Footing, find_footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
@@ -38,6 +38,7 @@ class Figures(QObject):
         self.document, self.jobs, self.watch = document, jobs, watch
         self.sticks = watch is not None and watch.now.sticks
         self._bodies: dict[str, MeshFigure | None] = {}  # without a mesh; None while it is being built
+        self._footings: dict[str, Footing] = {}
         self._skinned: tuple[Key, MeshFigure] | None = None
         self._guests: dict[
             Key, MeshFigure | None
@@ -71,14 +72,24 @@ class Figures(QObject):
         """Read the project's character."""
         skeleton, sticks = project.skeleton, self.sticks
         assert skeleton is not None
-        clip = _clip_on(skeleton, project)
+        footing = self.footing(skeleton, project)
         self.jobs.start(
             "character",
-            lambda _: (key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], clip, sticks))),
+            lambda _: (key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], footing, sticks))),
             self._read,
             lambda error: self._refused(key, error),
             quick=True,
         )
+
+    def footing(self, skeleton: Skeleton, project: Project) -> Footing | None:
+        """Return how a skeleton stands, told once by the first of the project's clips that is on it."""
+        if skeleton.fingerprint not in self._footings:
+            motions = (entry.motion for entry in project.clips.values())
+            clip = next((m for m in motions if m is not None and m.skeleton == skeleton), None)
+            if clip is None:
+                return None
+            self._footings[skeleton.fingerprint] = find_footing(clip)
+        return self._footings[skeleton.fingerprint]
 
     def _choose_sticks(self) -> None:
         """Build again what has no mesh, after the choice between body and sticks has changed."""
@@ -123,10 +134,10 @@ class Figures(QObject):
             return self._skinned[1] if self._skinned is not None and self._skinned[0][:2] == key[:2] else None
         if skeleton.fingerprint not in self._bodies:
             self._bodies[skeleton.fingerprint] = None
-            clip, sticks = _clip_on(skeleton, project), self.sticks
+            footing, sticks = self.footing(skeleton, project), self.sticks
             self.jobs.start(
                 "figure",
-                lambda _: (sticks, _ready(figure_from_file(None, skeleton, (), clip, sticks))),
+                lambda _: (sticks, _ready(figure_from_file(None, skeleton, (), footing, sticks))),
                 self._built,
                 quick=True,
             )
@@ -146,13 +157,13 @@ class Figures(QObject):
             return self.figure(skeleton)
         if key not in self._guests:
             self._guests[key] = None
-            clip, sticks = _clip_on(skeleton, shown.project), self.sticks
+            footing, sticks = self.footing(skeleton, shown.project), self.sticks
 
             def work(_: object) -> tuple[Key, MeshFigure]:
                 try:
-                    return key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], clip, sticks))
+                    return key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], footing, sticks))
                 except FileError:  # it moves in any case
-                    return key, _ready(figure_from_file(None, skeleton, (), clip, sticks))
+                    return key, _ready(figure_from_file(None, skeleton, (), footing, sticks))
 
             self.jobs.start("character", work, self._came, quick=True)
         return self._guests[key]
@@ -194,9 +205,3 @@ def _ready(figure: MeshFigure) -> MeshFigure:
             decode_texture(batch.image)
     figure.bounds(figure.bound[1])
     return figure
-
-
-def _clip_on(skeleton: Skeleton, project: Project) -> Clip | None:
-    """Return the first of the project's clips that is on a skeleton."""
-    motions = (entry.motion for entry in project.clips.values())
-    return next((m for m in motions if m is not None and m.skeleton == skeleton), None)

@@ -18,6 +18,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from metagraph.motion.clip import Clip
+from preview.default_body.footing import Footing
 
 SIZE, SCALE = 112, 2
 MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
@@ -39,7 +40,7 @@ class PictureOrder:
 
     `what` is "card", "bare", "large", "scrub", "moving" or "strip". `paper` is the colour behind the figure,
     sRGB 0..1, None for transparent. `character` is its file, `hidden` its meshes that are not drawn.
-    `sticks` draws a stick figure where there is no mesh.
+    Where there is no mesh, `footing` says how the skeleton stands, and `sticks` draws a stick figure.
     """
 
     number: int
@@ -49,6 +50,7 @@ class PictureOrder:
     paper: tuple[float, float, float] | None
     character: Path | None
     hidden: tuple[str, ...] = ()
+    footing: Footing | None = None
     sticks: bool = False
 
 
@@ -124,11 +126,11 @@ def _figure(order: PictureOrder) -> Any:
     from metagraph.errors import FileError
     from preview.character_file import figure_from_file
 
-    clip = order.clip
+    skeleton = order.clip.skeleton
     try:
-        return figure_from_file(order.character, clip.skeleton, order.hidden, clip, order.sticks)
+        return figure_from_file(order.character, skeleton, order.hidden, order.footing, order.sticks)
     except FileError:  # the preview reports it
-        return figure_from_file(None, clip.skeleton, (), clip, order.sticks)
+        return figure_from_file(None, skeleton, (), order.footing, order.sticks)
 
 
 if __name__ == "__main__":

@@ -180,8 +180,17 @@ class Thumbnails(QObject):
         self._number += 1
         self._orders[self._number] = (key, motion)
         paper = (r, g, b) if key[1] == "card" else None
+        footing = self.figures.footing(motion.skeleton, project)
         order = PictureOrder(
-            self._number, motion, key[1], key[2], paper, character, project.hidden, self.figures.sticks
+            self._number,
+            motion,
+            key[1],
+            key[2],
+            paper,
+            character,
+            project.hidden,
+            footing,
+            self.figures.sticks,
         )
         if key[1] in KEPT:
             self.kept.ask(order)

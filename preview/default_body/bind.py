@@ -13,17 +13,16 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import ARM, FINGERS, LEG, NEEDED, SIDES, find_known_roles
 from metagraph.motion.roles import find_roles
-from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.skeleton import Skeleton
+from preview.default_body.footing import Footing
 
 Array = NDArray[Any]
 
 UPRIGHT = 0.5  # the least cosine of trunk and legs with the vertical in a pose that stands
 SHRUG = np.radians(40)  # shoulders turned further than this from the sculpted ones are raised, not built so
 LEVEL = np.array([1.0, 0, 1.0])
+UP = np.array([0.0, 1, 0])
 SHORTEST = 0.02  # of its height: legs, trunks and arms that are shorter are none
-# Of the height: as far above the ground and below it the lowest joint of a foot is in a pose that stands on
-# it, and how high an ankle is then.
-GROUND, ANKLE = (-0.03, 0.06), (0.02, 0.13)
 
 
 @dataclass(frozen=True)
@@ -31,14 +30,11 @@ class Bind:
     """A skeleton as the body was sculpted: facing +Z, straight legs, arms halfway down.
 
     `roles` are its joints by role, also of fingers. `rotations` `[J, 4]` and `positions` `[J, 3]` are global.
-    `ankles` are the heights of the left and the right ankle above the sole, metres, None where it is not
-    known.
     """
 
     roles: Mapping[str, int]
     rotations: Array
     positions: Array
-    ankles: tuple[float | None, float | None]
 
     def at(self, role: str) -> Array:
         return np.asarray(self.positions[self.roles[role]])
@@ -47,28 +43,32 @@ class Bind:
         return np.asarray((self.at(f"left_{part}") + self.at(f"right_{part}")) / 2)
 
 
-def bind_pose(skeleton: Skeleton, at: Mapping[str, Array], pose: Pose | None = None) -> Bind | str:
+def bind_pose(skeleton: Skeleton, at: Mapping[str, Array], footing: Footing | None = None) -> Bind | str:
     """Return the skeleton in the pose of a body whose joints are `at` places, by role; or in words why that
     cannot be done.
 
-    `pose` is one in which it stands, the rest pose by default.
+    `footing` says how it stands; by default it stands as it rests.
     """
     roles = find_roles(skeleton)
     missing = [role.replace("_", " ") for role in NEEDED if role not in roles]
     if missing:
         return f"the skeleton has no {missing[0]}"
     known = find_known_roles(skeleton, roles)
-    turned, places = skeleton.globals(skeleton.rest if pose is None else pose)
+    turned, places = skeleton.globals(skeleton.rest if footing is None else footing.pose)
     if (why := _why_not(places, known)) is not None:
         return why
     turned, places = _facing(turned, places, known)
-    swings = _swings(skeleton, known, places, at)
+    levels = {
+        side: rotation.rotation_between(rotation.rotate_vectors(turned[known[f"{side}_foot"]], up), UP)
+        for side, up in zip(SIDES, (None, None) if footing is None else footing.ups, strict=True)
+        if up is not None
+    }
+    swings = _swings(skeleton, known, places, at, levels)
     out = np.array(places)
     for joint, parent in enumerate(skeleton.parents):
         if parent >= 0:
             out[joint] = out[parent] + rotation.rotate_vectors(swings[parent], places[joint] - places[parent])
-    ankles = tuple(_ankle(skeleton, known, places, side) for side in SIDES)
-    return Bind(known, rotation.multiply(swings, turned), out, (ankles[0], ankles[1]))
+    return Bind(known, rotation.multiply(swings, turned), out)
 
 
 def _why_not(places: Array, roles: Mapping[str, int]) -> str | None:
@@ -94,8 +94,16 @@ def _facing(turned: Array, places: Array, roles: Mapping[str, int]) -> tuple[Arr
     return rotation.multiply(turn, turned), rotation.rotate_vectors(turn, places)
 
 
-def _swings(skeleton: Skeleton, roles: Mapping[str, int], places: Array, at: Mapping[str, Array]) -> Array:
-    """Return how each joint is turned from the standing pose into the sculpted one, `[J, 4]`."""
+def _swings(
+    skeleton: Skeleton,
+    roles: Mapping[str, int],
+    places: Array,
+    at: Mapping[str, Array],
+    levels: Mapping[str, Array],
+) -> Array:
+    """Return how each joint is turned from the standing pose into the sculpted one, `[J, 4]`. `levels` are
+    the turns that bring soles to the ground.
+    """
     ways = _ways(roles, places, at)
     aligned = {roles[role]: way for role, way in ways.items()}
     hands = {roles[f"{side}_hand"]: side for side in SIDES}
@@ -105,7 +113,8 @@ def _swings(skeleton: Skeleton, roles: Mapping[str, int], places: Array, at: Map
     for joint, parent in enumerate(skeleton.parents):
         swing = out[parent] if parent >= 0 else rotation.IDENTITY
         if joint in feet:
-            swing = _heading(roles, places, at, feet[joint])  # soles stay level, whatever the legs did
+            level = levels.get(feet[joint], rotation.IDENTITY)  # whatever the legs did
+            swing = _heading(roles, places, at, feet[joint], level)
         elif joint in hands and (turn := _hand_turn(roles, places, at, hands[joint])) is not None:
             swing = turn
         elif joint in aligned:
@@ -120,10 +129,7 @@ def _swings(skeleton: Skeleton, roles: Mapping[str, int], places: Array, at: Map
 def _ways(roles: Mapping[str, int], places: Array, at: Mapping[str, Array]) -> dict[str, tuple[Array, Array]]:
     """Return each bone of limbs and fingers: its direction in the standing pose and in the sculpted one."""
     bones = [
-        (f"{s}_{a}", f"{s}_{b}")
-        for s in SIDES
-        for limb in (ARM, LEG)
-        for a, b in itertools.pairwise(limb)
+        (f"{s}_{a}", f"{s}_{b}") for s in SIDES for limb in (ARM, LEG) for a, b in itertools.pairwise(limb)
     ]
     bones += [(f"{s}_shoulder", f"{s}_upper_arm") for s in SIDES]
     bones += [(f"{s}_{f}_{n}", f"{s}_{f}_{n + 1}") for s in SIDES for f in FINGERS for n in (1, 2)]
@@ -166,26 +172,14 @@ def _frame(along: Array, across: Array) -> Array | None:
     return rotation.from_matrix(np.stack([x, y, np.cross(x, y)], -1))
 
 
-def _heading(roles: Mapping[str, int], places: Array, at: Mapping[str, Array], side: str) -> Array:
-    """Return the turn about the vertical that lets a foot point where the sculpted one does."""
+def _heading(
+    roles: Mapping[str, int], places: Array, at: Mapping[str, Array], side: str, level: Array
+) -> Array:
+    """Return the turn that lets a foot point where the sculpted one does, after it was turned level."""
     foot, toes = f"{side}_foot", f"{side}_toes"
     if toes not in roles:
-        return rotation.IDENTITY
-    own = (places[roles[toes]] - places[roles[foot]]) * LEVEL
+        return level
+    own = rotation.rotate_vectors(level, places[roles[toes]] - places[roles[foot]]) * LEVEL
     if np.linalg.norm(own) < 1e-4:
-        return rotation.IDENTITY
-    return rotation.rotation_between(own, (at[toes] - at[foot]) * LEVEL)
-
-
-def _ankle(skeleton: Skeleton, roles: Mapping[str, int], places: Array, side: str) -> float | None:
-    """Return how high an ankle is above the sole: above the ground where the pose stands on it, else above
-    the toes; None without toes.
-    """
-    foot = roles[f"{side}_foot"]
-    tall = float(np.ptp(places[:, 1]))
-    high = float(places[foot, 1])
-    low = float(places[list(skeleton.descendants(foot)), 1].min())
-    if GROUND[0] * tall < low < GROUND[1] * tall and ANKLE[0] * tall < high < ANKLE[1] * tall:
-        return high
-    toes = roles.get(f"{side}_toes")
-    return None if toes is None else high - float(places[toes, 1])
+        return level
+    return rotation.multiply(rotation.rotation_between(own, (at[toes] - at[foot]) * LEVEL), level)

@@ -11,16 +11,17 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import SIDES
-from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.skeleton import Skeleton
 from preview.default_body.bind import bind_pose
 from preview.default_body.fit import Fit, sculpture
-from preview.figure import MeshFigure
+from preview.default_body.footing import Footing
+from preview.figure import MeshFigure, SkinnedFigure
 from preview.levels import levels_of
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch
 
 Array = NDArray[Any]
 
-SKIN, JOINTS = (176, 171, 164, 70), (128, 124, 120, 60)  # sRGB and shininess, of the body and of its joints
+SKIN, JOINTS = (178, 174, 168, 70), (152, 148, 142, 60)  # sRGB and shininess, of the body and of its joints
 # Parts between which a half-way joint lies: the upper one (the trunk where it is ""), and the lower one.
 HALVES = (
     ("shoulder", "upper_arm"),
@@ -30,6 +31,8 @@ HALVES = (
     ("upper_leg", "lower_leg"),
     ("lower_leg", "foot"),
 )
+BANDED = np.tile([lower in ("lower_arm", "hand", "lower_leg", "foot") for _, lower in HALVES], 2)
+UNTURNED = rotation.IDENTITY.astype(np.float32)
 TWIST = (0.15, 0.85)  # shares of a forearm from which on, and to which, it turns with the hand by half
 
 
@@ -47,56 +50,58 @@ class Half:
 class DefaultBody(MeshFigure):
     """The default body on a skeleton of a person. Raises ValueError, with the reason in words, for others.
 
-    `pose` is one in which the skeleton stands, by default its rest pose.
+    `footing` says how the skeleton stands; by default it stands as it rests.
     """
 
-    def __init__(self, skeleton: Skeleton, pose: Pose | None = None) -> None:
-        bind = bind_pose(skeleton, sculpture().at, pose)
+    def __init__(self, skeleton: Skeleton, footing: Footing | None = None) -> None:
+        bind = bind_pose(skeleton, sculpture().at, footing)
         if isinstance(bind, str):
             raise ValueError(bind)
-        fit = Fit(skeleton, bind)
-        self._size = fit.size
+        fit = Fit(skeleton, bind, None if footing is None else footing.ankle)
         carriers, weights = fit.slots()
-        self._halves, self._twists, weights = _with_halves(carriers, weights, fit)
+        halves, twists, weights = _with_halves(carriers, weights, fit)
+        self._twisted = tuple(np.array([getattr(h, end) for h in twists]) for end in ("upper", "lower"))
+        self._halved = tuple(np.array([getattr(h, end) for h in halves]) for end in ("upper", "lower"))
         count = len(carriers)
-        sources = [*carriers, *(h.joint for h in self._twists), *(h.joint for h in self._halves)]
+        sources = [*carriers, *(h.joint for h in twists), *(h.joint for h in halves)]
         self._carriers, self._pivots = np.array(carriers), np.array(sources)
         self._back = rotation.conjugate(bind.rotations[carriers]).astype(np.float32)
         self._pivots_at = bind.positions[self._pivots].astype(np.float32)
         self._axes = _unit(
-            np.array(
-                [bind.positions[carriers[h.lower]] - bind.positions[carriers[h.upper]] for h in self._twists]
-            )
+            np.array([bind.positions[carriers[h.lower]] - bind.positions[carriers[h.upper]] for h in twists])
         ).astype(np.float32)
-        mesh = _mesh(fit, weights, count + len(self._twists))
+        mesh = _mesh(fit, weights, count + len(twists))
         super().__init__(skeleton, mesh, np.array(sources), (bind.rotations, bind.positions))
 
     def palette(self, rotations: Array, positions: Array) -> Array:
-        rotations, positions = np.asarray(rotations, np.float32), np.asarray(positions, np.float32)
-        own = rotation.multiply(rotations[..., self._carriers, :], self._back)
-        upper, lower = ([getattr(h, end) for h in self._twists] for end in ("upper", "lower"))
-        turned = rotation.multiply(rotation.conjugate(own[..., upper, :]), own[..., lower, :])
+        turns = np.asarray(rotations, np.float32)[..., self._carriers, :]
+        own = rotation.multiply(turns, self._back)
+        arm, hand = own[..., self._twisted[0], :], own[..., self._twisted[1], :]
+        turned = rotation.multiply(rotation.conjugate(arm), hand)
         along = np.einsum("...ti,ti->...t", turned[..., :3], self._axes)[..., None]
         twist = np.concatenate([along * self._axes, turned[..., 3:]], -1)
-        twist = np.where(np.linalg.norm(twist, axis=-1, keepdims=True) > 1e-6, twist, rotation.IDENTITY)
-        twist = rotation.nlerp(
-            np.broadcast_to(rotation.IDENTITY.astype(np.float32), twist.shape),
-            rotation.normalize(twist),
-            np.float32(0.5),
-        )
-        own = np.concatenate([own, rotation.multiply(own[..., upper, :], twist)], -2)
-        upper, lower = ([getattr(h, end) for h in self._halves] for end in ("upper", "lower"))
-        half = rotation.nlerp(own[..., upper, :], own[..., lower, :], np.full(len(upper), 0.5, np.float32))
-        turn = np.concatenate([own, half], -2)
-        out = np.empty((*turn.shape[:-1], 3, 4), np.float32)
-        out[..., :3] = rotation.to_matrix(turn)
-        out[..., 3] = positions[..., self._pivots, :] - rotation.rotate_vectors(turn, self._pivots_at)
+        own = np.concatenate([own, rotation.multiply(arm, _half_way(UNTURNED, twist))], -2)
+        half = _half_way(own[..., self._halved[0], :], own[..., self._halved[1], :])
+        matrix = rotation.to_matrix(np.concatenate([own, half], -2))
+        out = np.empty((*matrix.shape[:-1], 4), np.float32)
+        out[..., :3] = matrix
+        places = np.asarray(positions, np.float32)[..., self._pivots, :]
+        out[..., 3] = places - (matrix @ self._pivots_at[..., None])[..., 0]
         return out
 
     def simplify(self, cancelled: Callable[[], bool] = lambda: False) -> None:
-        """Make the `levels`: the same for every skeleton, as the sculpted body's triangles are."""
+        """Make the `levels`: the same triangles for every skeleton, so that they are made once."""
         if not self.levels:
-            self.levels = levels_of(self.mesh, self.height, cancelled)
+            body = sculpture().character
+            model = SkinnedFigure(body)
+            self.levels = levels_of(self.mesh, self.height, cancelled, (model.mesh, model.height))
+
+
+def _half_way(a: Array, b: Array) -> Array:
+    """Return the rotations half-way between `a` and `b` `[..., 4]`, the short way; `b` of any length."""
+    b = b / np.maximum(np.sqrt(np.einsum("...i,...i->...", b, b)), 1e-9)[..., None]
+    out = a + np.where(np.einsum("...i,...i->...", a, b)[..., None] < 0, -b, b)
+    return np.asarray(out / np.maximum(np.sqrt(np.einsum("...i,...i->...", out, out)), 1e-9)[..., None])
 
 
 def _unit(v: Array) -> Array:
@@ -111,8 +116,8 @@ def _with_halves(carriers: list[int], weights: Array, fit: Fit) -> tuple[list[Ha
     """
     roles = fit.bind.roles
     column = {role: carriers.index(joint) for role, joint in roles.items() if joint in carriers}
-    spine, _ = fit._spine()
-    top, base = carriers.index(spine[-1]), carriers.index(roles["hips"])
+    spine, _ = fit.trunk_and_neck()
+    top, base = carriers.index(spine[-1]), carriers.index(spine[0])
     twists: list[Half] = []
     columns = [weights[:, k] for k in range(weights.shape[1])]
     for side in SIDES:
@@ -172,8 +177,8 @@ def _mesh(fit: Fit, weights: Array, first_half: int) -> SkinnedMesh:
     out = np.zeros(len(fit.positions), VERTEX)
     out["position"], out["normal"] = fit.positions, _normals(fit.positions, triangles)
     out["bones"], out["weights"] = np.where(kept > 0, most, 0), kept
-    bent = np.clip(weights[:, first_half:].max(1), 0, 1)
-    bent = bent * bent * (3 - 2 * bent)
+    bent = np.clip((weights[:, first_half:] * BANDED).max(1), 0, 1)
+    bent = np.clip((bent - 0.35) / 0.3, 0, 1)
     out["color"] = np.round(np.array(SKIN) + bent[:, None] * (np.array(JOINTS) - np.array(SKIN)))
     return SkinnedMesh(
         out, triangles.astype(np.uint32), (TriangleBatch(0, len(triangles)),), weights.shape[1]

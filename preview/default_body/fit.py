@@ -29,6 +29,8 @@ LIMBS = ("upper_arm", "lower_arm", "upper_leg", "lower_leg")
 BELOW = {"upper_arm": "lower_arm", "lower_arm": "hand", "upper_leg": "lower_leg", "lower_leg": "foot"}
 PARTS = {"leg": 0.5, "trunk": 0.35, "arm": 0.15}  # how much each length says of the body's size
 NECK_BASE = 0.10  # metres above the shoulders of the sculpted body; a head's joint below that is the neck's
+PEOPLE = 1.2  # the most by which people's shoulders are broader than their height says
+STOUT = 2.5  # how much thicker a body is drawn, at most
 ANKLES = (0.04, 0.14)  # metres on the sculpted body, between which an ankle's height is believed
 SEAT = 0.05  # metres above the hip joints that the pelvis reaches, wherever the spine begins
 
@@ -68,11 +70,15 @@ def sculpture() -> Sculpture:
 
 
 class Fit:
-    """The body's surface on a skeleton. `size` is how large it is beside the sculpted one."""
+    """The body's surface on a skeleton. `size` is how large it is beside the sculpted one, `broad` how thick.
+    `ankle` is how high ankles are above the soles, metres, None where it is not known.
+    """
 
-    def __init__(self, skeleton: Skeleton, bind: Bind) -> None:
+    def __init__(self, skeleton: Skeleton, bind: Bind, ankle: float | None = None) -> None:
+        self.ankle = ankle
         self.skeleton, self.bind, self.body = skeleton, bind, sculpture()
         self.size = self._size()
+        self.broad = self.size * self._breadth()
         self.own = {role: bind.at(role) for role in bind.roles}
         self._neck = self._place_neck()
         self.positions = self._carry()
@@ -100,6 +106,12 @@ class Fit:
             lengths[limb] = both[0], both[1]
         return float(np.exp(sum(w * np.log(lengths[k][0] / lengths[k][1]) for k, w in PARTS.items())))
 
+    def _breadth(self) -> float:
+        """Return how much stouter than people the body is: 1 within their range."""
+        own = float(np.linalg.norm(self.bind.at("left_upper_arm") - self.bind.at("right_upper_arm")))
+        share = own / (2 * self.size * float(self.body.at["left_upper_arm"][0]))
+        return float(np.clip(share / PEOPLE, 1, STOUT))
+
     def _place_neck(self) -> Array:
         """Return where the neck begins."""
         shoulders = self.bind.middle("upper_arm")
@@ -119,7 +131,7 @@ class Fit:
         for side in SIDES:
             for part in LIMBS:
                 role, to = f"{side}_{part}", f"{side}_{BELOW[part]}"
-                moved = self._along(points, role, to, self.own[role], self.own[to], self.size)
+                moved = self._along(points, role, to, self.own[role], self.own[to], self.broad)
                 out += body.share(role)[:, None] * moved
             out += self._hand(points, side)
             out += body.share(f"{side}_foot", f"{side}_toes")[:, None] * self._foot(points, side)
@@ -133,29 +145,29 @@ class Fit:
 
     def _trunk(self, points: Array) -> Array:
         """Return points of the trunk between hips and shoulders, which may be further apart or nearer."""
-        body, bind, size = self.body, self.bind, self.size
+        body, bind = self.body, self.bind
         low, high = body.middle("upper_leg"), body.middle("upper_arm")
         own_low, own_high = bind.middle("upper_leg"), bind.middle("upper_arm")
         up = (points[:, 1] - low[1]) / (high[1] - low[1])
         within = np.clip(up, 0, 1)[:, None]
         middle = low + within * (high - low)
-        out = own_low + within * (own_high - own_low) + size * (points - middle)
+        out = own_low + within * (own_high - own_low) + self.broad * (points - middle)
         soft = (within * within * (3 - 2 * within))[:, 0]
         for part, share in (("upper_leg", 1 - soft), ("upper_arm", soft)):
             half = float(body.at[f"left_{part}"][0])
             own = float(bind.at(f"left_{part}")[0] - bind.at(f"right_{part}")[0]) / 2
-            out[:, 0] += share * np.clip(points[:, 0] / half, -1, 1) * (own - size * half)
+            out[:, 0] += share * np.clip(points[:, 0] / half, -1, 1) * (own - self.broad * half)
         return np.asarray(out)
 
     def _on_neck(self, points: Array) -> Array:
         if self._head_is_neck:
-            return np.asarray(self._neck + self.size * (points - self.body.at["neck"]))
-        return self._along(points, "neck", "head", self._neck, self.own["head"], self.size)
+            return np.asarray(self._neck + self.broad * (points - self.body.at["neck"]))
+        return self._along(points, "neck", "head", self._neck, self.own["head"], self.broad)
 
     def _on_head(self, points: Array) -> Array:
         if self._head_is_neck:
-            return np.asarray(self._neck + self.size * (points - self.body.at["neck"]))
-        return np.asarray(self.own["head"] + self.size * (points - self.body.at["head"]))
+            return np.asarray(self._neck + self.broad * (points - self.body.at["neck"]))
+        return np.asarray(self.own["head"] + self.broad * (points - self.body.at["head"]))
 
     @property
     def _head_is_neck(self) -> bool:
@@ -166,35 +178,28 @@ class Fit:
     def _foot(self, points: Array, side: str) -> Array:
         """Return points of a foot whose sole is level."""
         body, foot, toes = self.body, f"{side}_foot", f"{side}_toes"
-        a, size = body.at[foot], self.size
-        high = self.bind.ankles[SIDES.index(side)]
+        a, size = body.at[foot], self.broad
+        high = self.ankle
+        if high is None and toes in self.own:
+            high = float(self.own[foot][1] - self.own[toes][1] + size * body.at[toes][1])
         usual = float(a[1])
-        if high is not None and self._above_toes(side, high):
-            high += size * float(body.at[toes][1])
         tall = usual * size if high is None else float(np.clip(high, ANKLES[0] * size, ANKLES[1] * size))
         scale = np.array([size, tall / usual, size])
         if toes in self.own:
             own = float(np.hypot(*(self.own[toes] - self.own[foot])[[0, 2]]))
             line = float(np.hypot(*(body.at[toes] - a)[[0, 2]]))
-            scale[2] = float(np.clip(own / line, 0.75 * size, 1.35 * size))
+            scale[2] = float(np.clip(own / line, 0.75 * size, 1.2 * size))
         return np.asarray(self.own[foot] + scale * (points - a))
-
-    def _above_toes(self, side: str, high: float) -> bool:
-        """Whether an ankle's height was reckoned from the toes' joint, which is above the sole."""
-        toes = f"{side}_toes"
-        if toes not in self.own:
-            return False
-        return abs(high - float(self.own[f"{side}_foot"][1] - self.own[toes][1])) < 1e-9
 
     def _hand(self, points: Array, side: str) -> Array:
         """Return points of a hand times how much they follow it and its fingers."""
         body, hand = self.body, f"{side}_hand"
         knuckles = [f"{side}_{f}_1" for f in FINGERS[1:] if f"{side}_{f}_1" in self.own]
-        scale = self.size
+        scale = self.broad
         if len(knuckles) > 1:
             own = np.mean([np.linalg.norm(self.own[k] - self.own[hand]) for k in knuckles])
             line = np.mean([np.linalg.norm(body.at[k] - body.at[hand]) for k in knuckles])
-            scale = float(np.clip(own / line, 0.7 * self.size, 1.4 * self.size))
+            scale = float(np.clip(own / line, 0.7 * self.broad, 1.4 * self.broad))
         else:
             knuckles = []
         on_hand = self.own[hand] + scale * (points - body.at[hand])
@@ -238,7 +243,7 @@ class Fit:
             carried[joint] = carried.get(joint, 0) + weight
 
         roles, body = self.bind.roles, self.body
-        spine, necks = self._spine()
+        spine, necks = self.trunk_and_neck()
         sides = [f"{side}_shoulder" for side in SIDES]
         trunk = body.share(*TRUNK, *(s for s in sides if s not in roles))
         for joint, share in zip(spine, self._levels(spine, True), strict=True):
@@ -273,7 +278,7 @@ class Fit:
                     return f"{side}_{one}_{k}"
         return f"{side}_hand"
 
-    def _spine(self) -> tuple[list[int], list[int]]:
+    def trunk_and_neck(self) -> tuple[list[int], list[int]]:
         """Return the joints from the hips to below the neck, and those from the neck to the head."""
         roles = self.bind.roles
         line = list(self.skeleton.chain(roles["head"]))

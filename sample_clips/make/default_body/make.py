@@ -12,7 +12,7 @@ from sample_clips.make.sculpt import Field, gradient, polygonise, project, remes
 
 Array = NDArray[Any]
 
-CELL = 0.0048
+CELL = 0.0042
 NEAR = 0.004  # metres from the middle; points nearer are put into it
 
 
@@ -63,6 +63,38 @@ def cut_in_middle(positions: Array, triangles: Array) -> tuple[Array, Array]:
     return np.array(places)[used], corners.reshape(-1, 3)
 
 
+def mend(positions: Array, triangles: Array) -> Array:
+    """Return the triangles of a half without folds that share an edge with others, and without gaps in its
+    border.
+    """
+    for _ in range(20):
+        edges, faces = np.unique(_edges(triangles), axis=0, return_counts=True)
+        crowded = edges[faces > 2]
+        if not len(crowded):
+            break
+        to = np.arange(len(positions))
+        for a, b in crowded:  # the longer way round stays: its ends become one
+            to[to == to[b]] = to[a]
+        triangles = to[triangles]
+        a, b, c = triangles.T
+        triangles = triangles[(a != b) & (b != c) & (c != a)]
+        _, first, count = np.unique(np.sort(triangles, 1), axis=0, return_inverse=True, return_counts=True)
+        triangles = triangles[count[first.ravel()] == 1]
+    edges, faces = np.unique(_edges(triangles), axis=0, return_counts=True)
+    middle = positions[:, 0] == 0
+    border = {tuple(e) for e in edges[faces == 1].tolist() if not middle[e].all()}
+    ring = [(a, b) for tri in triangles.tolist() for a, b in zip(tri, [*tri[1:], tri[0]], strict=True)]
+    after = {a: b for a, b in ring if (min(a, b), max(a, b)) in border}
+    gaps = [
+        [after[after[a]], after[a], a] for a in after if middle[a] and middle[after.get(after[a], after[a])]
+    ]
+    return np.concatenate([triangles, np.array(gaps, int).reshape(-1, 3)])
+
+
+def _edges(triangles: Array) -> Array:
+    return np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), 1)
+
+
 def mirror_half(positions: Array, triangles: Array) -> tuple[Array, Array]:
     """Return the whole of a half whose border has x = 0."""
     middle = positions[:, 0] == 0
@@ -75,6 +107,9 @@ def sculpt_body(cell: float = CELL) -> tuple[Array, Array, Array]:
     """Return positions and normals `[V, 3]` and triangles `[N, 3]` of the body, the same on both sides."""
     field = whole()
     positions, triangles = cut_in_middle(*sculpt_half(field, cell))
+    triangles = mend(positions, triangles)
+    used, triangles = np.unique(triangles, return_inverse=True)
+    positions, triangles = positions[used], triangles.reshape(-1, 3)
     middle = positions[:, 0] == 0
     positions = project(field, positions)
     positions[middle, 0] = 0

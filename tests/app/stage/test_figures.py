@@ -33,7 +33,9 @@ def figures(document):
     jobs.stop()
 
 
-def test_a_skeleton_without_a_character_is_drawn_as_the_default_body_once_it_is_built(document, figures, toy, qtbot):
+def test_a_skeleton_without_a_character_is_drawn_as_the_default_body_once_it_is_built(
+    document, figures, toy, qtbot
+):
     document.load(toy.project(), None)
     told = []
     figures.changed.connect(lambda: told.append(True))
