@@ -103,7 +103,7 @@ def measure_bounds(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray,
     from preview.scene import Scene
 
     some = times[:: max(1, len(times) // 60)]
-    return Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).bounds()
+    return Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).drawn_bounds()
 
 
 def render_pictures(

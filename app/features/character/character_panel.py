@@ -259,8 +259,10 @@ class PreviewPanel(QWidget):
             self._framed = framed
             aside = ASIDE if shown.others else 0.0
             self.view.camera = frame_whole_figure(
-                solid.bounds(), self.view.width() / max(1, self.view.height()), aside
+                solid.drawn_bounds(), self.view.width() / max(1, self.view.height()), aside
             )
+        elif self._last is not None:
+            self.looking.keep_in_picture(shown, self._last[0])
         self.directing.follow(shown, seconds)
         return scene
 
