@@ -113,12 +113,11 @@ class Fit:
         return float(np.clip(share / PEOPLE, 1, STOUT))
 
     def _place_neck(self) -> Array:
-        """Return where the neck begins."""
-        shoulders = self.bind.middle("upper_arm")
+        """Return where the neck begins: above the shoulders. Rigs have its joint anywhere between chest and
+        skull.
+        """
         usual = self.body.at["neck"] - self.body.middle("upper_arm")
-        if "neck" in self.own and self.own["neck"][1] > shoulders[1] - 0.02 * self.size:
-            return self.own["neck"]
-        return np.asarray(shoulders + self.size * usual)
+        return np.asarray(self.bind.middle("upper_arm") + self.size * usual)
 
     # --- the surface
 

@@ -26,6 +26,7 @@ ANKLE, LOWEST = (0.05, 0.17), (-0.03, 0.10)
 PLANTED = 0.01  # metres by which an ankle may be higher than usual while its foot is on the ground
 ALIKE = 0.985  # the least length of the mean of a planted foot's directions: they differ by ten degrees
 LEVEL = 0.77  # the cosine of the most by which a foot is turned where it stands: forty degrees
+HANGING = -0.7  # the height of an arm's direction below which it hangs
 UP = np.array([0.0, 1, 0])
 
 
@@ -56,12 +57,29 @@ def find_footing(clip: Clip) -> Footing:
     if any(role not in roles for role in NEEDED):
         return Footing(pose)
     turned, at = some.skeleton.globals(some.poses())
+    pose = _shoulders_carried(pose, some, roles, at)
     ankle = _ankle(some.skeleton, roles, at)
     if ankle is None:
         return Footing(pose)
     rest, _ = some.skeleton.globals(pose)
     ups = [_up(turned[:, foot], at[:, foot, 1], rest[foot]) for foot in _feet(roles)]
     return Footing(pose, ankle, (ups[0], ups[1]))
+
+
+def _shoulders_carried(pose: Pose, clip: Clip, roles: Mapping[str, int], at: Array) -> Pose:
+    """Return a pose with the shoulders as the clip carries them while arms hang: rest poses raise them with
+    the arms. `at` `[F, J, 3]` are the joints' places.
+    """
+    local = np.array(pose.rotations, float)
+    for side in SIDES:
+        arm = at[:, roles[f"{side}_lower_arm"]] - at[:, roles[f"{side}_upper_arm"]]
+        hanging = arm[:, 1] < HANGING * np.linalg.norm(arm, axis=-1)
+        shoulder = roles.get(f"{side}_shoulder")
+        if shoulder is not None and hanging.any():
+            turns = clip.rotations[hanging, shoulder].astype(float)
+            turns *= np.where(turns @ turns[:1].T < 0, -1, 1)
+            local[shoulder] = rotation.normalize(turns.mean(0))
+    return Pose(local, pose.translations)
 
 
 def _feet(roles: Mapping[str, int]) -> list[int]:
