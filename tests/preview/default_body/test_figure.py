@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -154,27 +155,45 @@ def test_a_symmetrical_skeleton_gives_a_symmetrical_body():
 
 @pytest.mark.parametrize("degrees", [90, 140])
 def test_elbows_and_knees_stay_round_when_they_bend(degrees):
-    skeleton = made("sample")[0].skeleton
-    body = made("sample")[1]
-    bend = posed(
-        body,
-        [(f"{s}LowerLeg", (1, 0, 0), degrees) for s in ("Left", "Right")]
-        + [(f"{s}LowerArm", (0, 1, 0), way * degrees) for s, way in (("Left", -1), ("Right", 1))],
-    )
-    points, triangles = placed(body, bend.rotations, bend.positions), body.mesh.triangles
-    before = volume(body.mesh.vertices["position"], triangles)
-    assert volume(points, triangles) > 0.95 * before
-    assert len(skeleton) == body.bound[1].shape[0]
+    _, body = made("sample")
+    bend = posed(body, [("LeftLowerLeg", (1, 0, 0), degrees), ("LeftLowerArm", (0, 1, 0), -degrees)])
+    points = placed(body, bend.rotations, bend.positions)
+    rest, triangles = body.mesh.vertices["position"], body.mesh.triangles
+    assert volume(points, triangles) > 0.98 * volume(rest, triangles)
+    for joint in ("LeftLowerLeg", "LeftLowerArm"):
+        near = np.linalg.norm(rest - body.bound[1][body.skeleton.index(joint)], axis=1) < 0.05
+        some = triangles[near[triangles].all(1)]
+        assert area(points, some) > 0.85 * area(rest, some), joint
+
+
+def area(points: np.ndarray, triangles: np.ndarray) -> float:
+    a, b, c = (points[triangles[:, k]].astype(float) for k in range(3))
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
 def test_a_hand_that_turns_over_does_not_wring_its_wrist():
     _, body = made("sample")
-    forearm = (
-        body.bound[1][body.skeleton.index("LeftHand")] - body.bound[1][body.skeleton.index("LeftLowerArm")]
-    )
-    turned = posed(body, [("LeftHand", tuple(_unit(forearm)), 150)])
-    points, triangles = placed(body, turned.rotations, turned.positions), body.mesh.triangles
-    assert volume(points, triangles) > 0.98 * volume(body.mesh.vertices["position"], triangles)
+    hand = body.bound[1][body.skeleton.index("LeftHand")]
+    along = _unit(hand - body.bound[1][body.skeleton.index("LeftLowerArm")])
+    turned = posed(body, [("LeftHand", tuple(along), 150)])
+    rest = body.mesh.vertices["position"].astype(float) - hand
+    wrist = (np.abs(rest @ along) < 0.012) & (np.linalg.norm(rest, axis=1) < 0.05)
+
+    def thick(points: np.ndarray) -> float:
+        ring = points[wrist] - points[wrist].mean(0)
+        return float(np.linalg.norm(ring - (ring @ along)[:, None] * along, axis=1).mean())
+
+    assert thick(placed(body, turned.rotations, turned.positions)) > 0.9 * thick(rest)
+
+
+def test_soles_are_on_the_ground_of_the_clip_wherever_the_rest_pose_has_it():
+    clip = made("sample")[0]
+    lifted = clip.translations.copy()
+    lifted[:, 0, 1] += 0.025
+    clip = replace(clip, translations=lifted)
+    body = DefaultBody(clip.skeleton, find_footing(clip))
+    points = placed(body, *clip.skeleton.globals(clip.poses()[10]))
+    assert points[:, 1].min() == pytest.approx(0, abs=0.006)
 
 
 @pytest.mark.parametrize("scale", [0.01, 0.5, 40.0])
