@@ -1,4 +1,6 @@
-"""Make the figure for a character's file: its mesh, or a stick figure if the mesh cannot be used."""
+"""Make the figure for a character's file: its mesh, or the default body if the mesh cannot be used; a stick
+figure for a skeleton that is no person's.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +10,26 @@ from pathlib import Path
 from metagraph.formats.gltf.reader import read_character
 from metagraph.motion.character_mesh import explain_no_character
 from metagraph.motion.skeleton import Skeleton
+from preview.default_body.figure import DefaultBody
+from preview.default_body.footing import Footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 
-def figure_from_file(path: Path | None, skeleton: Skeleton, hidden: Collection[str] = ()) -> MeshFigure:
+def figure_from_file(
+    path: Path | None,
+    skeleton: Skeleton,
+    hidden: Collection[str] = (),
+    footing: Footing | None = None,
+    sticks: bool = False,
+) -> MeshFigure:
     """Return the figure that is drawn for a skeleton. If it is not the file's mesh, its `instead` says why.
 
     `path` is the character's file, None for a project without one. `hidden` holds names of meshes that are
-    not drawn. Raises FileError.
+    not drawn. `footing` says how the skeleton stands, for the default body. `sticks` draws a stick figure in
+    place of that. Raises FileError.
     """
     if path is None:
-        return StickFigure(skeleton)
+        return _without_mesh(skeleton, footing, sticks)
     body = read_character(path)
     why = explain_no_character(body, skeleton)
     shown = body.without(hidden)
@@ -26,6 +37,19 @@ def figure_from_file(path: Path | None, skeleton: Skeleton, hidden: Collection[s
         why = "is hidden"
     if why is None:
         return SkinnedFigure(shown, skeleton)
-    figure = StickFigure(skeleton)
-    figure.instead, figure.meshes = f"the mesh of {path.name} {why}", body.meshes
+    figure = _without_mesh(skeleton, footing, sticks)
+    reasons = [f"the mesh of {path.name} {why}", figure.instead]
+    figure.instead, figure.meshes = ", and ".join(filter(None, reasons)), body.meshes
     return figure
+
+
+def _without_mesh(skeleton: Skeleton, footing: Footing | None, sticks: bool) -> MeshFigure:
+    """Return the default body; a stick figure where it is wanted, or where the skeleton is no person's."""
+    if sticks:
+        return StickFigure(skeleton)
+    try:
+        return DefaultBody(skeleton, footing)
+    except ValueError as reason:
+        figure = StickFigure(skeleton)
+        figure.instead = str(reason)
+        return figure

@@ -31,8 +31,10 @@ LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (
 class MeshFigure:
     """A mesh that follows a skeleton.
 
-    `skeleton` is the one whose global transforms the figure takes. `mesh` is in its rest pose. `sources`
-    `[M]` holds for each matrix of the palette the joint of `skeleton` that it follows (-1: none). `shadow`
+    `skeleton` is the one whose global transforms the figure takes. `bound` are the global rotations `[J, 4]`
+    and positions `[J, 3]` of its joints where `mesh` is at rest: in the rest pose, unless the mesh was made
+    on another skeleton or in another pose. `sources` `[M]` holds for each matrix of the palette the joint of
+    `skeleton` that it follows (-1: none). `shadow`
     holds the joints `[S]` of the bones that darken the ground, and the joints `[S]` those bones start at.
     `meshes` are the names of the character's meshes, including hidden ones. `instead` says in words why this
     figure is drawn in place of the character's mesh, "" if it is not. `levels` are meshes with fewer
@@ -44,11 +46,17 @@ class MeshFigure:
     instead: str = ""
     levels: tuple[Level, ...] = ()
 
-    def __init__(self, skeleton: Skeleton, mesh: SkinnedMesh, sources: Array) -> None:
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        mesh: SkinnedMesh,
+        sources: Array,
+        bound: tuple[Array, Array] | None = None,
+    ) -> None:
         self.skeleton, self.mesh, self.sources = skeleton, mesh, sources
+        self.bound = skeleton.globals(skeleton.rest) if bound is None else bound
         self.drawn = rules.find_drawn_joints(skeleton)
-        _, rest = skeleton.globals(skeleton.rest)
-        self.height = max(1e-3, float(np.ptp(rest[self.drawn], axis=0).max()))
+        self.height = max(1e-3, float(np.ptp(self.bound[1][self.drawn], axis=0).max()))
         self._above = rules.nearest_above(skeleton, self.drawn)
         self.lines = np.flatnonzero(self.drawn & (self._above >= 0))
         self.line_starts = self._above[self.lines]
@@ -72,7 +80,7 @@ class MeshFigure:
     @cached_property
     def rods(self) -> Rods | None:
         """The rods by which limbs keep light from each other, None for a figure that is no person."""
-        return rods(self.skeleton, self.sources, self.mesh.vertices)
+        return rods(self.skeleton, self.sources, self.mesh.vertices, self.bound[1])
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         """Return the matrices from rest pose to posed, `[..., M, 3, 4]` float32, for global `rotations [...,
@@ -133,8 +141,7 @@ class MeshFigure:
         """How much the box of balls is too large at rest, below and above. Large ears, for example, make a
         large ball round the head.
         """
-        _, rest = self.skeleton.globals(self.skeleton.rest)
-        box, mesh = self._balls(rest), self.mesh.vertices["position"]
+        box, mesh = self._balls(self.bound[1]), self.mesh.vertices["position"]
         if box is None or not len(mesh):
             return np.zeros(3), np.zeros(3)
         return np.maximum(mesh.min(0) - box[0], 0), np.maximum(box[1] - mesh.max(0), 0)
@@ -144,7 +151,7 @@ class MeshFigure:
         """Joints `[N]` and how far the mesh is from them `[N]`, in metres; from the bones below them if there
         are any.
         """
-        _, rest = self.skeleton.globals(self.skeleton.rest)
+        _, rest = self.bound
         vertices = self.mesh.vertices
         main = main_matrices(vertices) if len(vertices) else np.zeros(0, int)
         owner = self.sources[main]
@@ -175,14 +182,11 @@ class MeshFigure:
             top = np.argmax(np.asarray(positions)[..., 1], -1)
             return np.take_along_axis(np.asarray(positions), top[..., None, None], -2)[..., 0, :]
         up = rotation.rotate_vectors(
-            rotation.conjugate(self._rest_rotation(self._head)), np.array([0, 0.05 * self.height, 0])
+            rotation.conjugate(self.bound[0][self._head]), np.array([0, 0.05 * self.height, 0])
         )
         return np.asarray(
             positions[..., self._head, :] + rotation.rotate_vectors(rotations[..., self._head, :], up)
         )
-
-    def _rest_rotation(self, joint: int) -> Array:
-        return np.asarray(self.skeleton.globals(self.skeleton.rest)[0][joint])
 
 
 class SkinnedFigure(MeshFigure):
@@ -200,7 +204,11 @@ class SkinnedFigure(MeshFigure):
         follow, sources = followers(own, skeleton)  # the character's joint whose matrix each joint uses
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
-        super().__init__(skeleton, _character_mesh(character), sources)
+        bound_r, bound_p = (x.copy() for x in skeleton.globals(skeleton.rest))
+        for joint, place in enumerate(sources):
+            if place >= 0 and follow[joint] == joint:
+                bound_r[place], bound_p[place] = rest_r[joint], rest_p[joint]
+        super().__init__(skeleton, _character_mesh(character), sources, (bound_r, bound_p))
         self.morphs, self.meshes = character.morphs, character.meshes
 
     def palette(self, rotations: Array, positions: Array) -> Array:

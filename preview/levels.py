@@ -46,13 +46,30 @@ def levels_folder() -> Path | None:
 
 
 def levels_of(
-    mesh: SkinnedMesh, height: float, cancelled: Callable[[], bool] = lambda: False
+    mesh: SkinnedMesh,
+    height: float,
+    cancelled: Callable[[], bool] = lambda: False,
+    model: tuple[SkinnedMesh, float] | None = None,
 ) -> tuple[Level, ...]:
     """Return the levels of a mesh whose figure is `height` metres tall, finer ones first. None are returned
     if few triangles can be removed, or once it is `cancelled`.
+
+    `model` is a mesh with the same triangles and its height, whose levels are taken: of a figure that comes
+    in many shapes.
     """
+    thinned = _thinned(*(model or (mesh, height)), cancelled)
+    out, before = [], len(mesh.triangles)
+    for share, fewer in zip(ERRORS, thinned, strict=False):
+        if len(fewer.triangles) <= WORTH * before:
+            out.append(Level(share * height, fewer.of(mesh)))
+            before = len(fewer.triangles)
+    return tuple(out)
+
+
+def _thinned(mesh: SkinnedMesh, height: float, cancelled: Callable[[], bool]) -> list[Fewer]:
+    """Return what is left of a mesh for each of ERRORS, made now or earlier; none if it has no levels."""
     if not LEAST <= len(mesh.triangles) <= LARGEST or not np.isfinite(mesh.vertices["position"]).all():
-        return ()
+        return []
     errors = [share * height for share in ERRORS]
     cache, key = DiskCache(levels_folder(), MOST, ".npz"), _key(mesh, errors)
     content = cache.read(key)
@@ -60,14 +77,9 @@ def levels_of(
     if found is None:
         found = list(simplify(mesh, errors, cancelled))
         if len(found) < len(errors):
-            return ()
+            return []
         cache.write(key, _written(found))
-    out, before = [], len(mesh.triangles)
-    for error, fewer in zip(errors, found, strict=True):
-        if len(fewer.triangles) <= WORTH * before:
-            out.append(Level(error, fewer.of(mesh)))
-            before = len(fewer.triangles)
-    return tuple(out)
+    return found
 
 
 def _key(mesh: SkinnedMesh, errors: list[float]) -> str:

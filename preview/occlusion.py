@@ -86,17 +86,16 @@ def main_matrices(vertices: Array) -> Array:
     return np.asarray(np.take_along_axis(vertices["bones"], most, 1)[:, 0])
 
 
-def rods(skeleton: Skeleton, sources: Array, vertices: Array) -> Rods | None:
+def rods(skeleton: Skeleton, sources: Array, vertices: Array, rest: Array) -> Rods | None:
     """Return the rods of a mesh, None if the skeleton is not that of a person.
 
-    `sources` `[M]` is the joint that each matrix follows. `vertices` `[V]` are in rest pose (see
-    mesh.VERTEX).
+    `sources` `[M]` is the joint that each matrix follows. `vertices` `[V]` are at rest (see mesh.VERTEX), as
+    `rest` `[J, 3]`, the joints' positions, is.
     """
     roles = find_roles(skeleton)
     if not is_humanoid(roles) or not len(vertices):
         return None
     positions = vertices["position"]
-    _, rest = skeleton.globals(skeleton.rest)
     limb = np.full(len(skeleton), 0)
     begins: dict[int, int] = {}
     for n, (_, starts, _, _) in enumerate(LIMBS):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -68,10 +68,18 @@ class Scene:
         """Return the lowest and the highest corner of a box round all actors; the size of a person if there
         are none.
         """
-        boxes = [a.figure.bounds(a.positions) for a in self.actors if a.count]
-        if not boxes:
-            return np.array([-0.5, 0.0, -0.5]), np.array([0.5, 1.8, 0.5])
-        return np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
+        return _round([a.figure.bounds(a.positions) for a in self.actors if a.count])
+
+    def drawn_bounds(self) -> tuple[Array, Array]:
+        """Return the same box closer to what is drawn, as the meshes are posed: what a camera is aimed at."""
+        return _round([a.figure.posed_bounds(a.rotations, a.positions) for a in self.actors if a.count])
+
+
+def _round(boxes: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Return a box round boxes; the size of a person if there are none."""
+    if not boxes:
+        return np.array([-0.5, 0.0, -0.5]), np.array([0.5, 1.8, 0.5])
+    return np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
 
 
 def _same(a: Actor, b: Actor) -> bool:

@@ -204,7 +204,7 @@ class Stimuli:
         return ShownPlayback(project, plan, wanted.seconds), folder
 
     def _motion(self, name: str, made: Condition, item: Stretch) -> tuple[ShownPlayback, Path]:
-        """Return a clip of a project, or a file's motion on its character, or as a stick figure."""
+        """Return a clip of a project, or a file's motion on its character, or on the default body."""
         if made.clip is not None:
             project, folder = self._project(made)
             wanted = made.clip.replace("{item}", item.id)
@@ -245,7 +245,7 @@ class Stimuli:
                 path,
                 "is of another skeleton than the project",
                 f"conditions.{name}",
-                "Import it and name it as a clip, or leave 'project' out for a stick figure.",
+                "Import it and name it as a clip, or leave 'project' out for the default body.",
             )
         return clip
 

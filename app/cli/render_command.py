@@ -59,6 +59,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
     parser.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")
+    parser.add_argument(
+        "--sticks", action="store_true", help="draw a stick figure where a character has no mesh"
+    )
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
     from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO
 
@@ -66,17 +69,22 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="what is behind it")
 
 
-def load_figure(project: Project, folder: Path) -> Any:
-    """Return the figure that draws a project, and say where it is not its character's mesh. Raises
-    FileError.
+def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
+    """Return the figure that draws a project, and say where it is not its character's mesh. `sticks` draws a
+    stick figure in place of the default body. Raises FileError.
     """
     from preview.character_file import figure_from_file as drawn
+    from preview.default_body.footing import find_footing
+    from preview.figure import StickFigure
 
     assert project.skeleton is not None
     path = folder / project.character if project.character is not None else None
-    figure = drawn(path, project.skeleton, project.hidden)
+    clip = next((e.motion for e in project.clips.values() if e.motion is not None), None)
+    footing = find_footing(clip) if clip is not None and clip.skeleton == project.skeleton else None
+    figure = drawn(path, project.skeleton, project.hidden, footing, sticks)
     if figure.instead:
-        print(f"note: {figure.instead}; a stick figure is drawn", file=sys.stderr)
+        kind = "a stick figure" if isinstance(figure, StickFigure) else "the default body"
+        print(f"note: {figure.instead}; {kind} is drawn", file=sys.stderr)
     return figure
 
 
@@ -95,7 +103,7 @@ def measure_bounds(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray,
     from preview.scene import Scene
 
     some = times[:: max(1, len(times) // 60)]
-    return Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).bounds()
+    return Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).drawn_bounds()
 
 
 def render_pictures(
@@ -231,7 +239,9 @@ def run(options: Namespace) -> int:
     else:
         from preview.looks import look_of
 
-        seen = [(load_figure(one.project, one.folder or folder), one) for one in shown.everyone]
+        seen = [
+            (load_figure(one.project, one.folder or folder, options.sticks), one) for one in shown.everyone
+        ]
         heard = options.out.suffix == ".mp4"
         sound = mix_sound(shown, folder, options.seconds, options.start) if heard else None
         look = look_of(options.theme, options.light, options.background)

@@ -1,5 +1,5 @@
-"""Choose the figure that draws the character: the project's own GLB, or a stick figure for any skeleton
-without one.
+"""Choose the figure that draws the character: the project's own GLB, or for any skeleton without one the
+default body, or a stick figure.
 """
 
 from __future__ import annotations
@@ -11,26 +11,34 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.playback_source import ShownPlayback
+from app.stage.watch import Watch
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
 from preview.character_file import figure_from_file
-from preview.figure import MeshFigure
+from preview.default_body.footing import Footing, find_footing
+from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
 REST = 1500  # milliseconds after a new figure, in which much else is made
 
 
 class Figures(QObject):
-    """Reads and builds figures on a thread. `changed` is emitted if another figure should be drawn."""
+    """Reads and builds figures on a thread. `changed` is emitted if another figure should be drawn. `watch`
+    says whether stick figures are drawn in place of the default body.
+    """
 
     changed = Signal()
 
-    def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
+    def __init__(
+        self, document: Document, jobs: Jobs, watch: Watch | None = None, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
-        self.document, self.jobs = document, jobs
-        self._sticks: dict[str, MeshFigure | None] = {}  # None while it is being built
+        self.document, self.jobs, self.watch = document, jobs, watch
+        self.sticks = watch is not None and watch.now.sticks
+        self._bodies: dict[str, MeshFigure | None] = {}  # without a mesh; None while it is being built
+        self._footings: dict[str, Footing] = {}
         self._skinned: tuple[Key, MeshFigure] | None = None
         self._guests: dict[
             Key, MeshFigure | None
@@ -41,6 +49,8 @@ class Figures(QObject):
         self._later = QTimer(self, singleShot=True, interval=REST)
         self._later.timeout.connect(self._make_levels)
         document.changed.connect(self._follow)
+        if watch is not None:
+            watch.changed.connect(self._choose_sticks)
 
     def _key(self, project: Project) -> Key | None:
         if project.character is None or project.skeleton is None:
@@ -56,21 +66,53 @@ class Figures(QObject):
         if key is None or after.skeleton is None:
             self.changed.emit()
             return
-        skeleton = after.skeleton
+        self._start(key, after)
+
+    def _start(self, key: Key, project: Project) -> None:
+        """Read the project's character."""
+        skeleton, sticks = project.skeleton, self.sticks
+        assert skeleton is not None
+        footing = self.footing(skeleton, project)
         self.jobs.start(
             "character",
-            lambda _: (key, _ready(figure_from_file(Path(key[0]), skeleton, key[2]))),
+            lambda _: (key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], footing, sticks))),
             self._read,
             lambda error: self._refused(key, error),
             quick=True,
         )
+
+    def footing(self, skeleton: Skeleton, project: Project) -> Footing | None:
+        """Return how a skeleton stands, told once by the first of the project's clips that is on it."""
+        if skeleton.fingerprint not in self._footings:
+            motions = (entry.motion for entry in project.clips.values())
+            clip = next((m for m in motions if m is not None and m.skeleton == skeleton), None)
+            if clip is None:
+                return None
+            self._footings[skeleton.fingerprint] = find_footing(clip)
+        return self._footings[skeleton.fingerprint]
+
+    def _choose_sticks(self) -> None:
+        """Build again what has no mesh, after the choice between body and sticks has changed."""
+        assert self.watch is not None
+        if self.sticks == self.watch.now.sticks:
+            return
+        self.sticks = self.watch.now.sticks
+        self._bodies.clear()
+        self._guests = {key: f for key, f in self._guests.items() if isinstance(f, SkinnedFigure)}
+        if self._wanted is not None and self._skinned is not None and self._skinned[1].instead:
+            self._start(self._wanted, self.document.project)
+        self.changed.emit()
 
     def _read(self, result: tuple[Key, MeshFigure]) -> None:
         if result[0] == self._wanted:
             self._skinned = result
             self._simplify(result[1])
             if result[1].instead:
-                self.document.failed.emit(tr("A stick figure is drawn: {instead}", instead=result[1].instead))
+                if isinstance(result[1], StickFigure):
+                    words = tr("A stick figure is drawn: {instead}", instead=result[1].instead)
+                else:
+                    words = tr("The default body is drawn: {instead}", instead=result[1].instead)
+                self.document.failed.emit(words)
             self.changed.emit()
 
     def _refused(self, key: Key, error: Exception) -> None:
@@ -80,8 +122,8 @@ class Figures(QObject):
             self.changed.emit()
 
     def figure(self, skeleton: Skeleton) -> MeshFigure | None:
-        """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick
-        figure.
+        """Return the figure for a skeleton: the project's character on the project's skeleton, else the
+        default body, or a stick figure.
 
         None while it is being made; `changed` is emitted when it is ready.
         """
@@ -90,12 +132,16 @@ class Figures(QObject):
         if key is not None and key != self._unreadable and skeleton == project.skeleton:
             # Until meshes are shown or hidden, the drawn figure stays.
             return self._skinned[1] if self._skinned is not None and self._skinned[0][:2] == key[:2] else None
-        if skeleton.fingerprint not in self._sticks:
-            self._sticks[skeleton.fingerprint] = None
+        if skeleton.fingerprint not in self._bodies:
+            self._bodies[skeleton.fingerprint] = None
+            footing, sticks = self.footing(skeleton, project), self.sticks
             self.jobs.start(
-                "figure", lambda _: _ready(figure_from_file(None, skeleton)), self._built, quick=True
+                "figure",
+                lambda _: (sticks, _ready(figure_from_file(None, skeleton, (), footing, sticks))),
+                self._built,
+                quick=True,
             )
-        return self._sticks[skeleton.fingerprint]
+        return self._bodies[skeleton.fingerprint]
 
     def of(self, shown: ShownPlayback) -> MeshFigure | None:
         """Return the figure for what is shown; for another project's character, that one's own. None while it
@@ -111,12 +157,13 @@ class Figures(QObject):
             return self.figure(skeleton)
         if key not in self._guests:
             self._guests[key] = None
+            footing, sticks = self.footing(skeleton, shown.project), self.sticks
 
             def work(_: object) -> tuple[Key, MeshFigure]:
                 try:
-                    return key, _ready(figure_from_file(Path(key[0]), skeleton, key[2]))
+                    return key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], footing, sticks))
                 except FileError:  # it moves in any case
-                    return key, _ready(figure_from_file(None, skeleton))
+                    return key, _ready(figure_from_file(None, skeleton, (), footing, sticks))
 
             self.jobs.start("character", work, self._came, quick=True)
         return self._guests[key]
@@ -140,8 +187,11 @@ class Figures(QObject):
 
         self.jobs.start("levels of detail", work, quick=True)
 
-    def _built(self, figure: MeshFigure) -> None:
-        self._sticks[figure.skeleton.fingerprint] = figure
+    def _built(self, result: tuple[bool, MeshFigure]) -> None:
+        sticks, figure = result
+        if sticks != self.sticks:  # the other kind was chosen in the meantime
+            return
+        self._bodies[figure.skeleton.fingerprint] = figure
         self._simplify(figure)
         self.changed.emit()
 
@@ -153,6 +203,5 @@ def _ready(figure: MeshFigure) -> MeshFigure:
     for batch in figure.mesh.batches:
         if batch.image is not None:
             decode_texture(batch.image)
-    _, rest = figure.skeleton.globals(figure.skeleton.rest)
-    figure.bounds(rest)
+    figure.bounds(figure.bound[1])
     return figure

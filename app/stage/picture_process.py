@@ -18,7 +18,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton
+from preview.default_body.footing import Footing
 
 SIZE, SCALE = 112, 2
 MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
@@ -40,6 +40,7 @@ class PictureOrder:
 
     `what` is "card", "bare", "large", "scrub", "moving" or "strip". `paper` is the colour behind the figure,
     sRGB 0..1, None for transparent. `character` is its file, `hidden` its meshes that are not drawn.
+    Where there is no mesh, `footing` says how the skeleton stands, and `sticks` draws a stick figure.
     """
 
     number: int
@@ -49,8 +50,11 @@ class PictureOrder:
     paper: tuple[float, float, float] | None
     character: Path | None
     hidden: tuple[str, ...] = ()
+    footing: Footing | None = None
+    sticks: bool = False
 
 
+_Drawn = tuple[str, "Path | None", tuple[str, ...], bool]  # skeleton, character, what is hidden, sticks
 _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 
 
@@ -91,17 +95,17 @@ def serve_pictures(orders: BinaryIO, results: BinaryIO) -> None:
         offscreen = Offscreen(SIZE * SCALE, SIZE * SCALE)
     except OpenGLError:
         return
-    figures: dict[tuple[str, Path | None, tuple[str, ...]], Any] = {}
-    drawn: Counter[tuple[str, Path | None, tuple[str, ...]]] = Counter()
+    figures: dict[_Drawn, Any] = {}
+    drawn: Counter[_Drawn] = Counter()
     with offscreen:
         while (order := waiting.get()[2]) is not None:
             pickle.dump(
                 (order.number, None), results
             )  # begun: the other side knows which one it was if this process ends
             results.flush()
-            key = (order.clip.skeleton.fingerprint, order.character, order.hidden)
+            key = (order.clip.skeleton.fingerprint, order.character, order.hidden, order.sticks)
             if key not in figures:
-                figures[key] = _figure(order.clip.skeleton, order.character, order.hidden)
+                figures[key] = _figure(order)
             drawn[key] += 1
             if drawn[key] == WORTH_LEVELS:
                 figures[key].simplify()
@@ -118,14 +122,15 @@ def _read(orders: BinaryIO, waiting: _Waiting) -> None:
         waiting.put((False, -math.inf, None))
 
 
-def _figure(skeleton: Skeleton, character: Path | None, hidden: tuple[str, ...]) -> Any:
+def _figure(order: PictureOrder) -> Any:
     from metagraph.errors import FileError
     from preview.character_file import figure_from_file
 
+    skeleton = order.clip.skeleton
     try:
-        return figure_from_file(character, skeleton, hidden)
+        return figure_from_file(order.character, skeleton, order.hidden, order.footing, order.sticks)
     except FileError:  # the preview reports it
-        return figure_from_file(None, skeleton)
+        return figure_from_file(None, skeleton, (), order.footing, order.sticks)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from PySide6.QtGui import QImage, QImageWriter, QPainter
 from app.stage.picture_process import LARGE, SCALE, SCRUB, SIZE, PictureOrder
 from metagraph.common.disk_cache import DiskCache, cache_folder
 
-DRAWN = 4  # raise this when pictures are drawn differently
+DRAWN = 5  # raise this when pictures are drawn differently
 MOST = 192 * 1024 * 1024  # bytes on disk
 KEPT = ("card", "bare", "large", "scrub")
 
@@ -36,7 +36,7 @@ def picture_key(order: PictureOrder) -> str:
         except OSError:
             character = (str(order.character), 0, 0)
     words = (DRAWN, order.what, order.theme, order.paper, SIZE, SCALE, LARGE, SCRUB, character, order.hidden)
-    out.update(repr(words).encode())
+    out.update(repr((words, order.sticks)).encode())
     out.update(repr((clip.skeleton.fingerprint, clip.fps, clip.translated, clip.morphs)).encode())
     for values in (clip.rotations, clip.translations, clip.weights):
         if values is not None:

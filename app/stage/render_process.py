@@ -33,8 +33,8 @@ class RenderOrder:
 
     `performance` is the id of a kept one, None to improvise. `conversation` is the id of one, then with all
     its sides. `size` is width and height in pixels. `light` and `background` are names from `preview.looks`.
-    `start` is the second at which it begins. `captions` shows words, and `cuts` uses a conversation's camera
-    cuts.
+    `start` is the second at which it begins. `captions` shows words, `cuts` uses a conversation's camera
+    cuts, and `sticks` draws a stick figure where a character has no mesh.
     """
 
     out: Path
@@ -49,6 +49,7 @@ class RenderOrder:
     start: float = 0.0
     captions: bool = False
     cuts: bool = True
+    sticks: bool = False
 
 
 def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: WindowJob) -> Path:
@@ -82,6 +83,8 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
         ]
         if not wanted.cuts:
             words.append("--no-cuts")
+        if wanted.sticks:
+            words.append("--sticks")
         if is_allowed():
             words.append("--network")
         if wanted.performance is not None:

@@ -28,7 +28,7 @@ class Stage(QObject):
     def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.session = StageSession(document, self)
-        self.figures = Figures(document, jobs, self)
+        self.figures = Figures(document, jobs, self.session.watch, self)
         self.performance = StagePerformance(document, self.session, jobs, self)
         self.playhead = Playhead(self.session, self.performance)
         self.thumbnails = Thumbnails(document, self.session, self.figures, self)

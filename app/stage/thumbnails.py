@@ -180,7 +180,18 @@ class Thumbnails(QObject):
         self._number += 1
         self._orders[self._number] = (key, motion)
         paper = (r, g, b) if key[1] == "card" else None
-        order = PictureOrder(self._number, motion, key[1], key[2], paper, character, project.hidden)
+        footing = self.figures.footing(motion.skeleton, project)
+        order = PictureOrder(
+            self._number,
+            motion,
+            key[1],
+            key[2],
+            paper,
+            character,
+            project.hidden,
+            footing,
+            self.figures.sticks,
+        )
         if key[1] in KEPT:
             self.kept.ask(order)
         else:

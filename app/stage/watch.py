@@ -36,6 +36,7 @@ SPACINGS = (0.05, 0.1, 0.2, 0.5)  # seconds
 class Watched:
     """What helps to watch the character.
 
+    `sticks` draws characters without a mesh as stick figures instead of the default body.
     `feet` shows which foot is held, steps or is lifted, and slides. `hands` shows which are kept in contact.
     `stance` shows a ghost in the stance underneath. `before` and `after` are the numbers of ghosts of other
     moments, `spacing` seconds apart. `light` and `background` are names from `preview.looks`.
@@ -50,6 +51,7 @@ class Watched:
     light: str = STUDIO
     background: str = STAGE
     panes: int = 1
+    sticks: bool = False
     sides: str = "front left face"
 
     def look(self, theme: str) -> SceneTheme:

@@ -399,7 +399,7 @@ def reset_markov(project: Project, layer: Layer) -> Project:
 
 
 def set_character(project: Project, path: str | None) -> Project:
-    """Draw another character, or a stick figure for None. Meshes hidden on the previous one are forgotten."""
+    """Draw another character, the default body for None. Meshes hidden on the one before are forgotten."""
     return replace(project, character=path, hidden=()) if path != project.character else project
 
 

@@ -403,7 +403,7 @@ class Project:
     """Everything that a project file holds.
 
     `roles` (role -> joint name) and `parts` (joint name -> body part) are corrections. `character` is the
-    path of the GLB to draw, relative to the project file, or None for a stick figure; `hidden` names its
+    path of the GLB to draw, relative to the project file, or None for the default body; `hidden` names its
     meshes that are not drawn. `points` are named places to look at, in metres. `lines` is the dialogue that
     an agent calls by id. `performances` and `conversations` are kept by id, and `timelines` holds their
     markers and other notes by the same ids. `tiers` says for each annotation tier what it was last read as.

@@ -35,7 +35,7 @@ PASSING = frozenset(
     _dialogs _era _guests _journal _known _last _layout _marks _matrices _missing _named _paths _places
     _drawn _waiting _colors _owns
     _held _listed _moved
-    _plan_seconds _played _read _rest _rows _skinned _sticks _still _voices _watched layout_of""".split()  # noqa: SIM905 - thirty quotes more to read
+    _plan_seconds _played _read _rest _rows _skinned _fitted _footings _still _voices _watched layout_of""".split()  # noqa: SIM905 - thirty quotes more to read
 )
 
 

@@ -271,3 +271,22 @@ def test_a_host_whose_mesh_came_with_another_skeleton_is_exported_as_it_is_drawn
     pose = idle.skeleton.globals(idle.pose_at(1.0))
     apart = np.linalg.norm(skinned(*drawn, *pose) - skinned(*exported, *pose), axis=1)
     assert len(apart) > 10_000 and apart.max() < 1e-3
+
+
+def test_bounds_are_those_of_the_mesh_where_the_projects_rest_pose_is_another():
+    """The project's rest pose is a clip's first frame: away from the middle, and bent."""
+    own = mannequin_skeleton()
+    turned = own.rest_rotations.copy()
+    for name, axis, angle in (("LeftUpperLeg", [1.0, 0, 0], -1.4), ("Spine", [1.0, 0, 0], 0.9)):
+        turned[own.index(name)] = rotation.from_axis_angle(np.array(axis), angle)
+    away = own.rest_translations.copy()
+    away[0] += [0, 0, 3.28]
+    project = Skeleton(own.names, own.parents, turned, away)
+    figure = SkinnedFigure(read_character(MANNEQUIN), project)
+    pose = own.globals(own.rest)  # what is shown stands in the middle
+    points = SkinnedFigure(read_character(MANNEQUIN)).mesh.vertices["position"]
+    for low, high in (figure.bounds(pose[1]), figure.posed_bounds(*pose)):
+        assert (low <= points.min(0) + 0.03).all() and (high >= points.max(0) - 0.03).all()
+        assert (high - low <= np.ptp(points, axis=0) + 0.25).all()
+    assert figure.head(*pose)[1] == pytest.approx(SkinnedFigure(read_character(MANNEQUIN)).head(*pose)[1])
+    assert figure.height == pytest.approx(SkinnedFigure(read_character(MANNEQUIN)).height)

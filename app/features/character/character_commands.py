@@ -60,8 +60,8 @@ class CharacterFeature(Feature):
 
         MeshesDialog(self.document, self.stage.figures, self.shell.widget).show()
 
-    def draw_stick_figure(self) -> None:
-        self.document.edit(tr("Draw a stick figure"), lambda p: edits.set_character(p, None))
+    def draw_default_body(self) -> None:
+        self.document.edit(tr("Draw the default body"), lambda p: edits.set_character(p, None))
 
     # --- transport
 
@@ -188,8 +188,8 @@ COMMANDS = (
         "no_character",
         FILE,
         "character",
-        tr_noop("Draw a stick figure"),
-        CharacterFeature.draw_stick_figure,
+        tr_noop("Draw the default body"),
+        CharacterFeature.draw_default_body,
         enabled=has_character,
     ),
     Command(

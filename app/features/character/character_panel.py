@@ -259,8 +259,10 @@ class PreviewPanel(QWidget):
             self._framed = framed
             aside = ASIDE if shown.others else 0.0
             self.view.camera = frame_whole_figure(
-                solid.bounds(), self.view.width() / max(1, self.view.height()), aside
+                solid.drawn_bounds(), self.view.width() / max(1, self.view.height()), aside
             )
+        elif self._last is not None:
+            self.looking.keep_in_picture(shown, self._last[0])
         self.directing.follow(shown, seconds)
         return scene
 
@@ -292,11 +294,11 @@ class PreviewPanel(QWidget):
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:
-        """Say over the view why a stick figure is drawn, where one is."""
+        """Say over the view why no mesh of a character is drawn, where none is."""
         figure = self._last[0] if self._last is not None else None
         empty = self.performance.document.project.skeleton is None
-        sticks = figure is not None and not empty and not isinstance(figure, SkinnedFigure)
-        self.no_mesh.tell(_why(figure.instead) if figure is not None and sticks else None)
+        bare = figure is not None and not empty and not isinstance(figure, SkinnedFigure)
+        self.no_mesh.tell(_why(figure.instead) if figure is not None and bare else None)
 
     def _words(self) -> str:
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
@@ -426,5 +428,5 @@ class PreviewPanel(QWidget):
 
 
 def _why(instead: str) -> str:
-    """Say why a stick figure is drawn."""
+    """Say why no mesh of a character is drawn."""
     return f"{instead[0].upper()}{instead[1:]}." if instead else ""

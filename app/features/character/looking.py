@@ -17,10 +17,12 @@ from app.look.theme import theme
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from metagraph.graph import anatomy
-from preview.camera import Camera
+from preview.camera import Camera, frame_whole_figure
 
 if TYPE_CHECKING:
     from app.stage.gl_view import GLView, ImageView
+    from app.stage.playback_source import ShownPlayback
+    from preview.figure import MeshFigure
 
 SIDES: dict[str, tuple[float, float]] = {  # yaw and pitch, degrees
     "front": (0.0, 5.0), "back": (180.0, 5.0), "left": (90.0, 5.0), "right": (-90.0, 5.0),
@@ -29,6 +31,8 @@ SIDES: dict[str, tuple[float, float]] = {  # yaw and pitch, degrees
 ROUND = 8.0  # seconds of a turn of the turntable
 TURN = 33  # milliseconds between its steps
 DARKEST = 0.35  # of its colour, a joint that hardly moves
+LOOKS = 24  # poses of a clip that are looked at to see whether it stays in the picture
+CUT = 0.03  # of the picture: what a box round a figure may reach beyond it before it is framed anew
 HANDS = 0.16  # metres round the hands that are in the picture
 
 
@@ -41,6 +45,7 @@ class Looking(QObject):
         super().__init__(panel.view)
         self.panel = panel
         self.trails = Trails(panel)
+        self._fitted: tuple[str | None, MeshFigure] | None = None  # what was last looked at whole
         self._turntable = QTimer(self, interval=TURN)
         self._turntable.timeout.connect(self._turn)
 
@@ -79,6 +84,24 @@ class Looking(QObject):
         roles = anatomy.project_roles(project)
         hands = [last[2][roles[role]] for role in ("left_hand", "right_hand") if role in roles]
         return (np.min(hands, axis=0) - HANDS, np.max(hands, axis=0) + HANDS) if hands else None
+
+    def keep_in_picture(self, shown: ShownPlayback, figure: MeshFigure) -> None:
+        """Step back where a clip that plays alone would leave the picture, once for each, unless the camera
+        was moved.
+        """
+        view, clip = self.panel.view, shown.clip
+        if self._fitted == (clip, figure) or view.moved_by_hand:
+            return
+        self._fitted = (clip, figure)
+        pose = shown.pose(np.linspace(0, shown.length, LOOKS)) if clip is not None else None
+        if pose is None or shown.skeleton is None or figure.skeleton != shown.skeleton:
+            return
+        low, high = figure.posed_bounds(*shown.skeleton.globals(pose))
+        aspect = view.width() / max(1, view.height())
+        corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), -1).reshape(-1, 3)
+        at = view.camera.project(corners, aspect)
+        if not ((at > -CUT) & (at < 1 + CUT)).all():
+            view.camera = frame_whole_figure((low, high), aspect)
 
     @property
     def flat(self) -> bool:

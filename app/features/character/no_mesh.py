@@ -1,5 +1,5 @@
-"""What stands over the preview while a stick figure is drawn: why that is, and a way to choose a
-character.
+"""What stands over the preview while the default body or a stick figure is drawn: why that is, and a way to
+choose a character.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class NoMesh(QFrame):
         self.hide()
 
     def tell(self, words: str | None) -> None:
-        """Show why a stick figure is drawn, "" where no character is chosen; hide for None."""
+        """Show why no mesh of a character is drawn, "" where no character is chosen; hide for None."""
         shown = words is not None and self._may()
         if words is not None and self.words.text() != words:
             self.words.setText(words)

@@ -100,8 +100,8 @@ class Pane:
         yaw, pitch = (math.radians(x) for x in ANGLES["front" if side == "hands" else side])
         camera = Camera().facing(yaw + looking.heading, pitch)
         if side == "hands":
-            return camera.frame(looking.hands() or solid.bounds(), aspect)
-        camera = camera.frame(solid.bounds(), aspect)
+            return camera.frame(looking.hands() or solid.drawn_bounds(), aspect)
+        camera = camera.frame(solid.drawn_bounds(), aspect)
         return camera if side == "quarter" else camera.flattened()
 
 

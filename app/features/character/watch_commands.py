@@ -26,7 +26,7 @@ SHOWN = (
     ("two_views", "four_views"),
     ("light", "background"),
     ("reference", "no_reference"),
-    ("meshes",),
+    ("meshes", "sticks"),
 )
 GHOSTS = 2  # before and after, where onion skin is turned on by its key
 AHEAD = 120.0  # seconds that are searched for a slide
@@ -64,6 +64,12 @@ class WatchFeature(Feature):
 
     def go_to_next_slide(self) -> None:
         go_to_next_slide(self.shell)
+
+    def toggle_sticks(self) -> None:
+        self.watch.set(sticks=not self.now.sticks)
+
+    def draws_sticks(self) -> bool:
+        return self.now.sticks
 
     def toggle_stance(self) -> None:
         self.watch.set(stance=not self.now.stance)
@@ -137,6 +143,16 @@ WATCH_COMMANDS = (
         tip=tr_noop(
             "Mark hands that are pinned: in place (square), on the way (diamond), out of reach (triangle)"
         ),
+        study=True,
+    ),
+    Command(
+        "sticks",
+        VIEW,
+        "watch",
+        tr_noop("Stic&k figure"),
+        WatchFeature.toggle_sticks,
+        checked=WatchFeature.draws_sticks,
+        tip=tr_noop("Draw characters without a mesh as a stick figure, not as the default body"),
         study=True,
     ),
     Command(

@@ -226,15 +226,15 @@ class ReviewStage(QWidget):
         rotations, positions = skeleton.globals(pose)
         if self._framed is not figure and not self.view.moved_by_hand:
             self._framed = figure
-            self._frame(figure, positions)
+            self._frame(figure, rotations, positions)
         elif not self.view.moved_by_hand:
             self._follow(positions[0, [0, 2]])
         morphs = figure.morph_weights(self.shown.morphs(self.seconds)) if figure.morphs else None
         return Scene((Actor(figure, rotations, positions, morphs, {}, False),))
 
-    def _frame(self, figure: MeshFigure, positions: np.ndarray) -> None:
+    def _frame(self, figure: MeshFigure, rotations: np.ndarray, positions: np.ndarray) -> None:
         aspect = self.view.width() / max(1, self.view.height())
-        low, high = figure.bounds(positions)
+        low, high = figure.posed_bounds(rotations, positions)
         room = np.array(
             [0.0, ABOVE * (high[1] - low[1]), 0.0]
         )  # what is written over the picture hides no face

@@ -208,6 +208,7 @@ class RenderDialog(QDialog):
             start,
             self.captions.isChecked(),
             self.cuts.isChecked(),
+            self.session.watch.now.sticks,
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

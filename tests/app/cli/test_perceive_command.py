@@ -231,7 +231,7 @@ def test_what_is_not_there_to_be_shown_is_named(
 
 
 @pytest.mark.gl
-def test_plain_motion_is_drawn_as_a_stick_figure_or_on_its_character(
+def test_plain_motion_is_drawn_on_the_default_body_or_on_its_character(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     sample = SAMPLE.parent / "clips" / "hands_at_sides__wave_hello_rt_01.glb"

@@ -666,7 +666,7 @@ def test_an_export_that_fails_says_why(toys, tmp_path):
     dialog.reject()
 
 
-def test_a_project_whose_character_is_missing_opens_as_a_stick_figure(drive, toy, folder, tmp_path):
+def test_a_project_whose_character_is_missing_opens_as_the_default_body(drive, toy, folder, tmp_path):
     drive.importing.import_paths([str(folder)])
     drive.wait(lambda: len(drive.document.project.clips) == 5)
     clips = list(drive.document.project.clips)

@@ -13,6 +13,7 @@ from app.stage.figures import Figures
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from metagraph.graph import edits
+from preview.default_body.figure import DefaultBody
 from preview.figure import SkinnedFigure, StickFigure
 
 MANNEQUIN = Path(__file__).resolve().parents[3] / "sample_clips" / "mannequin.glb"
@@ -32,13 +33,15 @@ def figures(document):
     jobs.stop()
 
 
-def test_a_skeleton_without_a_character_is_drawn_as_sticks_once_they_are_built(document, figures, toy, qtbot):
+def test_a_skeleton_without_a_character_is_drawn_as_the_default_body_once_it_is_built(
+    document, figures, toy, qtbot
+):
     document.load(toy.project(), None)
     told = []
     figures.changed.connect(lambda: told.append(True))
     assert figures.figure(toy.skeleton) is None, "the window does not wait"
     qtbot.waitUntil(lambda: figures.figure(toy.skeleton) is not None)
-    assert isinstance(figures.figure(toy.skeleton), StickFigure)
+    assert isinstance(figures.figure(toy.skeleton), DefaultBody)
     assert len(told) == 1
 
 
@@ -50,16 +53,29 @@ def test_the_projects_character_is_drawn_on_the_projects_skeleton_alone(
     assert isinstance(figures.figure(sample.skeleton), SkinnedFigure)
     figures.figure(toy.skeleton)
     qtbot.waitUntil(lambda: figures.figure(toy.skeleton) is not None)
-    assert isinstance(figures.figure(toy.skeleton), StickFigure)
-    document.edit("Draw a stick figure", lambda p: edits.set_character(p, None))
+    assert isinstance(figures.figure(toy.skeleton), DefaultBody)
+    document.edit("Draw the default body", lambda p: edits.set_character(p, None))
     figures.figure(sample.skeleton)
-    qtbot.waitUntil(lambda: isinstance(figures.figure(sample.skeleton), StickFigure))
+    qtbot.waitUntil(lambda: isinstance(figures.figure(sample.skeleton), DefaultBody))
     document.undo()
     qtbot.waitUntil(lambda: isinstance(figures.figure(sample.skeleton), SkinnedFigure))
 
 
+def test_the_choice_of_sticks_redraws_what_has_no_mesh(document, toy, qtbot):
+    session, jobs = StageSession(document), Jobs()
+    figures = Figures(document, jobs, session.watch)
+    document.load(toy.project(), None)
+    figures.figure(toy.skeleton)
+    qtbot.waitUntil(lambda: isinstance(figures.figure(toy.skeleton), DefaultBody))
+    session.watch.set(sticks=True)
+    qtbot.waitUntil(lambda: isinstance(figures.figure(toy.skeleton), StickFigure))
+    session.watch.set(sticks=False)
+    qtbot.waitUntil(lambda: isinstance(figures.figure(toy.skeleton), DefaultBody))
+    jobs.stop()
+
+
 @pytest.mark.parametrize("content", [None, b"", b"glTF\x02\x00\x00\x00"])
-def test_a_character_that_cannot_be_read_is_told_once_and_drawn_as_sticks(
+def test_a_character_that_cannot_be_read_is_told_once_and_the_default_body_is_drawn(
     document, figures, toy, tmp_path, qtbot, content
 ):
     path = tmp_path / "broken.glb"
@@ -69,7 +85,7 @@ def test_a_character_that_cannot_be_read_is_told_once_and_drawn_as_sticks(
     document.failed.connect(told.append)
     document.load(replace(toy.project(), character=str(path)), None)
     qtbot.waitUntil(lambda: figures.figure(toy.skeleton) is not None)
-    assert isinstance(figures.figure(toy.skeleton), StickFigure)
+    assert isinstance(figures.figure(toy.skeleton), DefaultBody)
     assert len(told) == 1
     assert "broken.glb" in told[0]
 

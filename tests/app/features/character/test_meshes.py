@@ -1,4 +1,4 @@
-"""Meshes of the character hidden and shown through the real window, and what stands over a stick figure."""
+"""Meshes of the character hidden and shown through the real window, and what stands over the default body."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from PySide6.QtTest import QTest
 
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.store import read_project
-from preview.figure import SkinnedFigure, StickFigure
+from preview.default_body.figure import DefaultBody
+from preview.figure import SkinnedFigure
 from tests.bodies import body
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -32,13 +33,13 @@ def shown(drive):
     return drive.shell.stage.figures.figure(skeleton) if skeleton is not None else None
 
 
-def test_a_stand_in_is_drawn_as_sticks_and_a_button_in_the_view_asks_for_a_character(
+def test_a_stand_in_is_drawn_as_the_default_body_and_a_button_in_the_view_asks_for_a_character(
     drive, scene, monkeypatch
 ):
     from app.features.character import character_choice
 
     drive.importing.import_paths([str(scene / "proxy.glb")])
-    drive.wait(lambda: isinstance(shown(drive), StickFigure))
+    drive.wait(lambda: isinstance(shown(drive), DefaultBody))
     over = drive.shell.panel("character").no_mesh
     drive.wait(lambda: over.isVisible() and over.height() >= over.button.height() > 10)
     assert over.parentWidget().rect().contains(over.geometry())
@@ -69,7 +70,7 @@ def test_a_mesh_is_hidden_by_a_click_saved_and_shown_again_by_undo(drive, scene)
     QTest.mouseClick(dialog.list.viewport(), Qt.MouseButton.LeftButton, pos=box)
     assert drive.document.project.hidden == (item.text(),)
     assert drive.document.undo_stack.undoText() == f"Hide '{item.text()}'"
-    drive.wait(lambda: isinstance(shown(drive), StickFigure))
+    drive.wait(lambda: isinstance(shown(drive), DefaultBody))
     assert shown(drive).instead.endswith("is hidden") and dialog.list.count() == 1, "it can be shown again"
     drive.document.save(scene / "p.metagraph.yaml")
     assert read_project(scene / "p.metagraph.yaml").hidden == (item.text(),)
