@@ -263,8 +263,8 @@ def _guarded(rig: ContactRig, pose: ContactPose, held: Sequence[float], across: 
         ends = capsule_ends(rig, pose)
         balls = _balls(rig, ends)
         found = False
-        first = whole if number == 0 else []
-        shifts = [_shift(rig, ends, balls, side, held, across, first) for side in range(len(rig.arms))]
+        first = number == 0
+        shifts = [_shift(rig, ends, balls, side, held, across, whole, first) for side in range(len(rig.arms))]
         for side, shift in enumerate(shifts):
             if length(shift) > 0.0:
                 hand = rig.arms[side].hand
@@ -313,9 +313,10 @@ def _shift(
     held: Sequence[float],
     across: float,
     whole: list[float],
+    first: bool,
 ) -> Vector:
     """Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for
-    each side how much of that is to be done, which the first pass finds; empty in later ones.
+    each side how much of that is to be done, which the first pass finds.
     """
     shift = (0.0, 0.0, 0.0)
     own = 1.0 - held[side]
@@ -348,7 +349,7 @@ def _shift(
             amount = depth - 0.5 * SOFT if depth > SOFT else depth * depth / (2.0 * SOFT)
             inner = min(1.0, gap / (DEEP * radii))
             inner = inner * inner * (3.0 - 2.0 * inner)
-            if len(whole) > 0:
+            if first:
                 whole[side] = min(whole[side], inner)
                 inner = 1.0
             amount = amount * share * inner

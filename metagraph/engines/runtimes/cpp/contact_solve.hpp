@@ -75,7 +75,8 @@ inline std::tuple<double, double, double> _shift(
     int side,
     const List<double>& held,
     double across,
-    List<double>& whole
+    List<double>& whole,
+    bool first
 );
 inline double _along(const List<std::tuple<double, double, double>>& ends, int i, int k);
 inline std::tuple<double, double, double, double> apart(
@@ -470,10 +471,10 @@ inline bool _guarded(
         List<std::tuple<double, double, double>> ends = contact_solve::capsule_ends(rig, pose);
         List<std::tuple<double, double, double, double>> balls = contact_solve::_balls(rig, ends);
         bool found = false;
-        List<double> first = number == 0 ? whole : List<double>{};
+        bool first = number == 0;
         List<std::tuple<double, double, double>> shifts;
         for (int side2 = 0; side2 < lang::len(rig->arms); side2++) {
-            shifts.push_back(contact_solve::_shift(rig, ends, balls, side2, held, across, first));
+            shifts.push_back(contact_solve::_shift(rig, ends, balls, side2, held, across, whole, first));
         }
         for (int side = 0; side < lang::len(shifts); side++) {
             const auto& shift = lang::at(shifts, side);
@@ -557,7 +558,7 @@ inline List<std::tuple<double, double, double, double>> _balls(
 }
 
 /// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how
-/// much of that is to be done, which the first pass finds; empty in later ones.
+/// much of that is to be done, which the first pass finds.
 inline std::tuple<double, double, double> _shift(
     const Ref<ContactRig>& rig,
     const List<std::tuple<double, double, double>>& ends,
@@ -565,7 +566,8 @@ inline std::tuple<double, double, double> _shift(
     int side,
     const List<double>& held,
     double across,
-    List<double>& whole
+    List<double>& whole,
+    bool first
 ) {
     std::tuple<double, double, double> shift = std::tuple<double, double, double>{0.0, 0.0, 0.0};
     double own = 1.0 - lang::at(held, side);
@@ -609,7 +611,7 @@ inline std::tuple<double, double, double> _shift(
                 : depth * depth / (2.0 * contact_solve::SOFT);
             double inner = std::min(1.0, gap / (contact_solve::DEEP * radii));
             inner = inner * inner * (3.0 - 2.0 * inner);
-            if (lang::len(whole) > 0) {
+            if (first) {
                 lang::at(whole, side) = std::min(lang::at(whole, side), inner);
                 inner = 1.0;
             }

@@ -351,8 +351,8 @@ function _guarded(rig, pose, held, across) {
     const ends = capsuleEnds(rig, pose);
     const balls = _balls(rig, ends);
     let found = false;
-    const first = number === 0 ? whole : [];
-    const shifts = range(rig.arms.length).map((side) => _shift(rig, ends, balls, side, held, across, first));
+    const first = number === 0;
+    const shifts = range(rig.arms.length).map((side) => _shift(rig, ends, balls, side, held, across, whole, first));
     for (const [side, shift] of shifts.entries()) {
       if (length(shift) > 0) {
         const hand = rig.arms[side].hand;
@@ -418,7 +418,7 @@ function _balls(rig, ends) {
 
 /**
  * Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how much
- * of that is to be done, which the first pass finds; empty in later ones.
+ * of that is to be done, which the first pass finds.
  * @param {ContactRig} rig
  * @param {[number, number, number][]} ends
  * @param {[number, number, number, number][]} balls
@@ -426,9 +426,10 @@ function _balls(rig, ends) {
  * @param {number[]} held
  * @param {number} across
  * @param {number[]} whole
+ * @param {boolean} first
  * @returns {[number, number, number]}
  */
-function _shift(rig, ends, balls, side, held, across, whole) {
+function _shift(rig, ends, balls, side, held, across, whole, first) {
   let shift = [0, 0, 0];
   const own = 1 - held[side];
   if (own <= 0) {
@@ -468,7 +469,7 @@ function _shift(rig, ends, balls, side, held, across, whole) {
       let amount = depth > SOFT ? depth - 0.5 * SOFT : depth * depth / (2 * SOFT);
       let inner = Math.min(1, gap / (DEEP * radii));
       inner = inner * inner * (3 - 2 * inner);
-      if (whole.length > 0) {
+      if (first) {
         whole[side] = Math.min(whole[side], inner);
         inner = 1;
       }

@@ -443,7 +443,7 @@ namespace Metagraph
                 var ends = CapsuleEnds(rig, pose);
                 var balls = Balls(rig, ends);
                 var found = false;
-                var first = number == 0 ? whole : new List<double>();
+                var first = number == 0;
                 var shifts = PlainNumbers.Range(rig.Arms.Count).Select(side => Shift(
                     rig,
                     ends,
@@ -451,6 +451,7 @@ namespace Metagraph
                     side,
                     held,
                     across,
+                    whole,
                     first
                 )).ToList();
                 foreach (var one in shifts.Select((item, n) => (n, item)))
@@ -536,7 +537,7 @@ namespace Metagraph
 
         /// <summary>
         /// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how
-        /// much of that is to be done, which the first pass finds; empty in later ones.
+        /// much of that is to be done, which the first pass finds.
         /// </summary>
         private static (double, double, double) Shift(
             ContactRig rig,
@@ -545,7 +546,8 @@ namespace Metagraph
             int side,
             List<double> held,
             double across,
-            List<double> whole
+            List<double> whole,
+            bool first
         )
         {
             var shift = (0.0, 0.0, 0.0);
@@ -611,7 +613,7 @@ namespace Metagraph
                     var amount = depth > Soft ? depth - 0.5 * Soft : depth * depth / (2.0 * Soft);
                     var inner = Math.Min(1.0, gap / (Deep * radii));
                     inner = inner * inner * (3.0 - 2.0 * inner);
-                    if (whole.Count > 0)
+                    if (first)
                     {
                         whole[side] = Math.Min(whole[side], inner);
                         inner = 1.0;

@@ -312,10 +312,10 @@ static func _guarded(rig, pose, held, across):
 		var ends = capsule_ends(rig, pose)
 		var balls = _balls(rig, ends)
 		var found = false
-		var first = whole if number == 0 else []
+		var first = number == 0
 		var shifts = []
 		for side2 in range(rig.arms.size()):
-			shifts.append(_shift(rig, ends, balls, side2, held, across, first))
+			shifts.append(_shift(rig, ends, balls, side2, held, across, whole, first))
 		for side in range(shifts.size()):
 			var shift = shifts[side]
 			if PlainVectors.length(shift) > 0.0:
@@ -372,8 +372,8 @@ static func _balls(rig, ends):
 
 
 # Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how much of that
-# is to be done, which the first pass finds; empty in later ones.
-static func _shift(rig, ends, balls, side, held, across, whole):
+# is to be done, which the first pass finds.
+static func _shift(rig, ends, balls, side, held, across, whole, first):
 	var shift = [0.0, 0.0, 0.0]
 	var own = 1.0 - held[side]
 	if own <= 0.0:
@@ -418,7 +418,7 @@ static func _shift(rig, ends, balls, side, held, across, whole):
 			var amount = depth - 0.5 * SOFT if depth > SOFT else depth * depth / (2.0 * SOFT)
 			var inner = Util.least(1.0, gap / (DEEP * radii))
 			inner = inner * inner * (3.0 - 2.0 * inner)
-			if whole.size() > 0:
+			if first:
 				whole[side] = Util.least(whole[side], inner)
 				inner = 1.0
 			amount = amount * share * inner
