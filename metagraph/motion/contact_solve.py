@@ -31,7 +31,7 @@ REACHED = 0.995  # of an arm's length: it does not snap straight
 FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 SOFT = 0.006  # metres of depth over which the push out of the body sets in
-DEEP = 0.85  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+DEEP = 1.0  # of the radii: nearer than this to a capsule's line it is not pushed all the way
 EVEN = 0.05  # how much the middle counts where lines are side by side
 STRAIGHT = (0.31, 0.52, 0.8)  # where a straight arm bends to: no side in particular, but always one
 ELBOW = 0.3  # how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -148,12 +148,13 @@ def solve_contacts(rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal]
             if held[side] > 0.0:
                 _hold(rig, pose, goals, side, wrists[side], hands[side])
                 moved = True
+    kept = [pose.at[arm.hand] for arm in rig.arms]
     if rig.guard and _guarded(rig, pose, held, across):
         moved = True
         for side in range(len(rig.arms)):
             if across > 0.0 and held[side] > 0.0:
-                hand = rig.arms[side].hand
-                _hold(rig, pose, goals, side, pose.at[hand], pose.turned[hand])
+                pushed = minus(pose.at[rig.arms[side].hand], kept[side])
+                _hold(rig, pose, goals, side, plus(wrists[side], pushed), hands[side])
     return moved
 
 

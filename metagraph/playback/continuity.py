@@ -8,7 +8,7 @@ besides is added. Blends are measured against how fast the clips themselves go.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion import rotation
-from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.evaluator import Evaluator
+from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import playable
 
@@ -49,6 +48,15 @@ class AddedMoves:
         """By how much each move breaks the law, `[N-1, J]`: times what is allowed; above 1 it does."""
         return np.maximum(self.ways / MOST_WAY, self.turns / MOST_TURN)
 
+    def worst(self, joints: Sequence[int]) -> Array:
+        """Return of each pose, for the joint that breaks the law most, way, turn, by how much, and which of
+        `joints` it is: `[4, N-1]`.
+        """
+        breaks = self.breaks
+        rows, most = np.arange(len(breaks)), breaks.argmax(1)
+        found = [x[rows, most] for x in (self.ways, self.turns, breaks)]
+        return np.stack([*found, np.asarray(joints)[most]])
+
 
 class ContinuityLaw:
     """Says what the stages of a project's evaluators add. joints: those it looks at: all but the face's."""
@@ -62,26 +70,28 @@ class ContinuityLaw:
         self._size = max(1e-6, project.skeleton.height / TALL)
         self._usual = usual_moves(project, self.joints)
 
-    def added(self, evaluator: Evaluator, times: Array) -> Mapping[str, AddedMoves]:
-        """Return what each stage adds at `times [N]`, which are a sixtieth of a second apart, by its name."""
+    def added(self, plan: Plan, times: Array, stages: Iterable[tuple[str, Pose]]) -> Mapping[str, AddedMoves]:
+        """Return what each stage adds, by its name. times `[N]`: a sixtieth of a second apart. stages: the
+        poses of `plan` then, as `Evaluator.stages` yields them.
+        """
         out: dict[str, AddedMoves] = {}
         before: Globals | None = None
-        pose = None
-        for name, shown in evaluator.stages(times):
-            if before is None or pose is None:
-                before, pose = self._globals(shown), shown
-                out[name] = self._blends(evaluator.plan, times, before)
-                continue
-            if shown is pose:
+        pose: Pose | None = None
+        for name, shown in stages:
+            if before is None:
+                before = self._globals(shown)
+                out[name] = self._blends(plan, times, before)
+            elif shown is pose:
                 nothing = np.zeros((max(0, len(times) - 1), len(self.joints)))
                 out[name] = AddedMoves(nothing, nothing)
-                continue
-            after = self._globals(shown)
-            out[name] = added_moves(before, after, self._size)
-            before, pose = after, shown
+            else:
+                after = self._globals(shown)
+                out[name] = added_moves(before, after, self._size)
+                before = after
+            pose = shown
         return out
 
-    def _globals(self, pose: Any) -> Globals:
+    def _globals(self, pose: Pose) -> Globals:
         turned, at = self.skeleton.globals(pose)
         return turned[:, self.joints].astype(np.float64), at[:, self.joints].astype(np.float64)
 

@@ -24,7 +24,7 @@ inline constexpr double FOLDED = 0.906; // cosine of the least angle inside an e
 // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 inline constexpr double WRIST = 0.819;
 inline constexpr double SOFT = 0.006; // metres of depth over which the push out of the body sets in
-inline constexpr double DEEP = 0.85; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+inline constexpr double DEEP = 1.0; // of the radii: nearer than this to a capsule's line it is not pushed all the way
 inline constexpr double EVEN = 0.05; // how much the middle counts where lines are side by side
 // where a straight arm bends to: no side in particular, but always one
 inline const std::tuple<double, double, double> STRAIGHT = std::tuple<double, double, double>{0.31, 0.52, 0.8};
@@ -253,12 +253,26 @@ inline bool solve_contacts(const Ref<ContactRig>& rig, const Ref<ContactPose>& p
             }
         }
     }
+    List<std::tuple<double, double, double>> kept;
+    for (const auto& arm : rig->arms) {
+        kept.push_back(lang::at(pose->at, arm->hand));
+    }
     if (rig->guard && contact_solve::_guarded(rig, pose, held, across)) {
         moved = true;
         for (int side = 0; side < lang::len(rig->arms); side++) {
             if (across > 0.0 && lang::at(held, side) > 0.0) {
-                int hand = lang::at(rig->arms, side)->hand;
-                contact_solve::_hold(rig, pose, goals, side, lang::at(pose->at, hand), lang::at(pose->turned, hand));
+                std::tuple<double, double, double> pushed = plain_vectors::minus(
+                    lang::at(pose->at, lang::at(rig->arms, side)->hand),
+                    lang::at(kept, side)
+                );
+                contact_solve::_hold(
+                    rig,
+                    pose,
+                    goals,
+                    side,
+                    plain_vectors::plus(lang::at(wrists, side), pushed),
+                    lang::at(hands, side)
+                );
             }
         }
     }

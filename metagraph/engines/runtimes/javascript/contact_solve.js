@@ -14,7 +14,7 @@ export const REACHED = 0.995; // of an arm's length: it does not snap straight
 export const FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 degrees
 export const WRIST = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 export const SOFT = 0.006; // metres of depth over which the push out of the body sets in
-export const DEEP = 0.85; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+export const DEEP = 1; // of the radii: nearer than this to a capsule's line it is not pushed all the way
 export const EVEN = 0.05; // how much the middle counts where lines are side by side
 export const STRAIGHT = [0.31, 0.52, 0.8]; // where a straight arm bends to: no side in particular, but always one
 export const ELBOW = 0.3; // how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -172,12 +172,13 @@ export function solveContacts(rig, pose, goals) {
       }
     }
   }
+  const kept = rig.arms.map((arm) => pose.at[arm.hand]);
   if (rig.guard && _guarded(rig, pose, held, across)) {
     moved = true;
     for (let side = 0; side < rig.arms.length; side++) {
       if (across > 0 && held[side] > 0) {
-        const hand = rig.arms[side].hand;
-        _hold(rig, pose, goals, side, pose.at[hand], pose.turned[hand]);
+        const pushed = minus(pose.at[rig.arms[side].hand], kept[side]);
+        _hold(rig, pose, goals, side, plus(wrists[side], pushed), hands[side]);
       }
     }
   }

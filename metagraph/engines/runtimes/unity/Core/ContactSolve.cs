@@ -147,7 +147,7 @@ namespace Metagraph
         public const double Folded = 0.906; // cosine of the least angle inside an elbow, 25 degrees
         public const double Wrist = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
         public const double Soft = 0.006; // metres of depth over which the push out of the body sets in
-        public const double Deep = 0.85; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+        public const double Deep = 1.0; // of the radii: nearer than this to a capsule's line it is not pushed all the way
         public const double Even = 0.05; // how much the middle counts where lines are side by side
         // where a straight arm bends to: no side in particular, but always one
         public static readonly (double, double, double) Straight = (0.31, 0.52, 0.8);
@@ -225,6 +225,7 @@ namespace Metagraph
                     }
                 }
             }
+            var kept = rig.Arms.Select(arm => pose.At[arm.Hand]).ToList();
             if (rig.Guard && Guarded(rig, pose, held, across))
             {
                 moved = true;
@@ -232,8 +233,8 @@ namespace Metagraph
                 {
                     if (across > 0.0 && held[side] > 0.0)
                     {
-                        var hand = rig.Arms[side].Hand;
-                        Hold(rig, pose, goals, side, pose.At[hand], pose.Turned[hand]);
+                        var pushed = PlainVectorsRules.Minus(pose.At[rig.Arms[side].Hand], kept[side]);
+                        Hold(rig, pose, goals, side, PlainVectorsRules.Plus(wrists[side], pushed), hands[side]);
                     }
                 }
             }

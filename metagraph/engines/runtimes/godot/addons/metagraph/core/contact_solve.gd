@@ -11,7 +11,7 @@ const REACHED = 0.995  # of an arm's length: it does not snap straight
 const FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 const WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 const SOFT = 0.006  # metres of depth over which the push out of the body sets in
-const DEEP = 0.85  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+const DEEP = 1.0  # of the radii: nearer than this to a capsule's line it is not pushed all the way
 const EVEN = 0.05  # how much the middle counts where lines are side by side
 const STRAIGHT = [0.31, 0.52, 0.8]  # where a straight arm bends to: no side in particular, but always one
 const ELBOW = 0.3  # how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -156,12 +156,15 @@ static func solve_contacts(rig, pose, goals):
 			if held[side] > 0.0:
 				_hold(rig, pose, goals, side, wrists[side], hands[side])
 				moved = true
+	var kept = []
+	for arm in rig.arms:
+		kept.append(pose.at[arm.hand])
 	if rig.guard and _guarded(rig, pose, held, across):
 		moved = true
 		for side in range(rig.arms.size()):
 			if across > 0.0 and held[side] > 0.0:
-				var hand = rig.arms[side].hand
-				_hold(rig, pose, goals, side, pose.at[hand], pose.turned[hand])
+				var pushed = PlainVectors.minus(pose.at[rig.arms[side].hand], kept[side])
+				_hold(rig, pose, goals, side, PlainVectors.plus(wrists[side], pushed), hands[side])
 	return moved
 
 
