@@ -31,9 +31,10 @@ REACHED = 0.995  # of an arm's length: it does not snap straight
 FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 SOFT = 0.006  # metres of depth over which the push out of the body sets in
-DEEP = 0.35  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+DEEP = 1.0  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+EVEN = 0.05  # how much the middle counts where lines are side by side
 STRAIGHT = (0.31, 0.52, 0.8)  # where a straight arm bends to: no side in particular, but always one
-ELBOW = 0.1  # how little a forearm is pushed near its elbow, which a wrist cannot move
+ELBOW = 0.3  # how little a forearm is pushed near its elbow, which a wrist cannot move
 PASSES = 3  # of the guard
 OBSTACLE = 0  # what a capsule is to the guard: others are pushed out of it
 FOREARM = 1  # pushed out, from the elbow to the wrist
@@ -147,11 +148,13 @@ def solve_contacts(rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal]
             if held[side] > 0.0:
                 _hold(rig, pose, goals, side, wrists[side], hands[side])
                 moved = True
+    kept = [pose.at[arm.hand] for arm in rig.arms]
     if rig.guard and _guarded(rig, pose, held, across):
         moved = True
         for side in range(len(rig.arms)):
             if across > 0.0 and held[side] > 0.0:
-                _hold(rig, pose, goals, side, wrists[side], hands[side])
+                pushed = minus(pose.at[rig.arms[side].hand], kept[side])
+                _hold(rig, pose, goals, side, plus(wrists[side], pushed), hands[side])
     return moved
 
 
@@ -250,23 +253,35 @@ def _above(rig: ContactRig, pose: ContactPose, place: int) -> Quaternion:
 def _guarded(rig: ContactRig, pose: ContactPose, held: Sequence[float], across: float) -> bool:
     """Push forearms and hands out of what they are inside of, by the least shift of the wrists; return
     whether any was. held: how much each hand is kept somewhere, and so is not pushed.
+
+    An arm that goes through something is pushed out to one side before its middle and to the other after:
+    towards the middle it is pushed ever less, so that it does not jump.
     """
+    local, turned, at = list(pose.local), list(pose.turned), list(pose.at)
+    whole = [1.0, 1.0]
     moved = False
-    passes = PASSES
-    while passes > 0:
-        passes -= 1
+    for number in range(PASSES):
         ends = capsule_ends(rig, pose)
         balls = _balls(rig, ends)
-        shifts = [_shift(rig, ends, balls, side, held, across) for side in range(len(rig.arms))]
         found = False
+        first = number == 0
+        shifts = [_shift(rig, ends, balls, side, held, across, whole, first) for side in range(len(rig.arms))]
         for side, shift in enumerate(shifts):
             if length(shift) > 0.0:
                 hand = rig.arms[side].hand
                 bring(rig, pose, side, plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
                 found = True
         if not found:
-            return moved
+            break
         moved = True
+    if moved and min(whole[0], whole[1]) < 1.0:
+        goals = [pose.at[arm.hand] for arm in rig.arms]
+        pose.local, pose.turned, pose.at = local, turned, at
+        for side, arm in enumerate(rig.arms):
+            way = minus(goals[side], pose.at[arm.hand])
+            if length(way) > 0.0:
+                goal = plus(pose.at[arm.hand], scaled(way, whole[side]))
+                bring(rig, pose, side, goal, pose.turned[arm.hand], STRAIGHT)
     return moved
 
 
@@ -298,8 +313,12 @@ def _shift(
     side: int,
     held: Sequence[float],
     across: float,
+    whole: list[float],
+    first: bool,
 ) -> Vector:
-    """Return by what a wrist has to move, so that its arm is out of all else, or nearer to that."""
+    """Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for
+    each side how much of that is to be done, which the first pass finds.
+    """
     shift = (0.0, 0.0, 0.0)
     own = 1.0 - held[side]
     if own <= 0.0:
@@ -323,15 +342,19 @@ def _shift(
                     share = share * (1.0 - 0.5 * (1.0 - held[other.arm]))
             if share <= 0.0:
                 continue
-            x, y, z, s, gap = apart(ends, 2 * i, 2 * k)
+            x, y, z, gap = apart(ends, 2 * i, 2 * k)
             radii = mine.radius + other.radius
             if gap >= radii or gap < 1e-9:
                 continue
             depth = radii - gap
             amount = depth - 0.5 * SOFT if depth > SOFT else depth * depth / (2.0 * SOFT)
             inner = min(1.0, gap / (DEEP * radii))
-            amount = amount * share * inner * inner * (3.0 - 2.0 * inner)
-            part = s if mine.kind == FOREARM else 1.0
+            inner = inner * inner * (3.0 - 2.0 * inner)
+            if first:
+                whole[side] = min(whole[side], inner)
+                inner = 1.0
+            amount = amount * share * inner
+            part = _along(ends, 2 * i, 2 * k) if mine.kind == FOREARM else 1.0
             way = (x / gap, y / gap, z / gap)
             left = amount - part * dot(way, shift)
             if left > 0.0:
@@ -339,10 +362,27 @@ def _shift(
     return shift
 
 
-def apart(ends: Sequence[Vector], i: int, k: int) -> tuple[float, float, float, float, float]:
-    """Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the
-    latter it ends, 0..1, and its length.
+def _along(ends: Sequence[Vector], i: int, k: int) -> float:
+    """Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends,
+    0..1. Of lines side by side, where it may end anywhere, the middle counts more the less they cross.
     """
+    a, c = ends[i], ends[k]
+    u, v, w = minus(ends[i + 1], a), minus(ends[k + 1], c), minus(a, c)
+    uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
+    if uu <= 1e-12:
+        return 0.0
+    stiff, middle = (1.0 + EVEN) * uu, 0.5 * EVEN * uu - uw
+    if vv <= 1e-12:
+        return min(max(middle / stiff, 0.0), 1.0)
+    s = min(max((vv * middle + uv * vw) / (stiff * vv - uv * uv), 0.0), 1.0)
+    t = (uv * s + vw) / vv
+    if t < 0.0 or t > 1.0:
+        s = min(max((uv * min(max(t, 0.0), 1.0) + middle) / stiff, 0.0), 1.0)
+    return s
+
+
+def apart(ends: Sequence[Vector], i: int, k: int) -> Quaternion:
+    """Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length."""
     a, c = ends[i], ends[k]
     u, v, w = minus(ends[i + 1], a), minus(ends[k + 1], c), minus(a, c)
     uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
@@ -361,4 +401,4 @@ def apart(ends: Sequence[Vector], i: int, k: int) -> tuple[float, float, float, 
     elif vv > 1e-12:
         t = min(max(vw / vv, 0.0), 1.0)
     x, y, z = minus(plus(w, scaled(u, s)), scaled(v, t))
-    return x, y, z, s, sqrt(x * x + y * y + z * z)
+    return x, y, z, sqrt(x * x + y * y + z * z)

@@ -14,6 +14,7 @@ from metagraph.motion.plain_vectors import Quaternion, Vector
 HANDS: tuple[str, ...] = ("left", "right")
 PLACES: tuple[str, ...] = ("palm", "fingertips", "back", "wrist")
 EASE = 0.15  # seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+SETTLES = 0.3  # seconds it takes at least where the contact lasts: what it touches may be far from its place
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +53,13 @@ def contact_weight(span: ContactSpan, seconds: float, first: float, last: float)
     if seconds < span.start or seconds > span.end:
         return 0.0
     shown = 1.0
-    if span.start > first and span.ease_in > 0.0:
-        shown = min(shown, (seconds - span.start) / span.ease_in)
-    if span.end < last and span.ease_out > 0.0:
-        shown = min(shown, (span.end - seconds) / span.ease_out)
+    comes = span.start > first and span.ease_in > 0.0
+    goes = span.end < last and span.ease_out > 0.0
+    least = min(SETTLES, (span.end - span.start) / (2.0 if comes and goes else 1.0))
+    if comes:
+        shown = min(shown, (seconds - span.start) / max(span.ease_in, least))
+    if goes:
+        shown = min(shown, (span.end - seconds) / max(span.ease_out, least))
     return shown * shown * (3.0 - 2.0 * shown)
 
 

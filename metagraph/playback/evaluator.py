@@ -6,7 +6,7 @@ pose goes through the stages in this order: layers, weight and feet, life, conta
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,6 +24,7 @@ from metagraph.playback.posing.rigs import Rigs, rigs_of
 from metagraph.playback.posing.weight import WeightStage
 
 Array = NDArray[Any]
+BLENDS, WEIGHT, LIFE, CONTACTS = STAGES = ("blends", "feet and weight", "life", "contacts")
 
 
 class Poses(Protocol):
@@ -74,6 +75,20 @@ class Evaluator:
         pose = self._contacts.run(pose, times, shown)
         shape = (*at.shape, len(self.rigs.composer.ground.skeleton))
         return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+    def stages(self, times: Array) -> Iterator[tuple[str, Pose]]:
+        """Yield the poses `[N, J]` at `times [N]` as each of STAGES leaves them; the last are those of `at`.
+        A stage that adds nothing leaves the same pose.
+        """
+        pose = self.layered(times)
+        yield BLENDS, pose
+        if self._lives:
+            pose = self._weight.run(pose, times)
+        yield WEIGHT, pose
+        if self._lives:
+            pose = self._life.run(pose, times)
+        yield LIFE, pose
+        yield CONTACTS, self._contacts.run(pose, times)
 
     def follow(self, plan: Plan, project: Project) -> Evaluator:
         """Return the evaluator of a plan: this one for the same plan and project, else a new one."""

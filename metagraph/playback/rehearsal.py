@@ -21,8 +21,9 @@ from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
 from metagraph.motion.in_place import travel_of
-from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.evaluator import Evaluator
+from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.continuity import ContinuityLaw
+from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.running_plan import plan_performance
@@ -49,6 +50,19 @@ LONG = 0.5  # seconds that a foot is under the floor, or an arm within the body,
 LASTING = 0.1  # of the time, from which on a figure off the floor is an error
 PARTS = ("left_hand", "right_hand", "head", "hips", "left_foot", "right_foot")
 _LAYER_OF: dict[str, Layer] = {"left_hand": "arms", "right_hand": "arms", "head": "head"}
+_ADDED = {  # by stage: what it is called, whose causes are looked at, what helps
+    WEIGHT: (
+        phrase("planted feet and weight"),
+        "hips",
+        phrase("Turn *Planted feet* and *Follow-through* down under Life."),
+    ),
+    LIFE: (phrase("gaze, breath and posture"), "head", phrase("Turn *Gaze* down under Life.")),
+    CONTACTS: (
+        phrase("contacts and the guard"),
+        "left_hand",
+        phrase("Turn off keeping hands out of the body under Life, or skip the gesture in this stance."),
+    ),
+}
 _NAMES = {
     "left_hand": phrase("the left hand"),
     "right_hand": phrase("the right hand"),
@@ -63,6 +77,7 @@ _NAMES = {
 class PlayedPoses:
     """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
     `[F]`: how high the lowest joint of the body is. inside `[F]`: how deep an arm is within the body, metres.
+    added: what each stage adds up to each frame, as `AddedMoves.worst`.
     """
 
     times: Array
@@ -70,6 +85,7 @@ class PlayedPoses:
     places: Array
     lowest: Array
     inside: Array
+    added: Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -162,8 +178,16 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     evaluator = Evaluator(plan, project)
     times = np.arange(round(seconds * RATE)) / RATE
     places, lowest, inside = [], [], []
+    law = ContinuityLaw(project)
+    added: dict[str, list[Array]] = {name: [] for name in _ADDED}
     for some in np.array_split(times, _chunks(seconds)):
-        pose = evaluator.at(some)
+        more = np.append(some[:1] - 1 / RATE, some)
+        stages = list(evaluator.stages(more))
+        moves = law.added(plan, more, stages)
+        for name, rows in added.items():
+            rows.append(moves[name].worst(law.joints))
+        last = stages[-1][1]
+        pose = Pose(last.rotations[1:], last.translations[1:])
         _, at = skeleton.globals(pose)
         places.append(at[:, joints].astype(np.float64))
         lowest.append(at[:, body, 1].min(1))
@@ -174,7 +198,9 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         )
         if step():
             return None
-    return PlayedPoses(times, parts, *(np.concatenate(rows) for rows in (places, lowest, inside)))
+    worst = {name: np.concatenate(rows, 1) for name, rows in added.items()}
+    found = [np.concatenate(rows) for rows in (places, lowest, inside)]
+    return PlayedPoses(times, parts, found[0], found[1], found[2], worst)
 
 
 def body_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> list[int]:
@@ -223,7 +249,8 @@ class _Findings:
         self.speeds, self.changes = limits
 
     def problems(self) -> list[Problem]:
-        found = [*self._jumps(), *self._fast(), *self._glides(), *self._floor(), *self._arms_inside()]
+        found = [*self._jumps(), *self._added(), *self._fast(), *self._glides()]
+        found += [*self._floor(), *self._arms_inside()]
         return [*found, *self._never_seen()] if self.free else found
 
     def _cause(self, layer: Layer, time: float) -> _Cause:
@@ -320,6 +347,26 @@ class _Findings:
                     else phrase("Look at the clip there: trim it, or smooth it in the program it is from.")
                 )
                 yield self._problem("play-jump", words, remedy, frame + 1, cause)
+
+    def _added(self) -> Iterator[Problem]:
+        """Yield where what is added to clips breaks the law of continuity."""
+        skeleton = self.project.skeleton
+        assert skeleton is not None
+        for name, (ways, turns, breaks, joints) in self.seen.added.items():
+            what, part, remedy = _ADDED[name]
+            frame = int(np.argmax(breaks))
+            if breaks[frame] <= 1:
+                continue
+            words = phrase(
+                "{what} move '{joint}' {length:.0f} cm and {angle:.0f} degrees in a sixtieth of a second "
+                "beyond what the clips do",
+                what=what,
+                joint=skeleton.names[int(joints[frame])],
+                length=100 * float(ways[frame]),
+                angle=float(np.degrees(turns[frame])),
+            )
+            cause = self._likely_cause(part, float(self.seen.times[frame]))
+            yield self._problem("play-added", words, remedy, frame, cause)
 
     def _fast(self) -> Iterator[Problem]:
         speeds = np.linalg.norm(np.diff(self.seen.places, axis=0), axis=-1) * RATE

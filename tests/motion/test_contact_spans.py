@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 
 from metagraph.motion.contact_spans import ContactKey, ContactSpan, contact_key, contact_weight
@@ -12,8 +14,16 @@ SPAN = ContactSpan(
 
 
 def test_a_hand_comes_and_goes_within_the_span() -> None:
-    weights = [contact_weight(SPAN, t, 0.0, 4.0) for t in (0.9, 1.0, 1.25, 1.5, 2.8, 2.9, 3.0, 3.1)]
+    weights = [contact_weight(SPAN, t, 0.0, 4.0) for t in (0.9, 1.0, 1.25, 1.5, 2.7, 2.85, 3.0, 3.1)]
     assert weights == pytest.approx([0, 0, 0.5, 1, 1, 0.5, 0, 0])
+
+
+def test_a_hand_takes_the_time_that_a_short_contact_leaves_it() -> None:
+    short = replace(SPAN, start=1.0, end=1.4, ease_in=0.1, ease_out=0.1)
+    assert contact_weight(short, 1.1, 0.0, 4.0) == pytest.approx(0.5)  # 0.2 s each way
+    assert contact_weight(short, 1.2, 0.0, 4.0) == 1
+    assert contact_weight(short, 1.15, 0.0, 1.4) == pytest.approx(0.5)  # 0.3 s, it stays to the end
+    assert contact_weight(replace(short, ease_in=0.0), 1.0, 0.0, 1.4) == 1
 
 
 def test_a_hand_that_is_there_from_the_beginning_or_to_the_end_does_not_come_or_go() -> None:

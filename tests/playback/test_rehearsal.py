@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
+from metagraph.playback import continuity
 from metagraph.playback.rehearsal import LEAST_MINUTES, body_joints, rehearse
 
 SECONDS = 40.0
@@ -133,3 +135,14 @@ def test_progress_is_told_and_a_cancelled_rehearsal_ends(sound: Project) -> None
     rehearse(sound, SECONDS, lambda done, of: told.append((done, of)))
     assert [done for done, _ in told] == list(range(1, told[0][1] + 1)) and told[-1][0] == told[-1][1]
     assert rehearse(changed(sound, lifted(1.0)), SECONDS, cancelled=lambda: True) == []
+
+
+def test_what_is_added_to_clips_is_reported_where_it_breaks_the_law_of_continuity(
+    sound: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(continuity, "MOST_TURN", 1e-5)
+    alive = replace(sound, life=Life())
+    assert not [p for p in rehearse(sound, SECONDS) if p.code == "play-added"]
+    found = [p for p in rehearse(alive, SECONDS) if p.code == "play-added"]
+    assert found and all("beyond what the clips do" in p.message for p in found)
+    assert any("gaze" in p.message and "Gaze" in p.remedy and p.moment is not None for p in found)

@@ -9,7 +9,7 @@ from math import atan2, copysign, cos, hypot, pi, radians, sin, sqrt, tanh
 from typing import NamedTuple
 
 from metagraph.playback.life.body import Body, Quaternion, Vector
-from metagraph.playback.life.gaze import Moves
+from metagraph.playback.life.gaze import Moves, ease_gaze
 
 # The head's part of a turn: next to none of a small one (`SMALL`), then more; all that is beyond what eyes do
 # with ease.
@@ -25,6 +25,9 @@ LOOK_SIDEWAYS, LOOK_UPRIGHT = (
     radians(110.0),
     radians(65.0),
 )  # beyond these nobody looks, however much the target is behind
+# What is behind is looked at ever less, so that nothing turns from one side to the other in a moment.
+LOOK_BEHIND, TURN_BEHIND, EYES_BEHIND = radians(120.0), radians(85.0), radians(100.0)
+TURNED_BACK = radians(95.0)  # the farthest that a body counts as turned away
 NEAREST = 0.25  # metres; nearer things are looked at as if they were there
 WIDEST = -0.8  # how far lids open beyond rest, of their shutting turn
 
@@ -147,7 +150,7 @@ def look(
         away = _minus(aim.at, eye)
         x, y, z = _dot(body.left, away), _dot(body.up, away), _dot(body.ahead, away)
         level = hypot(x, z)
-        sideways = _within(atan2(x, z), LOOK_SIDEWAYS)
+        sideways = _turning(atan2(x, z), LOOK_SIDEWAYS, LOOK_BEHIND)
         upwards = _within(atan2(y, level), LOOK_UPRIGHT)
         weight = aim.amount * amount * (1.0 if aim.asked else calm)
         eyes_x, eyes_y, near = (
@@ -183,7 +186,7 @@ def look(
         away = _minus(inside, side.at)
         x, y = _dot(side.left, away), _dot(side.up, away)
         across = hypot(x, y)
-        angle = atan2(across, _dot(side.ahead, away)) / max(across, 1e-12) * whole
+        angle = _turning(atan2(across, _dot(side.ahead, away)), pi, EYES_BEHIND) / max(across, 1e-12) * whole
         rest = 1 - whole
         out.append(limit_eye_turn(x * angle + gaze.eyes[0] * rest, y * angle + gaze.eyes[1] * rest))
     return turns, out
@@ -215,9 +218,18 @@ def _head(
 
 
 def _gap(body: Body, left: float, facing: Vector) -> float:
-    """Return how far it is from where somebody faces to `left`, the short way round."""
-    gap = left - atan2(_dot(body.left, facing), _dot(body.ahead, facing))
-    return gap - 2 * pi if gap > pi else gap + 2 * pi if gap < -pi else gap
+    """Return how far it is from where somebody faces to `left`, the short way round; less of it where that is
+    behind, or where they face up or down.
+    """
+    x, z = _dot(body.left, facing), _dot(body.ahead, facing)
+    gap = left - atan2(x, z)
+    gap = gap - 2 * pi if gap > pi else gap + 2 * pi if gap < -pi else gap
+    return _turning(gap, TURNED_BACK, TURN_BEHIND) * ease_gaze(2 * hypot(x, z))
+
+
+def _turning(angle: float, most: float, behind: float) -> float:
+    """Return an angle kept within a limit, and ever less of it from `behind` to half a turn."""
+    return _within(angle, most) * (1 - ease_gaze((abs(angle) - behind) / (pi - behind)))
 
 
 def head_part(angle: float, share: float) -> float:

@@ -30,6 +30,12 @@ def sign(x: float) -> float:
     return -1.0 if x < 0.0 else 1.0
 
 
+def turning(x: float, most: float, behind: float) -> float:
+    """ "The head"; the limits in degrees."""
+    m, d = radians(most), radians(behind)
+    return clamp(x, -m, m) * (1.0 - ease((abs(x) - d) / (np.pi - d)))
+
+
 def over(a: float, m: float) -> float:
     """ "The head"."""
     return sign(a) * max(abs(a) - m, 0.0)
@@ -169,7 +175,7 @@ class Life:
             point, _, amount = self.met(place)
             v = point - eye
             x, y, z = float(v @ self.left), float(v @ self.up), float(v @ self.ahead)
-            side = clamp(atan2(x, z), -radians(110.0), radians(110.0))
+            side = turning(atan2(x, z), 110.0, 120.0)
             rise = clamp(atan2(y, hypot(x, z)), -radians(65.0), radians(65.0))
             near = 1.0 / max(float(np.linalg.norm(v)), 0.25)
             w = amount * self.dials["gaze"] * (1.0 if self.events["targets"][place][5] else self.calm)
@@ -192,7 +198,8 @@ class Life:
             v = inside - each["at"]
             xy = np.array([v @ each["left"], v @ each["up"]])
             size = float(np.linalg.norm(xy))
-            ij = xy / max(size, 1e-12) * atan2(size, float(v @ each["ahead"])) * total[3]
+            away = turning(atan2(size, float(v @ each["ahead"])), 180.0, 100.0)
+            ij = xy / max(size, 1e-12) * away * total[3]
             ij = ij + (1.0 - total[3]) * a_eyes
             r = hypot(ij[0] / radians(32.0), ij[1] / radians(26.0 if ij[1] > 0.0 else 30.0))
             out.append(ij if r <= 0.7 else ij * (0.7 + 0.3 * tanh((r - 0.7) / 0.3)) / r)
@@ -208,8 +215,9 @@ class Life:
         gaps = []
         for q, ahead in ((spun[self.rig["trunk"]], "trunk_ahead"), (spun[-1], "head_ahead")):
             f = turned(q, np.array(self.rig[ahead]))
-            gap = left - atan2(float(f @ self.left), float(f @ self.ahead))
-            gaps.append((gap + np.pi) % (2.0 * np.pi) - np.pi)
+            fx, fz = float(f @ self.left), float(f @ self.ahead)
+            gap = (left - atan2(fx, fz) + np.pi) % (2.0 * np.pi) - np.pi
+            gaps.append(turning(gap, 95.0, 85.0) * ease(2.0 * hypot(fx, fz)))
         apart = max(min(gaps), 0.0) + min(max(gaps), 0.0)
         x += b * whole * over(apart, max(radians(28.0), abs(left)))
         x, y = clamp(x, -radians(65.0), radians(65.0)), clamp(y, -radians(35.0), radians(30.0))

@@ -127,3 +127,26 @@ def test_a_character_that_has_turned_away_as_a_whole_turns_its_head_back(sample:
     assert turned(sample, 0, 0, trunk=-75, head=-80)[0] == pytest.approx(
         75 - degrees(solve.TURNED_AWAY), abs=2
     )
+
+
+def _greatest_change(turns: list[tuple[float, float]]) -> float:
+    return float(np.linalg.norm(np.diff(np.array([*turns, turns[0]]), axis=0), axis=1).max())
+
+
+@pytest.mark.parametrize("apart", [0, 15, -40])
+def test_a_body_that_turns_all_the_way_round_never_throws_its_head_to_the_other_side(
+    sample: Project, apart: float
+) -> None:
+    for target in (0, 45, -110):
+        found = [turned(sample, target, 0, trunk=a, head=a + apart) for a in range(0, 360, 2)]
+        assert _greatest_change(found) < 3 * 2
+
+
+def test_a_target_that_goes_all_the_way_round_never_throws_the_gaze_to_the_other_side() -> None:
+    ways = [solve._turning(radians(a), solve.LOOK_SIDEWAYS, solve.LOOK_BEHIND) for a in range(-180, 181)]
+    assert ways[0] == pytest.approx(ways[-1], abs=1e-9)
+    assert abs(np.diff(np.degrees(ways))).max() < 3
+
+
+def test_a_face_bent_to_the_floor_is_no_face_turned_away(sample: Project) -> None:
+    assert solve._gap(body_of(sample), 0.0, (0.01, -1.0, -0.01)) == pytest.approx(0.0, abs=0.01)

@@ -114,11 +114,10 @@ def test_arrays_are_told_to_be_inside_exactly_where_one_pose_after_the_other_wou
         assert solve_contacts(rig, one, []) == told[n] or contact_depths(rig, pose)[n].max() < 1e-6
         ends = capsule_ends(rig, _one(rig, pose, n))
         a, b, c, d = (np.array([ends[2 * i + k] for i in some]) for some in (first, second) for k in (0, 1))
-        way, share = nearest_between_lines(a, b, c, d)
+        way, _ = nearest_between_lines(a, b, c, d)
         ours = [apart(ends, 2 * i, 2 * k) for i, k in zip(first, second, strict=True)]
-        assert_allclose(np.linalg.norm(way, axis=-1), [o[4] for o in ours], atol=1e-6)
+        assert_allclose(np.linalg.norm(way, axis=-1), [o[3] for o in ours], atol=1e-6)
         assert_allclose(way, [o[:3] for o in ours], atol=1e-6)
-        assert_allclose(share, [o[3] for o in ours], atol=1e-6)
 
 
 def test_a_skeleton_without_arms_is_left_alone() -> None:

@@ -24,10 +24,11 @@ inline constexpr double FOLDED = 0.906; // cosine of the least angle inside an e
 // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 inline constexpr double WRIST = 0.819;
 inline constexpr double SOFT = 0.006; // metres of depth over which the push out of the body sets in
-inline constexpr double DEEP = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+inline constexpr double DEEP = 1.0; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+inline constexpr double EVEN = 0.05; // how much the middle counts where lines are side by side
 // where a straight arm bends to: no side in particular, but always one
 inline const std::tuple<double, double, double> STRAIGHT = std::tuple<double, double, double>{0.31, 0.52, 0.8};
-inline constexpr double ELBOW = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
+inline constexpr double ELBOW = 0.3; // how little a forearm is pushed near its elbow, which a wrist cannot move
 inline constexpr int PASSES = 3; // of the guard
 inline constexpr int OBSTACLE = 0; // what a capsule is to the guard: others are pushed out of it
 inline constexpr int FOREARM = 1; // pushed out, from the elbow to the wrist
@@ -73,9 +74,12 @@ inline std::tuple<double, double, double> _shift(
     const List<std::tuple<double, double, double, double>>& balls,
     int side,
     const List<double>& held,
-    double across
+    double across,
+    List<double>& whole,
+    bool first
 );
-inline std::tuple<double, double, double, double, double> apart(
+inline double _along(const List<std::tuple<double, double, double>>& ends, int i, int k);
+inline std::tuple<double, double, double, double> apart(
     const List<std::tuple<double, double, double>>& ends,
     int i,
     int k
@@ -249,11 +253,26 @@ inline bool solve_contacts(const Ref<ContactRig>& rig, const Ref<ContactPose>& p
             }
         }
     }
+    List<std::tuple<double, double, double>> kept;
+    for (const auto& arm : rig->arms) {
+        kept.push_back(lang::at(pose->at, arm->hand));
+    }
     if (rig->guard && contact_solve::_guarded(rig, pose, held, across)) {
         moved = true;
         for (int side = 0; side < lang::len(rig->arms); side++) {
             if (across > 0.0 && lang::at(held, side) > 0.0) {
-                contact_solve::_hold(rig, pose, goals, side, lang::at(wrists, side), lang::at(hands, side));
+                std::tuple<double, double, double> pushed = plain_vectors::minus(
+                    lang::at(pose->at, lang::at(rig->arms, side)->hand),
+                    lang::at(kept, side)
+                );
+                contact_solve::_hold(
+                    rig,
+                    pose,
+                    goals,
+                    side,
+                    plain_vectors::plus(lang::at(wrists, side), pushed),
+                    lang::at(hands, side)
+                );
             }
         }
     }
@@ -448,23 +467,29 @@ inline std::tuple<double, double, double, double> _above(
 
 /// Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was.
 /// held: how much each hand is kept somewhere, and so is not pushed.
+///
+/// An arm that goes through something is pushed out to one side before its middle and to the other after: towards the
+/// middle it is pushed ever less, so that it does not jump.
 inline bool _guarded(
     const Ref<ContactRig>& rig,
     const Ref<ContactPose>& pose,
     const List<double>& held,
     double across
 ) {
+    List<std::tuple<double, double, double, double>> local = pose->local;
+    List<std::tuple<double, double, double, double>> turned = pose->turned;
+    List<std::tuple<double, double, double>> at = pose->at;
+    List<double> whole = List<double>{1.0, 1.0};
     bool moved = false;
-    int passes = contact_solve::PASSES;
-    while (passes > 0) {
-        passes -= 1;
+    for (int number = 0; number < contact_solve::PASSES; number++) {
         List<std::tuple<double, double, double>> ends = contact_solve::capsule_ends(rig, pose);
         List<std::tuple<double, double, double, double>> balls = contact_solve::_balls(rig, ends);
+        bool found = false;
+        bool first = number == 0;
         List<std::tuple<double, double, double>> shifts;
         for (int side2 = 0; side2 < lang::len(rig->arms); side2++) {
-            shifts.push_back(contact_solve::_shift(rig, ends, balls, side2, held, across));
+            shifts.push_back(contact_solve::_shift(rig, ends, balls, side2, held, across, whole, first));
         }
-        bool found = false;
         for (int side = 0; side < lang::len(shifts); side++) {
             const auto& shift = lang::at(shifts, side);
             if (plain_vectors::length(shift) > 0.0) {
@@ -481,9 +506,32 @@ inline bool _guarded(
             }
         }
         if (!found) {
-            return moved;
+            break;
         }
         moved = true;
+    }
+    if (moved && std::min(lang::at(whole, 0), lang::at(whole, 1)) < 1.0) {
+        List<std::tuple<double, double, double>> goals;
+        for (const auto& arm2 : rig->arms) {
+            goals.push_back(lang::at(pose->at, arm2->hand));
+        }
+        pose->local = local;
+        pose->turned = turned;
+        pose->at = at;
+        for (int side = 0; side < lang::len(rig->arms); side++) {
+            const auto& arm = lang::at(rig->arms, side);
+            std::tuple<double, double, double> way = plain_vectors::minus(
+                lang::at(goals, side),
+                lang::at(pose->at, arm->hand)
+            );
+            if (plain_vectors::length(way) > 0.0) {
+                std::tuple<double, double, double> goal = plain_vectors::plus(
+                    lang::at(pose->at, arm->hand),
+                    plain_vectors::scaled(way, lang::at(whole, side))
+                );
+                contact_solve::bring(rig, pose, side, goal, lang::at(pose->turned, arm->hand), contact_solve::STRAIGHT);
+            }
+        }
     }
     return moved;
 }
@@ -523,14 +571,17 @@ inline List<std::tuple<double, double, double, double>> _balls(
     return out;
 }
 
-/// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.
+/// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how
+/// much of that is to be done, which the first pass finds.
 inline std::tuple<double, double, double> _shift(
     const Ref<ContactRig>& rig,
     const List<std::tuple<double, double, double>>& ends,
     const List<std::tuple<double, double, double, double>>& balls,
     int side,
     const List<double>& held,
-    double across
+    double across,
+    List<double>& whole,
+    bool first
 ) {
     std::tuple<double, double, double> shift = std::tuple<double, double, double>{0.0, 0.0, 0.0};
     double own = 1.0 - lang::at(held, side);
@@ -563,7 +614,7 @@ inline std::tuple<double, double, double> _shift(
             if (share <= 0.0) {
                 continue;
             }
-            auto [x, y, z, s, gap] = contact_solve::apart(ends, 2 * i, 2 * k);
+            auto [x, y, z, gap] = contact_solve::apart(ends, 2 * i, 2 * k);
             double radii = mine->radius + other->radius;
             if (gap >= radii || gap < 1e-09) {
                 continue;
@@ -573,8 +624,13 @@ inline std::tuple<double, double, double> _shift(
                 ? depth - 0.5 * contact_solve::SOFT
                 : depth * depth / (2.0 * contact_solve::SOFT);
             double inner = std::min(1.0, gap / (contact_solve::DEEP * radii));
-            amount = amount * share * inner * inner * (3.0 - 2.0 * inner);
-            double part = mine->kind == contact_solve::FOREARM ? s : 1.0;
+            inner = inner * inner * (3.0 - 2.0 * inner);
+            if (first) {
+                lang::at(whole, side) = std::min(lang::at(whole, side), inner);
+                inner = 1.0;
+            }
+            amount = amount * share * inner;
+            double part = mine->kind == contact_solve::FOREARM ? contact_solve::_along(ends, 2 * i, 2 * k) : 1.0;
             std::tuple<double, double, double> way = std::tuple<double, double, double>{x / gap, y / gap, z / gap};
             double left = amount - part * plain_vectors::dot(way, shift);
             if (left > 0.0) {
@@ -588,9 +644,37 @@ inline std::tuple<double, double, double> _shift(
     return shift;
 }
 
-/// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it
-/// ends, 0..1, and its length.
-inline std::tuple<double, double, double, double, double> apart(
+/// Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends, 0..1. Of lines
+/// side by side, where it may end anywhere, the middle counts more the less they cross.
+inline double _along(const List<std::tuple<double, double, double>>& ends, int i, int k) {
+    std::tuple<double, double, double> a = lang::at(ends, i);
+    std::tuple<double, double, double> c = lang::at(ends, k);
+    std::tuple<double, double, double> u = plain_vectors::minus(lang::at(ends, i + 1), a);
+    std::tuple<double, double, double> v = plain_vectors::minus(lang::at(ends, k + 1), c);
+    std::tuple<double, double, double> w = plain_vectors::minus(a, c);
+    double uu = plain_vectors::dot(u, u);
+    double uv = plain_vectors::dot(u, v);
+    double vv = plain_vectors::dot(v, v);
+    double uw = plain_vectors::dot(u, w);
+    double vw = plain_vectors::dot(v, w);
+    if (uu <= 1e-12) {
+        return 0.0;
+    }
+    double stiff = (1.0 + contact_solve::EVEN) * uu;
+    double middle = 0.5 * contact_solve::EVEN * uu - uw;
+    if (vv <= 1e-12) {
+        return std::min(std::max(middle / stiff, 0.0), 1.0);
+    }
+    double s = std::min(std::max((vv * middle + uv * vw) / (stiff * vv - uv * uv), 0.0), 1.0);
+    double t = (uv * s + vw) / vv;
+    if (t < 0.0 || t > 1.0) {
+        s = std::min(std::max((uv * std::min(std::max(t, 0.0), 1.0) + middle) / stiff, 0.0), 1.0);
+    }
+    return s;
+}
+
+/// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length.
+inline std::tuple<double, double, double, double> apart(
     const List<std::tuple<double, double, double>>& ends,
     int i,
     int k
@@ -628,7 +712,7 @@ inline std::tuple<double, double, double, double, double> apart(
         plain_vectors::plus(w, plain_vectors::scaled(u, s)),
         plain_vectors::scaled(v, t)
     );
-    return std::tuple<double, double, double, double, double>{x, y, z, s, std::sqrt(x * x + y * y + z * z)};
+    return std::tuple<double, double, double, double>{x, y, z, std::sqrt(x * x + y * y + z * z)};
 }
 
 }  // namespace contact_solve

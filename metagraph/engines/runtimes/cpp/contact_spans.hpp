@@ -19,6 +19,8 @@ inline const List<std::string> HANDS = List<std::string>{"left", "right"};
 inline const List<std::string> PLACES = List<std::string>{"palm", "fingertips", "back", "wrist"};
 // seconds in which a hand comes to a contact, and leaves it, where nothing else is said
 inline constexpr double EASE = 0.15;
+// seconds it takes at least where the contact lasts: what it touches may be far from its place
+inline constexpr double SETTLES = 0.3;
 inline double contact_weight(const Ref<ContactSpan>& span, double seconds, double first, double last);
 inline Ref<ContactKey> contact_key(const Ref<ContactSpan>& span, double seconds);
 
@@ -79,11 +81,14 @@ inline double contact_weight(const Ref<ContactSpan>& span, double seconds, doubl
         return 0.0;
     }
     double shown = 1.0;
-    if (span->start > first && span->ease_in > 0.0) {
-        shown = std::min(shown, (seconds - span->start) / span->ease_in);
+    bool comes = span->start > first && span->ease_in > 0.0;
+    bool goes = span->end < last && span->ease_out > 0.0;
+    double least = std::min(contact_spans::SETTLES, (span->end - span->start) / ((comes && goes) ? 2.0 : 1.0));
+    if (comes) {
+        shown = std::min(shown, (seconds - span->start) / std::max(span->ease_in, least));
     }
-    if (span->end < last && span->ease_out > 0.0) {
-        shown = std::min(shown, (span->end - seconds) / span->ease_out);
+    if (goes) {
+        shown = std::min(shown, (span->end - seconds) / std::max(span->ease_out, least));
     }
     return shown * shown * (3.0 - 2.0 * shown);
 }

@@ -15,10 +15,18 @@ inline constexpr double HEAD_SIDEWAYS = 65 * RADIANS, HEAD_UP = 30 * RADIANS, HE
 inline constexpr double EYE_SIDEWAYS = 32 * RADIANS, EYE_UP = 26 * RADIANS, EYE_DOWN = 30 * RADIANS; // eyes never turn
 inline constexpr double FREE = 0.7; // beyond these, and freely within this part of them
 inline constexpr double LOOK_SIDEWAYS = 110 * RADIANS, LOOK_UPRIGHT = 65 * RADIANS; // beyond these nobody looks
+// What is behind is looked at ever less, so that nothing turns from one side to the other in a moment.
+inline constexpr double LOOK_BEHIND = 120 * RADIANS, TURN_BEHIND = 85 * RADIANS, EYES_BEHIND = 100 * RADIANS;
+inline constexpr double TURNED_BACK = 95 * RADIANS; // the farthest that a body counts as turned away
 inline constexpr double NEAREST = 0.25; // metres; nearer things are looked at as if they were there
 inline constexpr double WIDEST = -0.8; // how far lids open beyond rest, of their shutting turn
 
 inline double within(double x, double limit) { return std::clamp(x, -limit, limit); }
+/// Return an angle kept within a limit, and ever less of it from `behind` to half a turn.
+inline double turning(double angle, double most, double behind) {
+    return within(angle, most) * (1 - rotation::ease((std::abs(angle) - behind) / (lang::PI - behind)));
+}
+
 inline double excess(double x, double free) { return (x < 0 ? -1 : 1) * std::max(std::abs(x) - free, 0.0); }
 
 /// Return the head's part of a turn: `share` of a wide one, next to none of a slight one.
@@ -71,7 +79,7 @@ public:
             const Vec away = aim.at - eye;
             const double x = dot(left, away), y = dot(up, away), z = dot(ahead, away);
             const double level = std::sqrt(x * x + z * z);
-            const double sideways = solve::within(std::atan2(x, z), solve::LOOK_SIDEWAYS);
+            const double sideways = solve::turning(std::atan2(x, z), solve::LOOK_SIDEWAYS, solve::LOOK_BEHIND);
             const double upwards = solve::within(std::atan2(y, level), solve::LOOK_UPRIGHT);
             const double weight = aim.amount * amount * (aim.asked ? 1 : calm);
             eyes_x += part.came * sideways;
@@ -115,7 +123,8 @@ private:
         const Vec away = inside - side.at;
         const double x = rotation::dot(side.left, away), y = rotation::dot(side.up, away);
         const double across = std::sqrt(x * x + y * y);
-        const double angle = std::atan2(across, rotation::dot(side.ahead, away)) / std::max(across, 1e-12) * all;
+        const double way = solve::turning(std::atan2(across, rotation::dot(side.ahead, away)), lang::PI, solve::EYES_BEHIND);
+        const double angle = way / std::max(across, 1e-12) * all;
         const double left = x * angle + gaze.eyes[0] * (1 - all), up = y * angle + gaze.eyes[1] * (1 - all);
         // Within what eyes can do, softly at the limit.
         const double a = left / solve::EYE_SIDEWAYS, b = up / (up > 0 ? solve::EYE_UP : solve::EYE_DOWN);
@@ -147,11 +156,13 @@ private:
         return size;
     }
 
-    /// Return the angle from where a joint of the chain faces to `left`, -pi to pi.
+    /// Return the angle from where a joint of the chain faces to `left`; less of it where that is behind, or where it faces up or down.
     double gap(int place, const Vec& facing, double left) const {
         const Vec ahead = rotation::rotate(lang::at(whole_, place).rotation, facing);
-        const double gap = left - std::atan2(rotation::dot(body_.left, ahead), rotation::dot(body_.ahead, ahead));
-        return gap > lang::PI ? gap - 2 * lang::PI : gap < -lang::PI ? gap + 2 * lang::PI : gap;
+        const double x = rotation::dot(body_.left, ahead), z = rotation::dot(body_.ahead, ahead);
+        const double gap = left - std::atan2(x, z);
+        const double close = gap > lang::PI ? gap - 2 * lang::PI : gap < -lang::PI ? gap + 2 * lang::PI : gap;
+        return solve::turning(close, solve::TURNED_BACK, solve::TURN_BEHIND) * rotation::ease(2 * std::sqrt(x * x + z * z));
     }
 
     /// Return the turn by a part of `vector_`, which is `size` long.

@@ -14,9 +14,10 @@ export const REACHED = 0.995; // of an arm's length: it does not snap straight
 export const FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 degrees
 export const WRIST = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 export const SOFT = 0.006; // metres of depth over which the push out of the body sets in
-export const DEEP = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+export const DEEP = 1; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+export const EVEN = 0.05; // how much the middle counts where lines are side by side
 export const STRAIGHT = [0.31, 0.52, 0.8]; // where a straight arm bends to: no side in particular, but always one
-export const ELBOW = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
+export const ELBOW = 0.3; // how little a forearm is pushed near its elbow, which a wrist cannot move
 export const PASSES = 3; // of the guard
 export const OBSTACLE = 0; // what a capsule is to the guard: others are pushed out of it
 export const FOREARM = 1; // pushed out, from the elbow to the wrist
@@ -171,11 +172,13 @@ export function solveContacts(rig, pose, goals) {
       }
     }
   }
+  const kept = rig.arms.map((arm) => pose.at[arm.hand]);
   if (rig.guard && _guarded(rig, pose, held, across)) {
     moved = true;
     for (let side = 0; side < rig.arms.length; side++) {
       if (across > 0 && held[side] > 0) {
-        _hold(rig, pose, goals, side, wrists[side], hands[side]);
+        const pushed = minus(pose.at[rig.arms[side].hand], kept[side]);
+        _hold(rig, pose, goals, side, plus(wrists[side], pushed), hands[side]);
       }
     }
   }
@@ -330,6 +333,9 @@ function _above(rig, pose, place) {
 /**
  * Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was. held:
  * how much each hand is kept somewhere, and so is not pushed.
+ *
+ * An arm that goes through something is pushed out to one side before its middle and to the other after: towards the middle
+ * it is pushed ever less, so that it does not jump.
  * @param {ContactRig} rig
  * @param {ContactPose} pose
  * @param {number[]} held
@@ -337,14 +343,17 @@ function _above(rig, pose, place) {
  * @returns {boolean}
  */
 function _guarded(rig, pose, held, across) {
+  const local = [...pose.local];
+  const turned = [...pose.turned];
+  const at = [...pose.at];
+  const whole = [1, 1];
   let moved = false;
-  let passes = PASSES;
-  while (passes > 0) {
-    passes -= 1;
+  for (let number = 0; number < PASSES; number++) {
     const ends = capsuleEnds(rig, pose);
     const balls = _balls(rig, ends);
-    const shifts = range(rig.arms.length).map((side) => _shift(rig, ends, balls, side, held, across));
     let found = false;
+    const first = number === 0;
+    const shifts = range(rig.arms.length).map((side) => _shift(rig, ends, balls, side, held, across, whole, first));
     for (const [side, shift] of shifts.entries()) {
       if (length(shift) > 0) {
         const hand = rig.arms[side].hand;
@@ -353,9 +362,22 @@ function _guarded(rig, pose, held, across) {
       }
     }
     if (!found) {
-      return moved;
+      break;
     }
     moved = true;
+  }
+  if (moved && Math.min(whole[0], whole[1]) < 1) {
+    const goals = rig.arms.map((arm) => pose.at[arm.hand]);
+    pose.local = local;
+    pose.turned = turned;
+    pose.at = at;
+    for (const [side, arm] of rig.arms.entries()) {
+      const way = minus(goals[side], pose.at[arm.hand]);
+      if (length(way) > 0) {
+        const goal = plus(pose.at[arm.hand], scaled(way, whole[side]));
+        bring(rig, pose, side, goal, pose.turned[arm.hand], STRAIGHT);
+      }
+    }
   }
   return moved;
 }
@@ -396,16 +418,19 @@ function _balls(rig, ends) {
 }
 
 /**
- * Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.
+ * Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how much
+ * of that is to be done, which the first pass finds.
  * @param {ContactRig} rig
  * @param {[number, number, number][]} ends
  * @param {[number, number, number, number][]} balls
  * @param {number} side
  * @param {number[]} held
  * @param {number} across
+ * @param {number[]} whole
+ * @param {boolean} first
  * @returns {[number, number, number]}
  */
-function _shift(rig, ends, balls, side, held, across) {
+function _shift(rig, ends, balls, side, held, across, whole, first) {
   let shift = [0, 0, 0];
   const own = 1 - held[side];
   if (own <= 0) {
@@ -436,16 +461,21 @@ function _shift(rig, ends, balls, side, held, across) {
       if (share <= 0) {
         continue;
       }
-      const [x, y, z, s, gap] = apart(ends, 2 * i, 2 * k);
+      const [x, y, z, gap] = apart(ends, 2 * i, 2 * k);
       const radii = mine.radius + other.radius;
       if (gap >= radii || gap < 1e-09) {
         continue;
       }
       const depth = radii - gap;
       let amount = depth > SOFT ? depth - 0.5 * SOFT : depth * depth / (2 * SOFT);
-      const inner = Math.min(1, gap / (DEEP * radii));
-      amount = amount * share * inner * inner * (3 - 2 * inner);
-      const part = mine.kind === FOREARM ? s : 1;
+      let inner = Math.min(1, gap / (DEEP * radii));
+      inner = inner * inner * (3 - 2 * inner);
+      if (first) {
+        whole[side] = Math.min(whole[side], inner);
+        inner = 1;
+      }
+      amount = amount * share * inner;
+      const part = mine.kind === FOREARM ? _along(ends, 2 * i, 2 * k) : 1;
       const way = [x / gap, y / gap, z / gap];
       const left = amount - part * dot(way, shift);
       if (left > 0) {
@@ -457,12 +487,46 @@ function _shift(rig, ends, balls, side, held, across) {
 }
 
 /**
- * Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it ends,
- * 0..1, and its length.
+ * Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends, 0..1. Of lines side
+ * by side, where it may end anywhere, the middle counts more the less they cross.
  * @param {[number, number, number][]} ends
  * @param {number} i
  * @param {number} k
- * @returns {[number, number, number, number, number]}
+ * @returns {number}
+ */
+function _along(ends, i, k) {
+  const a = ends[i];
+  const c = ends[k];
+  const u = minus(ends[i + 1], a);
+  const v = minus(ends[k + 1], c);
+  const w = minus(a, c);
+  const uu = dot(u, u);
+  const uv = dot(u, v);
+  const vv = dot(v, v);
+  const uw = dot(u, w);
+  const vw = dot(v, w);
+  if (uu <= 1e-12) {
+    return 0;
+  }
+  const stiff = (1 + EVEN) * uu;
+  const middle = 0.5 * EVEN * uu - uw;
+  if (vv <= 1e-12) {
+    return Math.min(Math.max(middle / stiff, 0), 1);
+  }
+  let s = Math.min(Math.max((vv * middle + uv * vw) / (stiff * vv - uv * uv), 0), 1);
+  const t = (uv * s + vw) / vv;
+  if (t < 0 || t > 1) {
+    s = Math.min(Math.max((uv * Math.min(Math.max(t, 0), 1) + middle) / stiff, 0), 1);
+  }
+  return s;
+}
+
+/**
+ * Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length.
+ * @param {[number, number, number][]} ends
+ * @param {number} i
+ * @param {number} k
+ * @returns {[number, number, number, number]}
  */
 export function apart(ends, i, k) {
   const a = ends[i];
@@ -495,5 +559,5 @@ export function apart(ends, i, k) {
     t = Math.min(Math.max(vw / vv, 0), 1);
   }
   const [x, y, z] = minus(plus(w, scaled(u, s)), scaled(v, t));
-  return [x, y, z, s, Math.sqrt(x * x + y * y + z * z)];
+  return [x, y, z, Math.sqrt(x * x + y * y + z * z)];
 }

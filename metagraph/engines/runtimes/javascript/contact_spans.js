@@ -11,6 +11,7 @@
 export const HANDS = ["left", "right"];
 export const PLACES = ["palm", "fingertips", "back", "wrist"];
 export const EASE = 0.15; // seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+export const SETTLES = 0.3; // seconds it takes at least where the contact lasts: what it touches may be far from its place
 
 /**
  * Where a hand is on a joint at a moment. time: clip seconds. at: the wrist in the joint's own space, metres. turn: how the
@@ -62,11 +63,14 @@ export function contactWeight(span, seconds, first, last) {
     return 0;
   }
   let shown = 1;
-  if (span.start > first && span.easeIn > 0) {
-    shown = Math.min(shown, (seconds - span.start) / span.easeIn);
+  const comes = span.start > first && span.easeIn > 0;
+  const goes = span.end < last && span.easeOut > 0;
+  const least = Math.min(SETTLES, (span.end - span.start) / ((comes && goes) ? 2 : 1));
+  if (comes) {
+    shown = Math.min(shown, (seconds - span.start) / Math.max(span.easeIn, least));
   }
-  if (span.end < last && span.easeOut > 0) {
-    shown = Math.min(shown, (span.end - seconds) / span.easeOut);
+  if (goes) {
+    shown = Math.min(shown, (span.end - seconds) / Math.max(span.easeOut, least));
   }
   return shown * shown * (3 - 2 * shown);
 }

@@ -1,6 +1,7 @@
 /** One pose brought to life: how head, eyes and lids turn. Rotations are quaternions xyzw, angles radians; nothing is allocated. */
 
 import { multiply, rotate } from "../rotation.js";
+import { ease } from "./gaze.js";
 
 const RADIANS = Math.PI / 180;
 const SMALL = 15 * RADIANS; // of a turn smaller than this the head takes next to nothing
@@ -11,11 +12,16 @@ const [HEAD_SIDEWAYS, HEAD_UP, HEAD_DOWN] = [65 * RADIANS, 30 * RADIANS, 35 * RA
 const [EYE_SIDEWAYS, EYE_UP, EYE_DOWN] = [32 * RADIANS, 26 * RADIANS, 30 * RADIANS]; // eyes never turn beyond these,
 const FREE = 0.7; // and freely within this part of them
 const [LOOK_SIDEWAYS, LOOK_UPRIGHT] = [110 * RADIANS, 65 * RADIANS]; // beyond these nobody looks, however far behind the target is
+// What is behind is looked at ever less, so that nothing turns from one side to the other in a moment.
+const [LOOK_BEHIND, TURN_BEHIND, EYES_BEHIND] = [120 * RADIANS, 85 * RADIANS, 100 * RADIANS];
+const TURNED_BACK = 95 * RADIANS; // the farthest that a body counts as turned away
 const NEAREST = 0.25; // metres; nearer things are looked at as if they were there
 const WIDEST = -0.8; // how far lids open beyond rest, of their shutting turn
 
 const within = (x, limit) => Math.min(Math.max(x, -limit), limit);
 const excess = (x, free) => Math.sign(x) * Math.max(Math.abs(x) - free, 0);
+/** An angle kept within a limit, and ever less of it from `behind` to half a turn. */
+const turning = (angle, most, behind) => within(angle, most) * (1 - ease((Math.abs(angle) - behind) / (Math.PI - behind)));
 const dot = (a, v) => a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
 
 // Room for working in; a pose is solved whole before the next.
@@ -74,7 +80,7 @@ export class Solver {
       for (let k = 0; k < 3; k++) away[k] = aim.at[k] - eye[k];
       const x = dot(left, away), y = dot(up, away), z = dot(ahead, away);
       const level = Math.sqrt(x * x + z * z);
-      const sideways = within(Math.atan2(x, z), LOOK_SIDEWAYS);
+      const sideways = turning(Math.atan2(x, z), LOOK_SIDEWAYS, LOOK_BEHIND);
       const upwards = within(Math.atan2(y, level), LOOK_UPRIGHT);
       const weight = aim.amount * amount * (aim.asked ? 1 : calm);
       eyesX += gaze.came[n] * sideways;
@@ -116,7 +122,8 @@ export class Solver {
     for (let k = 0; k < 3; k++) away[k] = inside[k] - side.at[k];
     const x = dot(side.left, away), y = dot(side.up, away);
     const across = Math.sqrt(x * x + y * y);
-    const angle = (Math.atan2(across, dot(side.ahead, away)) / Math.max(across, 1e-12)) * whole;
+    const way = turning(Math.atan2(across, dot(side.ahead, away)), Math.PI, EYES_BEHIND);
+    const angle = (way / Math.max(across, 1e-12)) * whole;
     const left = x * angle + gaze.eyes[0] * (1 - whole);
     const up = y * angle + gaze.eyes[1] * (1 - whole);
     // Within what eyes can do, softly near the limit.
@@ -152,11 +159,13 @@ export class Solver {
     return size;
   }
 
-  /** Return the angle from where a joint of the chain faces to `left`, -pi to pi. */
+  /** Return the angle from where a joint of the chain faces to `left`; less of it where that is behind, or where it faces up or down. */
   gap(turned, place, facing, left) {
     rotate(away, 0, turned, 4 * place, facing[0], facing[1], facing[2]);
-    const gap = left - Math.atan2(dot(this.body.left, away), dot(this.body.ahead, away));
-    return gap > Math.PI ? gap - 2 * Math.PI : gap < -Math.PI ? gap + 2 * Math.PI : gap;
+    const x = dot(this.body.left, away), z = dot(this.body.ahead, away);
+    const gap = left - Math.atan2(x, z);
+    const short = gap > Math.PI ? gap - 2 * Math.PI : gap < -Math.PI ? gap + 2 * Math.PI : gap;
+    return turning(short, TURNED_BACK, TURN_BEHIND) * ease(2 * Math.sqrt(x * x + z * z));
   }
 
   /** Leave in `about` the turn by `part` of `vector`, which is `size` long. */

@@ -147,10 +147,11 @@ namespace Metagraph
         public const double Folded = 0.906; // cosine of the least angle inside an elbow, 25 degrees
         public const double Wrist = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
         public const double Soft = 0.006; // metres of depth over which the push out of the body sets in
-        public const double Deep = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+        public const double Deep = 1.0; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+        public const double Even = 0.05; // how much the middle counts where lines are side by side
         // where a straight arm bends to: no side in particular, but always one
         public static readonly (double, double, double) Straight = (0.31, 0.52, 0.8);
-        public const double Elbow = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
+        public const double Elbow = 0.3; // how little a forearm is pushed near its elbow, which a wrist cannot move
         public const int Passes = 3; // of the guard
         public const int Obstacle = 0; // what a capsule is to the guard: others are pushed out of it
         public const int Forearm = 1; // pushed out, from the elbow to the wrist
@@ -224,6 +225,7 @@ namespace Metagraph
                     }
                 }
             }
+            var kept = rig.Arms.Select(arm => pose.At[arm.Hand]).ToList();
             if (rig.Guard && Guarded(rig, pose, held, across))
             {
                 moved = true;
@@ -231,7 +233,8 @@ namespace Metagraph
                 {
                     if (across > 0.0 && held[side] > 0.0)
                     {
-                        Hold(rig, pose, goals, side, wrists[side], hands[side]);
+                        var pushed = PlainVectorsRules.Minus(pose.At[rig.Arms[side].Hand], kept[side]);
+                        Hold(rig, pose, goals, side, PlainVectorsRules.Plus(wrists[side], pushed), hands[side]);
                     }
                 }
             }
@@ -425,25 +428,33 @@ namespace Metagraph
         /// <summary>
         /// Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was.
         /// held: how much each hand is kept somewhere, and so is not pushed.
+        ///
+        /// An arm that goes through something is pushed out to one side before its middle and to the other after: towards the
+        /// middle it is pushed ever less, so that it does not jump.
         /// </summary>
         private static bool Guarded(ContactRig rig, ContactPose pose, List<double> held, double across)
         {
+            var local = pose.Local.ToList();
+            var turned = pose.Turned.ToList();
+            var at = pose.At.ToList();
+            var whole = new List<double> { 1.0, 1.0 };
             var moved = false;
-            var passes = Passes;
-            while (passes > 0)
+            for (int number = 0; number < Passes; number++)
             {
-                passes -= 1;
                 var ends = CapsuleEnds(rig, pose);
                 var balls = Balls(rig, ends);
+                var found = false;
+                var first = number == 0;
                 var shifts = PlainNumbers.Range(rig.Arms.Count).Select(side => Shift(
                     rig,
                     ends,
                     balls,
                     side,
                     held,
-                    across
+                    across,
+                    whole,
+                    first
                 )).ToList();
-                var found = false;
                 foreach (var one in shifts.Select((item, n) => (n, item)))
                 {
                     var side = one.Item1;
@@ -457,9 +468,27 @@ namespace Metagraph
                 }
                 if (!found)
                 {
-                    return moved;
+                    break;
                 }
                 moved = true;
+            }
+            if (moved && Math.Min(whole[0], whole[1]) < 1.0)
+            {
+                var goals = rig.Arms.Select(arm => pose.At[arm.Hand]).ToList();
+                pose.Local = local;
+                pose.Turned = turned;
+                pose.At = at;
+                foreach (var one in rig.Arms.Select((item, n) => (n, item)))
+                {
+                    var side = one.Item1;
+                    var arm = one.Item2;
+                    var way = PlainVectorsRules.Minus(goals[side], pose.At[arm.Hand]);
+                    if (PlainVectorsRules.Length(way) > 0.0)
+                    {
+                        var goal = PlainVectorsRules.Plus(pose.At[arm.Hand], PlainVectorsRules.Scaled(way, whole[side]));
+                        Bring(rig, pose, side, goal, pose.Turned[arm.Hand], Straight);
+                    }
+                }
             }
             return moved;
         }
@@ -507,14 +536,19 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.</summary>
+        /// <summary>
+        /// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how
+        /// much of that is to be done, which the first pass finds.
+        /// </summary>
         private static (double, double, double) Shift(
             ContactRig rig,
             List<(double, double, double)> ends,
             List<(double, double, double, double)> balls,
             int side,
             List<double> held,
-            double across
+            double across,
+            List<double> whole,
+            bool first
         )
         {
             var shift = (0.0, 0.0, 0.0);
@@ -570,8 +604,7 @@ namespace Metagraph
                     double x = found3.Item1;
                     double y = found3.Item2;
                     double z = found3.Item3;
-                    double s = found3.Item4;
-                    double gap = found3.Item5;
+                    double gap = found3.Item4;
                     var radii = mine.Radius + other.Radius;
                     if (gap >= radii || gap < 1e-09)
                     {
@@ -580,8 +613,14 @@ namespace Metagraph
                     var depth = radii - gap;
                     var amount = depth > Soft ? depth - 0.5 * Soft : depth * depth / (2.0 * Soft);
                     var inner = Math.Min(1.0, gap / (Deep * radii));
-                    amount = amount * share * inner * inner * (3.0 - 2.0 * inner);
-                    var part = mine.Kind == Forearm ? s : 1.0;
+                    inner = inner * inner * (3.0 - 2.0 * inner);
+                    if (first)
+                    {
+                        whole[side] = Math.Min(whole[side], inner);
+                        inner = 1.0;
+                    }
+                    amount = amount * share * inner;
+                    var part = mine.Kind == Forearm ? Along(ends, 2 * i, 2 * k) : 1.0;
                     var way = (x / gap, y / gap, z / gap);
                     var left = amount - part * PlainVectorsRules.Dot(way, shift);
                     if (left > 0.0)
@@ -597,10 +636,44 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it ends,
-        /// 0..1, and its length.
+        /// Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends, 0..1. Of lines
+        /// side by side, where it may end anywhere, the middle counts more the less they cross.
         /// </summary>
-        public static (double, double, double, double, double) Apart(List<(double, double, double)> ends, int i, int k)
+        private static double Along(List<(double, double, double)> ends, int i, int k)
+        {
+            var a = ends[i];
+            var c = ends[k];
+            var u = PlainVectorsRules.Minus(ends[i + 1], a);
+            var v = PlainVectorsRules.Minus(ends[k + 1], c);
+            var w = PlainVectorsRules.Minus(a, c);
+            var uu = PlainVectorsRules.Dot(u, u);
+            var uv = PlainVectorsRules.Dot(u, v);
+            var vv = PlainVectorsRules.Dot(v, v);
+            var uw = PlainVectorsRules.Dot(u, w);
+            var vw = PlainVectorsRules.Dot(v, w);
+            if (uu <= 1e-12)
+            {
+                return 0.0;
+            }
+            var stiff = (1.0 + Even) * uu;
+            var middle = 0.5 * Even * uu - uw;
+            if (vv <= 1e-12)
+            {
+                return Math.Min(Math.Max(middle / stiff, 0.0), 1.0);
+            }
+            var s = Math.Min(Math.Max((vv * middle + uv * vw) / (stiff * vv - uv * uv), 0.0), 1.0);
+            var t = (uv * s + vw) / vv;
+            if (t < 0.0 || t > 1.0)
+            {
+                s = Math.Min(Math.Max((uv * Math.Min(Math.Max(t, 0.0), 1.0) + middle) / stiff, 0.0), 1.0);
+            }
+            return s;
+        }
+
+        /// <summary>
+        /// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length.
+        /// </summary>
+        public static (double, double, double, double) Apart(List<(double, double, double)> ends, int i, int k)
         {
             var a = ends[i];
             var c = ends[k];
@@ -646,7 +719,7 @@ namespace Metagraph
             double x = found.Item1;
             double y = found.Item2;
             double z = found.Item3;
-            return (x, y, z, s, Math.Sqrt(x * x + y * y + z * z));
+            return (x, y, z, Math.Sqrt(x * x + y * y + z * z));
         }
     }
 }

@@ -69,6 +69,8 @@ namespace Metagraph
         public static readonly List<string> Hands = new List<string> { "left", "right" };
         public static readonly List<string> Places = new List<string> { "palm", "fingertips", "back", "wrist" };
         public const double Ease = 0.15; // seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+        // seconds it takes at least where the contact lasts: what it touches may be far from its place
+        public const double Settles = 0.3;
 
         /// <summary>Return how much a hand is held at clip seconds, 0..1. first, last: what of the clip plays.</summary>
         public static double ContactWeight(ContactSpan span, double seconds, double first, double last)
@@ -78,13 +80,16 @@ namespace Metagraph
                 return 0.0;
             }
             var shown = 1.0;
-            if (span.Start > first && span.EaseIn > 0.0)
+            var comes = span.Start > first && span.EaseIn > 0.0;
+            var goes = span.End < last && span.EaseOut > 0.0;
+            var least = Math.Min(Settles, (span.End - span.Start) / ((comes && goes) ? 2.0 : 1.0));
+            if (comes)
             {
-                shown = Math.Min(shown, (seconds - span.Start) / span.EaseIn);
+                shown = Math.Min(shown, (seconds - span.Start) / Math.Max(span.EaseIn, least));
             }
-            if (span.End < last && span.EaseOut > 0.0)
+            if (goes)
             {
-                shown = Math.Min(shown, (span.End - seconds) / span.EaseOut);
+                shown = Math.Min(shown, (span.End - seconds) / Math.Max(span.EaseOut, least));
             }
             return shown * shown * (3.0 - 2.0 * shown);
         }

@@ -14,6 +14,9 @@ namespace Metagraph
         private static readonly double EyeSideways = Radians(32), EyeUp = Radians(26), EyeDown = Radians(30);
         private const double Free = 0.7;
         private static readonly double LookSideways = Radians(110), LookUpright = Radians(65); // beyond these nobody looks
+        // What is behind is looked at ever less, so that nothing turns from one side to the other in a moment.
+        private static readonly double LookBehind = Radians(120), TurnBehind = Radians(85), EyesBehind = Radians(100);
+        private static readonly double TurnedBack = Radians(95); // the farthest that a body counts as turned away
         private const double Nearest = 0.25; // metres; nearer things are looked at as if they were there
         private const double Widest = -0.8; // how far lids open beyond rest, of their shutting turn
 
@@ -48,6 +51,12 @@ namespace Metagraph
             return Basics.Clamp(x, -limit, limit);
         }
 
+        /// <summary>An angle kept within a limit, and ever less of it from `behind` to half a turn.</summary>
+        private static double Turning(double angle, double most, double behind)
+        {
+            return Within(angle, most) * (1 - Basics.Ease((Math.Abs(angle) - behind) / (Math.PI - behind)));
+        }
+
         private static double Excess(double x, double free)
         {
             double size = Math.Max(Math.Abs(x) - free, 0.0);
@@ -77,7 +86,7 @@ namespace Metagraph
                 GazePart part = gaze.Parts[n];
                 Vec away = part.Aim.At - eye;
                 double x = Vec.Dot(body.Left, away), y = Vec.Dot(body.Up, away), z = Vec.Dot(body.Ahead, away), level = Hypot(x, z);
-                double side = Within(Math.Atan2(x, z), LookSideways), above = Within(Math.Atan2(y, level), LookUpright);
+                double side = Turning(Math.Atan2(x, z), LookSideways, LookBehind), above = Within(Math.Atan2(y, level), LookUpright);
                 double weight = part.Aim.Amount * amount * (part.Aim.Asked ? 1.0 : calm);
                 eyesX += part.Eyes * side;
                 eyesY += part.Eyes * above;
@@ -110,7 +119,8 @@ namespace Metagraph
                 EyeAt one = body.Eyes[n];
                 Vec away = inside - one.At;
                 double x = Vec.Dot(one.Left, away), y = Vec.Dot(one.Up, away), across = Hypot(x, y);
-                double angle = Math.Atan2(across, Vec.Dot(one.Ahead, away)) / Math.Max(across, 1e-12) * whole;
+                double way = Turning(Math.Atan2(across, Vec.Dot(one.Ahead, away)), Math.PI, EyesBehind);
+                double angle = way / Math.Max(across, 1e-12) * whole;
                 Reach(n, x * angle + gaze.EyesLeft * (1 - whole), y * angle + gaze.EyesUp * (1 - whole));
             }
         }
@@ -139,8 +149,9 @@ namespace Metagraph
 
         private double Gap(double left, Vec facing)
         {
-            double gap = left - Math.Atan2(Vec.Dot(body.Left, facing), Vec.Dot(body.Ahead, facing));
-            return gap > Math.PI ? gap - 2 * Math.PI : gap < -Math.PI ? gap + 2 * Math.PI : gap;
+            double x = Vec.Dot(body.Left, facing), z = Vec.Dot(body.Ahead, facing), gap = left - Math.Atan2(x, z);
+            gap = gap > Math.PI ? gap - 2 * Math.PI : gap < -Math.PI ? gap + 2 * Math.PI : gap;
+            return Turning(gap, TurnedBack, TurnBehind) * Basics.Ease(2 * Hypot(x, z));
         }
 
         /// <summary>The head's part of a turn: `share` of a wide one, next to none of a small one.</summary>

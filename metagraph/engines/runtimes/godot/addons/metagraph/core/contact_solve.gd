@@ -11,9 +11,10 @@ const REACHED = 0.995  # of an arm's length: it does not snap straight
 const FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 const WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 const SOFT = 0.006  # metres of depth over which the push out of the body sets in
-const DEEP = 0.35  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+const DEEP = 1.0  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+const EVEN = 0.05  # how much the middle counts where lines are side by side
 const STRAIGHT = [0.31, 0.52, 0.8]  # where a straight arm bends to: no side in particular, but always one
-const ELBOW = 0.1  # how little a forearm is pushed near its elbow, which a wrist cannot move
+const ELBOW = 0.3  # how little a forearm is pushed near its elbow, which a wrist cannot move
 const PASSES = 3  # of the guard
 const OBSTACLE = 0  # what a capsule is to the guard: others are pushed out of it
 const FOREARM = 1  # pushed out, from the elbow to the wrist
@@ -155,11 +156,15 @@ static func solve_contacts(rig, pose, goals):
 			if held[side] > 0.0:
 				_hold(rig, pose, goals, side, wrists[side], hands[side])
 				moved = true
+	var kept = []
+	for arm in rig.arms:
+		kept.append(pose.at[arm.hand])
 	if rig.guard and _guarded(rig, pose, held, across):
 		moved = true
 		for side in range(rig.arms.size()):
 			if across > 0.0 and held[side] > 0.0:
-				_hold(rig, pose, goals, side, wrists[side], hands[side])
+				var pushed = PlainVectors.minus(pose.at[rig.arms[side].hand], kept[side])
+				_hold(rig, pose, goals, side, PlainVectors.plus(wrists[side], pushed), hands[side])
 	return moved
 
 
@@ -297,17 +302,23 @@ static func _above(rig, pose, place):
 
 # Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was. held: how much
 # each hand is kept somewhere, and so is not pushed.
+#
+# An arm that goes through something is pushed out to one side before its middle and to the other after: towards the middle it is
+# pushed ever less, so that it does not jump.
 static func _guarded(rig, pose, held, across):
+	var local = Util.list(pose.local)
+	var turned = Util.list(pose.turned)
+	var at = Util.list(pose.at)
+	var whole = [1.0, 1.0]
 	var moved = false
-	var passes = PASSES
-	while passes > 0:
-		passes -= 1
+	for number in range(PASSES):
 		var ends = capsule_ends(rig, pose)
 		var balls = _balls(rig, ends)
+		var found = false
+		var first = number == 0
 		var shifts = []
 		for side2 in range(rig.arms.size()):
-			shifts.append(_shift(rig, ends, balls, side2, held, across))
-		var found = false
+			shifts.append(_shift(rig, ends, balls, side2, held, across, whole, first))
 		for side in range(shifts.size()):
 			var shift = shifts[side]
 			if PlainVectors.length(shift) > 0.0:
@@ -315,8 +326,21 @@ static func _guarded(rig, pose, held, across):
 				bring(rig, pose, side, PlainVectors.plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
 				found = true
 		if not found:
-			return moved
+			break
 		moved = true
+	if moved and Util.least(whole[0], whole[1]) < 1.0:
+		var goals = []
+		for arm2 in rig.arms:
+			goals.append(pose.at[arm2.hand])
+		pose.local = local
+		pose.turned = turned
+		pose.at = at
+		for side in range(rig.arms.size()):
+			var arm = rig.arms[side]
+			var way = PlainVectors.minus(goals[side], pose.at[arm.hand])
+			if PlainVectors.length(way) > 0.0:
+				var goal = PlainVectors.plus(pose.at[arm.hand], PlainVectors.scaled(way, whole[side]))
+				bring(rig, pose, side, goal, pose.turned[arm.hand], STRAIGHT)
 	return moved
 
 
@@ -350,8 +374,9 @@ static func _balls(rig, ends):
 	return out
 
 
-# Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.
-static func _shift(rig, ends, balls, side, held, across):
+# Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how much of that
+# is to be done, which the first pass finds.
+static func _shift(rig, ends, balls, side, held, across, whole, first):
 	var shift = [0.0, 0.0, 0.0]
 	var own = 1.0 - held[side]
 	if own <= 0.0:
@@ -388,16 +413,19 @@ static func _shift(rig, ends, balls, side, held, across):
 			var x = both3[0]
 			var y = both3[1]
 			var z = both3[2]
-			var s = both3[3]
-			var gap = both3[4]
+			var gap = both3[3]
 			var radii = mine.radius + other.radius
 			if gap >= radii or gap < 1e-09:
 				continue
 			var depth = radii - gap
 			var amount = depth - 0.5 * SOFT if depth > SOFT else depth * depth / (2.0 * SOFT)
 			var inner = Util.least(1.0, gap / (DEEP * radii))
-			amount = amount * share * inner * inner * (3.0 - 2.0 * inner)
-			var part = s if mine.kind == FOREARM else 1.0
+			inner = inner * inner * (3.0 - 2.0 * inner)
+			if first:
+				whole[side] = Util.least(whole[side], inner)
+				inner = 1.0
+			amount = amount * share * inner
+			var part = _along(ends, 2 * i, 2 * k) if mine.kind == FOREARM else 1.0
 			var way = [x / gap, y / gap, z / gap]
 			var left = amount - part * PlainVectors.dot(way, shift)
 			if left > 0.0:
@@ -405,8 +433,33 @@ static func _shift(rig, ends, balls, side, held, across):
 	return shift
 
 
-# Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it ends, 0..1, and
-# its length.
+# Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends, 0..1. Of lines side by
+# side, where it may end anywhere, the middle counts more the less they cross.
+static func _along(ends, i, k):
+	var a = ends[i]
+	var c = ends[k]
+	var u = PlainVectors.minus(ends[i + 1], a)
+	var v = PlainVectors.minus(ends[k + 1], c)
+	var w = PlainVectors.minus(a, c)
+	var uu = PlainVectors.dot(u, u)
+	var uv = PlainVectors.dot(u, v)
+	var vv = PlainVectors.dot(v, v)
+	var uw = PlainVectors.dot(u, w)
+	var vw = PlainVectors.dot(v, w)
+	if uu <= 1e-12:
+		return 0.0
+	var stiff = (1.0 + EVEN) * uu
+	var middle = 0.5 * EVEN * uu - uw
+	if vv <= 1e-12:
+		return Util.least(Util.most(middle / stiff, 0.0), 1.0)
+	var s = Util.least(Util.most((vv * middle + uv * vw) / (stiff * vv - uv * uv), 0.0), 1.0)
+	var t = (uv * s + vw) / vv
+	if t < 0.0 or t > 1.0:
+		s = Util.least(Util.most((uv * Util.least(Util.most(t, 0.0), 1.0) + middle) / stiff, 0.0), 1.0)
+	return s
+
+
+# Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length.
 static func apart(ends, i, k):
 	var a = ends[i]
 	var c = ends[k]
@@ -437,4 +490,4 @@ static func apart(ends, i, k):
 	var x = both[0]
 	var y = both[1]
 	var z = both[2]
-	return [x, y, z, s, sqrt(x * x + y * y + z * z)]
+	return [x, y, z, sqrt(x * x + y * y + z * z)]

@@ -9,6 +9,7 @@ const Util = preload("util.gd")
 const HANDS = ["left", "right"]
 const PLACES = ["palm", "fingertips", "back", "wrist"]
 const EASE = 0.15  # seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+const SETTLES = 0.3  # seconds it takes at least where the contact lasts: what it touches may be far from its place
 
 
 # Where a hand is on a joint at a moment. time: clip seconds. at: the wrist in the joint's own space, metres. turn: how the hand
@@ -55,10 +56,13 @@ static func contact_weight(span, seconds, first, last):
 	if seconds < span.start or seconds > span.end:
 		return 0.0
 	var shown = 1.0
-	if span.start > first and span.ease_in > 0.0:
-		shown = Util.least(shown, (seconds - span.start) / span.ease_in)
-	if span.end < last and span.ease_out > 0.0:
-		shown = Util.least(shown, (span.end - seconds) / span.ease_out)
+	var comes = span.start > first and span.ease_in > 0.0
+	var goes = span.end < last and span.ease_out > 0.0
+	var least = Util.least(SETTLES, (span.end - span.start) / (2.0 if (comes and goes) else 1.0))
+	if comes:
+		shown = Util.least(shown, (seconds - span.start) / Util.most(span.ease_in, least))
+	if goes:
+		shown = Util.least(shown, (span.end - seconds) / Util.most(span.ease_out, least))
 	return shown * shown * (3.0 - 2.0 * shown)
 
 

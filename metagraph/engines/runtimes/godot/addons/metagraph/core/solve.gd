@@ -18,6 +18,11 @@ const EYE_DOWN = 30.0 * RADIAN
 const FREE = 0.7
 const LOOK_SIDEWAYS = 110.0 * RADIAN  # beyond these nobody looks, however much the target is behind
 const LOOK_UPRIGHT = 65.0 * RADIAN
+# What is behind is looked at ever less, so that nothing turns from one side to the other in a moment.
+const LOOK_BEHIND = 120.0 * RADIAN
+const TURN_BEHIND = 85.0 * RADIAN
+const EYES_BEHIND = 100.0 * RADIAN
+const TURNED_BACK = 95.0 * RADIAN  # the farthest that a body counts as turned away
 const NEAREST = 0.25  # metres; nearer things are looked at as if they were there
 const WIDEST = -0.8  # how far lids open beyond rest, of their shutting turn
 
@@ -46,7 +51,7 @@ static func look(rig, chain, places, moves, amount, calm, share):
 		var y = rig.up.dot(away)
 		var z = rig.ahead.dot(away)
 		var level = sqrt(x * x + z * z)
-		var sideways = Util.within(atan2(x, z), -LOOK_SIDEWAYS, LOOK_SIDEWAYS)
+		var sideways = _turning(atan2(x, z), LOOK_SIDEWAYS, LOOK_BEHIND)
 		var upwards = Util.within(atan2(y, level), -LOOK_UPRIGHT, LOOK_UPRIGHT)
 		var weight = part[0].amount * amount * (1.0 if part[0].asked else calm)
 		eyes_x += part[1] * sideways
@@ -78,7 +83,7 @@ static func look(rig, chain, places, moves, amount, calm, share):
 		var x = side.left.dot(away)
 		var y = side.up.dot(away)
 		var across = sqrt(x * x + y * y)
-		var angle = atan2(across, side.ahead.dot(away)) / Util.most(across, 1e-12) * whole
+		var angle = _turning(atan2(across, side.ahead.dot(away)), PI, EYES_BEHIND) / Util.most(across, 1e-12) * whole
 		eyes.append(within_reach(x * angle + moves.eyes[0] * (1.0 - whole), y * angle + moves.eyes[1] * (1.0 - whole)))
 	return {turns = turns, eyes = eyes}
 
@@ -94,8 +99,11 @@ static func _head(rig, turned, left, up, amount, share):
 	var rests = []
 	for each in [[rig.trunk, rig.trunk_ahead], [turned.size() - 1, rig.head_ahead]]:
 		var facing = Turns.rotate(turned[each[0]], each[1])
-		var gap = left - atan2(rig.left.dot(facing), rig.ahead.dot(facing))
-		rests.append(gap - 2.0 * PI if gap > PI else (gap + 2.0 * PI if gap < -PI else gap))
+		var x_ahead = rig.left.dot(facing)
+		var z_ahead = rig.ahead.dot(facing)
+		var gap = left - atan2(x_ahead, z_ahead)
+		gap = gap - 2.0 * PI if gap > PI else (gap + 2.0 * PI if gap < -PI else gap)
+		rests.append(_turning(gap, TURNED_BACK, TURN_BEHIND) * Util.smooth(2.0 * sqrt(x_ahead * x_ahead + z_ahead * z_ahead)))
 	var turn_back = Util.most(Util.least(rests[0], rests[1]), 0.0) + Util.least(Util.most(rests[0], rests[1]), 0.0)
 	x += beyond * amount * _excess(turn_back, Util.most(TURNED_AWAY, abs(left)))
 	x = Util.within(x, -HEAD_SIDEWAYS, HEAD_SIDEWAYS)
@@ -140,6 +148,11 @@ static func lid(down, follow, already, blink):
 static func part_along(q, row):
 	var along = q.x * row[0] + q.y * row[1] + q.z * row[2] + q.w * row[3]
 	return along if q.w >= 0 else -along
+
+
+# Returns an angle kept within a limit, and ever less of it from `behind` to half a turn.
+static func _turning(angle, most, behind):
+	return Util.within(angle, -most, most) * (1.0 - Util.smooth((abs(angle) - behind) / (PI - behind)))
 
 
 static func _excess(x, free):

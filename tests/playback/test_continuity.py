@@ -1,0 +1,163 @@
+"""The law of continuity: what is added to clips moves no joint more than 3 cm or 8 degrees in a sixtieth of a
+second beyond what they do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.requests import AnyRequest, Feel, Go, Look
+from metagraph.motion import rotation
+from metagraph.playback.continuity import (
+    MOST_TURN,
+    MOST_WAY,
+    RATE,
+    ContinuityLaw,
+    added_moves,
+    blending,
+    moved_joints,
+)
+from metagraph.playback.evaluator import BLENDS, STAGES, Evaluator
+from metagraph.playback.plan import LayerPlan, Plan
+from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.mood import MOODS
+from metagraph.playback.planning.running_plan import plan_performance
+from tests.thorough import many
+
+SEED = 11
+NEARLY = 1.01  # one of all rounds is at 1.002 of what the law allows
+CHANGES, SECONDS = 2.0, 5.5  # when everything changes, and how long is looked at
+
+
+def globals_(*turns: tuple[float, float, float], at: list[list[float]]) -> tuple[Any, Any]:
+    """One joint's rotations `[N, 1, 4]` and positions `[N, 1, 3]`."""
+    return rotation.exp(np.array(turns, float))[:, None], np.array(at, float)[:, None]
+
+
+def still(count: int) -> list[tuple[float, float, float]]:
+    return [(0.0, 0.0, 0.0)] * count
+
+
+def test_what_the_clips_do_themselves_is_not_added() -> None:
+    moving = globals_(*still(3), at=[[0, 0, 0], [0.2, 0, 0], [0.5, 0, 0]])
+    found = added_moves(moving, moving)
+    assert found.breaks.max() == 0
+
+
+def test_a_joint_may_do_less_than_its_clip_and_may_be_elsewhere() -> None:
+    clip = globals_(*still(3), at=[[0, 0, 0], [0.2, 0, 0], [0.5, 0, 0]])
+    held = globals_(*still(3), at=[[1, 0, 0], [1.1, 0, 0], [1.1, 0, 0]])
+    assert_allclose(added_moves(clip, held).ways, 0, atol=1e-12)
+
+
+def test_a_joint_that_goes_another_way_or_farther_breaks_the_law() -> None:
+    clip = globals_(*still(3), at=[[0, 0, 0], [0.02, 0, 0], [0.04, 0, 0]])
+    other = globals_(*still(3), at=[[0, 0, 0], [0.02, 0.031, 0], [0.08, 0.031, 0]])
+    found = added_moves(clip, other)
+    assert_allclose(found.ways[:, 0], [0.031, 0.04], atol=1e-9)
+    assert (found.breaks > 1).all()
+
+
+def test_turns_count_and_so_does_the_size_of_the_figure() -> None:
+    clip = globals_((0, 0, 0), (0, 0.1, 0), at=[[0, 0, 0], [0, 0, 0]])
+    turned = globals_((0, 0, 0), (0, 0.1 + MOST_TURN, 0), at=[[0, 0, 0], [2 * MOST_WAY, 0, 0]])
+    found = added_moves(clip, turned, size=2.0)
+    assert_allclose([found.turns[0, 0] / MOST_TURN, found.ways[0, 0] / MOST_WAY], 1, atol=1e-6)
+
+
+def test_the_face_is_not_looked_at(sample: Project) -> None:
+    assert sample.skeleton is not None
+    names = {sample.skeleton.names[j] for j in moved_joints(sample)}
+    assert {"Head", "LeftHand", "LeftIndex3", "RightFoot"} <= names
+    assert not any("Lid" in name or "Eye" in name for name in names)
+
+
+def test_a_project_without_a_skeleton_has_no_law() -> None:
+    with pytest.raises(ValueError, match="skeleton"):
+        ContinuityLaw(Project())
+
+
+def test_the_last_stage_leaves_the_poses_that_are_drawn(sample: Project) -> None:
+    evaluator = Evaluator(make_plan(sample, 20.0, seed=SEED), sample)
+    times = np.arange(4.0, 12.0, 0.5)
+    stages = dict(evaluator.stages(times))
+    drawn = evaluator.at(times)
+    assert tuple(stages) == STAGES
+    assert_allclose(stages[STAGES[-1]].rotations, drawn.rotations, atol=1e-6)
+    assert_allclose(stages[STAGES[-1]].translations, drawn.translations, atol=1e-6)
+
+
+def test_blends_are_told_from_clips_that_play(sample: Project) -> None:
+    cue = make_plan(sample, 20.0, seed=SEED).layers["arms"].cues[0]
+    empty: dict[Layer, LayerPlan] = {layer: LayerPlan(layer) for layer in LAYERS}
+    plan = Plan(SEED, 20.0, {**empty, "arms": LayerPlan("arms", cues=(cue,))})
+    times = np.array([cue.start + 0.01, (cue.start + cue.end) / 2, cue.end - 0.01])
+    assert blending(plan, times).tolist() == [True, False, True]
+
+
+def broken(law: ContinuityLaw, evaluator: Evaluator, start: float, end: float) -> Iterator[str]:
+    """Yield what breaks the law, in words; blends are left to what `check` says of them."""
+    times = np.arange(round(start * RATE), round(end * RATE)) / RATE
+    for name, moves in law.added(evaluator.plan, times, evaluator.stages(times)).items():
+        ways, turns, breaks, joints = moves.worst(law.joints)
+        n = int(np.argmax(breaks))
+        if name != BLENDS and breaks[n] > NEARLY:
+            joint, far, turn = law.skeleton.names[int(joints[n])], 100 * ways[n], np.degrees(turns[n])
+            yield f"{name}: {joint} {far:.1f} cm, {turn:.0f} degrees at {times[n + 1]:.2f} s"
+
+
+def rounds(project: Project) -> list[dict[str, Any]]:
+    """All there is to be tried: from each stance of the arms to each other, on each stance of the body, with
+    changes of the head; targets all round and moods go along in turn.
+    """
+    of = {layer: list(project.graphs[layer].stances) for layer in LAYERS}
+    arms = [(a, b) for a, b in product(of["arms"], repeat=2) if a != b]
+    heads = [(a, b) for a, b in product(of["head"], repeat=2) if a != b]
+    ways = np.arange(0, 2 * np.pi, np.pi / 6).tolist()
+    targets = [(1.5 * sin(a), y, 1.5 * cos(a)) for a in ways for y in (0.6, 1.5, 2.2)]
+    moods = list(MOODS)
+    out = []
+    for n, ((a, b), (h, i), body) in enumerate(product(arms, heads, of["body"])):
+        out.append(
+            {
+                "stances": {"arms": a, "head": h, "body": body},
+                "to": {"arms": b, "head": i, "body": of["body"][n % len(of["body"])]},
+                "looks": (targets[7 * n % len(targets)], targets[(7 * n + 17) % len(targets)]),
+                "mood": moods[n % len(moods)],
+            }
+        )
+    return out
+
+
+def tried(project: Project, one: dict[str, Any]) -> Evaluator:
+    to: dict[Layer, str] = one["to"]
+    asks: list[AnyRequest] = [
+        Go(id=f"go {layer}", layer=layer, stance=stance, at=CHANGES) for layer, stance in to.items()
+    ]
+    asks.append(Feel(id="feel", mood=one["mood"], at=CHANGES))
+    asks += [Look(id=f"look {n}", to=place, at=CHANGES + n) for n, place in enumerate(one["looks"])]
+    return Evaluator(plan_performance(project, asks, SECONDS, SEED, one["stances"], idle=False), project)
+
+
+def test_nothing_that_is_added_jumps_whatever_changes(sample: Project) -> None:
+    law = ContinuityLaw(sample)
+    every = rounds(sample)
+    chance = np.random.default_rng(SEED)
+    chosen = chance.choice(len(every), many(24, len(every)), replace=False)
+    found = {n: list(broken(law, tried(sample, every[n]), CHANGES - 0.2, SECONDS)) for n in chosen.tolist()}
+    assert {n: words for n, words in found.items() if words} == {}
+
+
+@pytest.mark.nightly
+def test_nothing_that_is_added_jumps_in_ten_minutes(sample: Project) -> None:
+    law, evaluator = ContinuityLaw(sample), Evaluator(make_plan(sample, 600.0, seed=SEED), sample)
+    found = [list(broken(law, evaluator, start, start + 30.0)) for start in range(0, 600, 30)]
+    assert [words for words in found if words] == []
