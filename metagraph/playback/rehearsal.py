@@ -24,6 +24,7 @@ from metagraph.motion.in_place import travel_of
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.continuity import ContinuityLaw
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
+from metagraph.playback.own_moves import own_moves
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.running_plan import plan_performance
@@ -42,6 +43,7 @@ TALL = 1.75  # metres: the lengths and speeds below are of a figure of that heig
 USUAL = 1.5  # times the clips' own 99th percentile, up to which nothing is reported
 JUMP = 100.0  # m/s2: 2.8 cm from one sixtieth of a second to the next
 FAST = 3.0  # m/s that a hand may go in a blend
+OWN = 0.8  # of what is seen, from which on a clip that does so itself is why
 GLIDE, GLIDES = 0.6, 0.15  # m/s that the hips may go over the floor in a blend; metres that are seen
 UNDER = 0.05  # metres below the floor
 ABOVE = 0.20  # metres of the lowest joint above it
@@ -331,9 +333,15 @@ class _Findings:
         changes = np.linalg.norm(np.diff(places, 2, axis=0), axis=-1) * RATE**2
         limits = np.maximum(USUAL * self.changes, JUMP * self.size)
         for part, name in enumerate(self.seen.parts):
-            for frame, _, cause, count in self._worst(changes[:, part], limits, part):
+            for frame, value, cause, count in self._worst(changes[:, part], limits, part):
                 near = places[frame : frame + 3, part]
                 far = 100 * float(np.linalg.norm(np.diff(near, axis=0), axis=-1).max())
+                if OWN * value <= self._own_moves(name, frame + 1, cause)[1]:
+                    ways = np.linalg.norm(
+                        np.diff(places[max(0, frame - 3) : frame + 6, part], axis=0), axis=-1
+                    )
+                    yield self._own_jump(name, far, frame + 1, cause, bool(np.median(ways) < ways.max() / 4))
+                    continue
                 words = plural_phrase(
                     "{part} jumps {length:.0f} cm in a sixtieth of a second",
                     "{part} jumps {length:.0f} cm in a sixtieth of a second, {count:,} times",
@@ -347,6 +355,22 @@ class _Findings:
                     else phrase("Look at the clip there: trim it, or smooth it in the program it is from.")
                 )
                 yield self._problem("play-jump", words, remedy, frame + 1, cause)
+
+    def _own_moves(self, part: str, frame: int, cause: _Cause) -> tuple[float, float]:
+        """Return what a part does at a frame in the clip that the cause plays, as `own_moves`."""
+        joint = anatomy.project_roles(self.project)[part]
+        time = float(self.seen.times[frame])
+        return own_moves(self.project, self.plan, cause.layer, joint, time, RATE)
+
+    def _own_jump(self, part: str, far: float, frame: int, cause: _Cause, alone: bool) -> Problem:
+        """Return that a clip itself moves so fast. alone: for a moment, as no limb does."""
+        words = phrase(
+            "{part} moves {length:.0f} cm in a sixtieth of a second, in the clip itself",
+            part=_NAMES[part],
+            length=far,
+        )
+        remedy = phrase("If that is a fault, trim the clip or smooth it in the program it is from.")
+        return self._problem("clip-jump", words, remedy, frame, cause, "warning" if alone else "hint")
 
     def _added(self) -> Iterator[Problem]:
         """Yield where what is added to clips breaks the law of continuity."""
@@ -375,7 +399,7 @@ class _Findings:
             if name == "hips":
                 continue
             for frame, value, cause, _ in self._worst(speeds[:, part], limits, part):
-                if not cause.blending:
+                if not cause.blending or OWN * value <= self._own_moves(name, frame, cause)[0]:
                     continue
                 words = phrase(
                     "{part} goes {speed:.1f} m/s, and at most {usual:.1f} m/s in the clips",

@@ -117,9 +117,18 @@ def test_a_transition_that_travels_slides_back_and_is_named(sound: Project, toy:
 
 def test_a_jump_within_a_clip_is_named_with_the_clip_s_action(toy: Any) -> None:
     project = changed(toy.project("arms"), jumping, "up point")
-    found = [p for p in rehearse(project, SECONDS) if p.code == "play-jump"]
+    found = [p for p in rehearse(project, SECONDS) if p.code == "clip-jump"]
     assert {p.action for p in found} == {toy.id(project, "up point")}
+    assert all("in the clip itself" in p.message and p.severity == "warning" for p in found)
     assert all("up point" in p.message and "trim" in p.remedy for p in found)
+
+
+def test_a_throw_that_the_clip_makes_is_a_hint_and_no_blend_is_blamed(toy: Any) -> None:
+    project = changed(
+        toy.project("arms"), lambda clip: toy.clip(clip.name, 0.2, 0.0, swing=2.8, fps=60), "rest short"
+    )
+    found = [p for p in rehearse(project, SECONDS) if p.action == toy.id(project, "rest short")]
+    assert {(p.code, p.severity) for p in found} == {("clip-jump", "hint")}
 
 
 def test_a_stance_that_is_never_reached_is_a_hint(sound: Project, toy: Any) -> None:
