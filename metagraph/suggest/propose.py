@@ -21,6 +21,7 @@ from metagraph.suggest.alike import Alike, LabelledExample
 from metagraph.suggest.clip_measures import is_cycle, layer_of, with_tremble
 from metagraph.suggest.details import rest_of, with_likelihoods, with_moved_joints, with_stroke, with_timing
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.folder_tags import join_tags, read_folder_tags
 from metagraph.suggest.left_aside import FAR, MANY, explain_skipping
 from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.proposal import (
@@ -147,14 +148,15 @@ def propose(
     traits = with_tremble(seen)
     # All names together give the stances, also those of placed clips, so that the meaning of a number is not
     # forgotten while a person goes through the proposals.
-    names = read_names([x.name for x in project.clips.values()], patterns) if "name" in sources else {}
+    told = _read_names(project, patterns) if "name" in sources else {}
+    said = {c: told.get(c, NameGuess()) for c in chosen}
     moving = "motion" in sources
     mine = {c: traits[c] for c in chosen if c in traits}
-    called = {c: names.get(project.clips[c].name, NameGuess()) for c in mine}
+    called = {c: said[c] for c in mine}
     begun = {
-        c: said.stance.value
-        for c, said in called.items()
-        if said.stance is not None and said.stance.confidence >= TOLD
+        c: guess_.stance.value
+        for c, guess_ in called.items()
+        if guess_.stance is not None and guess_.stance.confidence >= TOLD
     }
     fresh = not any(True for _ in project.actions())
     whole = moving and (is_whole_body_carried(project) or (fresh and are_whole_body_recordings(mine, begun)))
@@ -164,11 +166,10 @@ def propose(
     standing = still or standing  # nor in the midst of a wave
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
-    odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
+    odd = sum(1 for c in chosen if said[c].other is not None)
     heard, others, aside = list[ClipEvidence](), list[ClipEvidence](), dict[str, str]()
     for c in chosen:
-        name = project.clips[c].name
-        each = ClipEvidence(c, name, names.get(name, NameGuess()), traits.get(c))
+        each = ClipEvidence(c, project.clips[c].name, said[c], traits.get(c))
         if whole and each.traits is not None and each.traits.face == 0:
             each.posture = with_whole_body(each.traits).layers[CARRIER]
         if each.traits is not None and moving:
@@ -241,6 +242,17 @@ def _going_away(out: Mapping[str, Proposal], traits: Mapping[str, Traits]) -> di
         )
         for c, p in far.items()
         if p.end_stance is None or p.end_stance.value not in played
+    }
+
+
+def _read_names(project: Project, patterns: Patterns | None) -> dict[str, NameGuess]:
+    """Return what the name of each clip says, and its folders, by clip id."""
+    names = read_names([x.name for x in project.clips.values()], patterns)
+    folders = read_folder_tags({c: x.path for c, x in project.clips.items()}, patterns)
+    return {
+        c: replace(found, tags=join_tags(found.tags, folders.get(c)))
+        for c, x in project.clips.items()
+        if (found := names.get(x.name)) is not None
     }
 
 
