@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.expand import chain, find_end_stance, list_connections
-from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Project
+from metagraph.graph.model import LAYERS, REACH, Action, ClipEntry, Layer, MetaGraph, Project
 from metagraph.graph.repeating import cycle_of, seconds_played
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
@@ -230,6 +230,27 @@ def _played(action: Action, clip: Clip, start: float, end: float, times: Array) 
         return sample(start + times)
     cue = Cue(action, 0.0, float(times[-1]), start, 0.0, 0.0, "", "", "", cycle_from=start, cycle_to=end)
     return sample_cue(cue, times, sample)
+
+
+def clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
+    """Return a clip's motion; where an action repeats a part of it, that part as often as it plays. None if
+    its file is missing.
+    """
+    motion = entry.motion
+    for action in project.uses.get(entry.id, ()) if motion is not None else ():
+        start, end = project.span(action)
+        if motion is None or cycle_of(action.kind, action.timing, start, end) <= 0:
+            continue
+        seconds = seconds_played(action.kind, action.timing, start, end)
+        times = np.arange(round(seconds * motion.fps) + 1) / motion.fps
+        rotations, translations = _played(action, motion, start, end, times)
+        weights = motion.weights
+        if weights is not None:
+            low, high, part = motion.locate(start + np.mod(times, end - start))
+            weights = weights[low] + (weights[high] - weights[low]) * part[:, None]
+        moved = translations[:, list(motion.translated)]
+        return replace(motion, rotations=rotations, translations=moved, weights=weights)
+    return motion
 
 
 def write_machine_glb(

@@ -24,6 +24,10 @@ CYCLE = (0.2, 1.25)  # seconds that one cycle of a movement that is made to repe
 FLOWS = 0.3  # of its greatest speed: what is so fast at its ends goes on across its seam
 TURNS = 0.45  # of its mean speed: what is so fast near its ends only turns round at its seam
 STROKES: Mapping[Layer, float] = {"arms": 0.15, "head": 0.08}  # heights a second: no breathing goes so fast
+HANGING = 0.1  # heights that hands go while nothing is done with them
+SHIFTS = 0.05  # heights that the hips go to a side: farther is a weight that is shifted, no rest
+SHRUGS = 0.0065  # heights that shoulders rise: no breath lifts them so far
+LOOKS = 0.06  # heights that the head goes: farther is a look round
 STRIDE = 0.05  # heights by which each foot passes the other in a walk, at least
 BREATHES = 0.008  # heights a second that arms on a breathing chest move while the head moves
 SEVERAL = 8  # clips from which on the movement of the calmest belongs to the recording
@@ -86,7 +90,19 @@ def resting(traits: Traits) -> float:
         - 1.5 * log(fastest / 0.05)
         + 3.0 * x.steady
         - 6.0 * max(0.0, apart - 0.3)
+        - (_busy_idle(traits) if traits.layers["arms"].extent < HANGING else 0.0)
         + flows * (max(0.0, -long) + small)
+    )
+
+
+def _busy_idle(traits: Traits) -> float:
+    """Return what speaks against a rest in a clip whose arms hang: weight that is shifted, shoulders that
+    rise, a look round.
+    """
+    return (
+        min(4.0, 40.0 * max(0.0, traits.sway - SHIFTS))
+        + min(3.0, 300.0 * max(0.0, traits.shrug - SHRUGS))
+        + min(2.0, 20.0 * max(0.0, traits.layers["head"].extent - LOOKS))
     )
 
 

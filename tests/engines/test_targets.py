@@ -20,6 +20,7 @@ import pytest
 from metagraph.engines.engine_machine import animations, machines
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
+from metagraph.engines.targets.agents import gestures
 from metagraph.engines.targets.target import Contents, TargetReport
 from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.gltf.reader import read_gltf_clips
@@ -122,6 +123,10 @@ def test_losses_count_what_the_project_has(sample: Project) -> None:
     weighted = edits.set_weight(sample, "arms", "spine", 0.5)
     assert any("1 layer weights" in words for words in registry.losses(weighted, "playcanvas"))
     assert not any("layer weights" in words for words in registry.losses(sample, "playcanvas"))
+    wave = next(a.id for a in sample.actions() if a.kind == "gesture")
+    repeats = edits.update_actions(sample, [wave], timing={"repeat": 4.0})
+    assert any(words.startswith("1 actions repeat") for words in registry.losses(repeats, "playcanvas"))
+    assert not any("repeat for" in words for words in registry.losses(sample, "playcanvas"))
 
 
 def test_a_target_that_does_not_exist_is_told_with_the_nearest(sample: Project, tmp_path: Path) -> None:
@@ -428,6 +433,15 @@ def test_gesture_json_goes_in_holds_and_comes_out_in_order(written: Any) -> None
         assert 0 == into["from"] <= into["to"] == hold["from"] <= hold["to"] == out["from"] <= out["to"]
         assert out["to"] == pytest.approx(clips[name].duration * 30, abs=1)
         assert "loopCount" not in hold
+
+
+def test_gesture_json_holds_a_gesture_that_repeats_for_its_whole_cycles(sample: Project) -> None:
+    wave = next(a for a in sample.actions() if a.kind == "gesture")
+    project = edits.update_actions(sample, [wave.id], timing={"start": 0.2, "end": 0.8, "repeat": 2.4})
+    built = machines(project)
+    name = next(s.name for m in built for s in m.states if s.action.id == wave.id)
+    edges = [(each["from"], each["to"]) for each in gestures(project, built)[name]["queueOptions"]]
+    assert edges == [(0, 18), (18, 54), (54, 72)]
 
 
 def test_control_characters_in_names_and_texts_spoil_no_export(sample: Project, tmp_path: Path) -> None:

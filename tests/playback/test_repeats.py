@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.engine_machine import animations, machines
+from metagraph.engines.engine_machine import animations, clip_as_played, machines
 from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
 from metagraph.formats.project.data import action_data, action_from
@@ -67,8 +67,8 @@ def test_it_plays_whole_cycles_for_as_long_as_asked(
     project: Project, wave: str, duration: float | None, cycles: int
 ) -> None:
     cue = played(planned(project, asked(wave, duration=duration)))
-    assert (cue.start, cue.end) == (1.0, pytest.approx(1.0 + cycles * CYCLE))
-    assert (cue.cycle_from, cue.cycle_to) == (0.3, pytest.approx(0.7))
+    assert [cue.start, cue.end] == pytest.approx([1.0, 1.0 + cycles * CYCLE])
+    assert [cue.cycle_from, cue.cycle_to] == pytest.approx([0.3, 0.7])
 
 
 def test_a_request_for_an_action_says_how_long(project: Project, wave: str) -> None:
@@ -192,3 +192,13 @@ def test_engines_that_cannot_repeat_get_an_animation_of_the_usual_length(project
     assert state.seconds == pytest.approx(2.0) == pytest.approx(clip.duration)
     steps = np.abs(np.diff(clip.rotations, axis=0)).max((1, 2))
     assert steps.max() < 3 * steps[:12].max(), "no jump, though the cycle's ends do not meet"
+
+
+def test_a_clip_that_is_written_alone_shows_its_movement_as_often_as_it_plays(
+    project: Project, wave: str
+) -> None:
+    entry = project.clips[project.action(wave).clip]  # type: ignore[union-attr]
+    shown = clip_as_played(project, entry)
+    assert shown is not None and shown.duration == pytest.approx(2.0, abs=1 / shown.fps)
+    other = next(e for e in project.clips.values() if e.id != entry.id)
+    assert clip_as_played(project, other) is other.motion

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from metagraph.suggest.clip_measures import SEVERAL, TREMBLE, layer_of, with_tremble
+import pytest
+
+from metagraph.suggest.clip_measures import SEVERAL, TREMBLE, layer_of, resting, with_tremble
 from metagraph.suggest.traits import Traits
 from tests.suggest.test_traits import of
 
@@ -48,3 +50,24 @@ def test_where_the_calmest_clips_move_that_is_no_tremble(toy: Any) -> None:
 def test_a_clip_that_only_trembles_is_told_by_all_it_has(toy: Any) -> None:
     clips = trembling(toy, 4 * SEVERAL)
     assert layer_of(with_tremble(clips)["c0"]).value == layer_of(clips["c0"]).value == "body"
+
+
+@pytest.mark.parametrize(
+    ("measures", "less"),
+    [
+        ({"sway": 0.032, "shrug": 0.0054}, 0.0),  # of the idles of several studios, at most
+        ({"sway": 0.124}, 2.9),  # weight that is shifted in six seconds
+        ({"shrug": 0.0276}, 3.0),  # shoulders that are stretched
+    ],
+)
+def test_an_idle_in_which_weight_is_shifted_or_shoulders_rise_is_no_rest(
+    toy: Any, measures: dict[str, float], less: float
+) -> None:
+    calm = replace(of(toy.clip("calm", 6.0, swing=0.02)), sway=0.0, shrug=0.0)
+    assert resting(calm) - resting(replace(calm, **measures)) == pytest.approx(less, abs=0.1)
+
+
+def test_a_look_round_is_no_rest(toy: Any) -> None:
+    calm = of(toy.clip("calm", 6.0, swing=0.02))
+    far = replace(calm.layers["head"], extent=0.13)
+    assert resting(replace(calm, layers={**calm.layers, "head": far})) < resting(calm) - 1.0

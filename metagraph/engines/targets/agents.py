@@ -23,6 +23,7 @@ from metagraph.errors import describe_error
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.graph.requests import RequestError
 from metagraph.playback.bml.writer import write_bml
 from metagraph.playback.timing.phases import phases
@@ -167,16 +168,22 @@ def write_smartbody(order: ExportOrder) -> ExportedFiles:
 FPS = 30.0  # frames a second that "from" and "to" count
 
 
+def _held(project: Project, state: EngineState) -> tuple[float, float, float]:
+    """Return from when to when a gesture's animation may be held, and how long it is, seconds."""
+    action, found = state.action, phases(project, state.action)
+    cycle = cycle_of(action.kind, action.timing, found.start, found.end)
+    if cycle > 0:
+        return cycle, max(cycle, state.seconds - cycle), state.seconds
+    return found.stroke_end - found.start, found.relax - found.start, found.end - found.start
+
+
 def gestures(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return gesture.json: each gesture's way in, its hold, which repeats, and its way out; frames."""
     out: dict[str, Any] = {}
     for machine in built:
         for state in machine.states:
             if state.action.kind == "gesture":
-                found = phases(project, state.action)
-                hold, relax, end = (
-                    round((x - found.start) * FPS) for x in (found.stroke_end, found.relax, found.end)
-                )
+                hold, relax, end = (round(x * FPS) for x in _held(project, state))
                 out[state.name] = {
                     "queueOptions": [
                         {"name": "in", "from": 0, "to": hold, "loopCount": 1},

@@ -31,6 +31,10 @@ def _soft(project: Project) -> int:
     return sum(1 for a in project.actions() if a.joint_weights)
 
 
+def _repeating(project: Project) -> int:
+    return sum(a.timing.repeat > 0 and a.kind in ("gesture", "fidget") for a in project.actions())
+
+
 def _seams(project: Project) -> int:
     return sum(1 for a in project.actions() if a.kind == "stance" and a.timing.blend_in > 0)
 
@@ -73,6 +77,10 @@ MACHINE: tuple[Loss, ...] = (
             "the first pose of the stance, and cannot be changed there"
         ),
         _soft,
+    ),
+    Loss(
+        phrase("{n} actions repeat for as long as a request asks: there, each plays for its usual time"),
+        _repeating,
     ),
     Loss(phrase("{n} loops blend their seam here but jump at the seam there"), _seams),
 )

@@ -17,6 +17,7 @@ import numpy as np
 
 from metagraph.common.files import read_file
 from metagraph.common.wording import phrase
+from metagraph.engines.engine_machine import clip_as_played
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
@@ -191,7 +192,8 @@ def _write(order: ExportOrder) -> ExportedFiles:
     meta, said = meta_of(project, order.contents.base)
     mesh = len(skeleton) + (sum(int(p) < 0 for p in skeleton.parents) > 1)
     used = [project.clips[c] for c in project.uses if c in project.clips]
-    clips = [fit_curves_to_face(project, e.motion) for e in used if e.motion is not None]
+    played = [clip_as_played(project, entry) for entry in used]
+    clips = [fit_curves_to_face(project, motion) for motion in played if motion is not None]
     names = unique_names([clip.name for clip in clips])
     path = order.folder / f"{order.stem}.vrm"
     stand = t_pose(skeleton, roles, axes[0])
