@@ -32,6 +32,7 @@ HALVES = (
     ("lower_leg", "foot"),
 )
 BANDED = np.tile([lower in ("lower_arm", "hand", "lower_leg", "foot") for _, lower in HALVES], 2)
+SMOOTH = 0.5  # of the error that other meshes may have: on plain skin facets are seen
 UNTURNED = rotation.IDENTITY.astype(np.float32)
 TWIST = (0.15, 0.85)  # shares of a forearm from which on, and to which, it turns with the hand by half
 
@@ -95,6 +96,9 @@ class DefaultBody(MeshFigure):
             body = sculpture().character
             model = SkinnedFigure(body)
             self.levels = levels_of(self.mesh, self.height, cancelled, (model.mesh, model.height))
+
+    def finest(self, error: float) -> SkinnedMesh:
+        return super().finest(SMOOTH * error)
 
 
 def _half_way(a: Array, b: Array) -> Array:

@@ -14,7 +14,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import NEEDED, SIDES
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import standing_pose
+from metagraph.motion.standing import is_standing, standing_pose
 
 Array = NDArray[Any]
 
@@ -26,6 +26,7 @@ ANKLE, LOWEST = (0.05, 0.17), (-0.03, 0.10)
 PLANTED = 0.01  # metres by which an ankle may be higher than usual while its foot is on the ground
 ALIKE = 0.985  # the least length of the mean of a planted foot's directions: they differ by ten degrees
 LEVEL = 0.77  # the cosine of the most by which a foot is turned where it stands: forty degrees
+BEGINS = 0.9  # how upright the first frame of a clip is that begins in a stance
 HANGING = -0.7  # the height of an arm's direction below which it hangs
 UP = np.array([0.0, 1, 0])
 
@@ -57,6 +58,11 @@ def find_footing(clip: Clip) -> Footing:
     if any(role not in roles for role in NEEDED):
         return Footing(pose)
     turned, at = some.skeleton.globals(some.poses())
+    if not is_standing(some.skeleton, roles) and _upright(at[0], roles) > BEGINS:
+        first = some.poses()[
+            0
+        ]  # there heads are straight, which they need not be where limbs are straightest
+        pose = Pose(first.rotations.astype(float), first.translations.astype(float))
     pose = _shoulders_carried(pose, some, roles, at)
     ankle = _ankle(some.skeleton, roles, at)
     if ankle is None:
@@ -64,6 +70,13 @@ def find_footing(clip: Clip) -> Footing:
     rest, _ = some.skeleton.globals(pose)
     ups = [_up(turned[:, foot], at[:, foot, 1], rest[foot]) for foot in _feet(roles)]
     return Footing(pose, ankle, (ups[0], ups[1]))
+
+
+def _upright(at: Array, roles: Mapping[str, int]) -> float:
+    """Return how upright trunk and legs are in one pose, -1..1: the least of them. `at` `[J, 3]`."""
+    lines = [at[roles["head"]] - at[roles["hips"]]]
+    lines += [at[roles[f"{side}_upper_leg"]] - at[roles[f"{side}_foot"]] for side in SIDES]
+    return float(min(line[1] / max(1e-9, float(np.linalg.norm(line))) for line in lines))
 
 
 def _shoulders_carried(pose: Pose, clip: Clip, roles: Mapping[str, int], at: Array) -> Pose:

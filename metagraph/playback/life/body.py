@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +13,9 @@ from metagraph.graph import anatomy
 from metagraph.graph.face.rig import CHANNELS, SIDES, FaceRig, axes_of, find_face
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
-from metagraph.motion.joint_map import find_known_roles
-from metagraph.motion.skeleton import Skeleton
+from metagraph.motion.joint_map import NEEDED, find_known_roles
+from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.standing import is_standing
 from metagraph.playback.life.tension import find_tension
 
 Array = NDArray[Any]
@@ -117,12 +118,26 @@ def _vector(values: Any) -> Vector:
     return x, y, z
 
 
+def _upright_pose(project: Project, roles: Mapping[str, int]) -> Pose:
+    """Return the base pose; where nobody has chosen one and the rest pose is a heap on the floor, the first
+    clip's first frame.
+    """
+    skeleton, pose = project.skeleton, anatomy.base_pose(project)
+    if project.base.clip or skeleton is None or any(role not in roles for role in NEEDED):
+        return pose
+    if is_standing(skeleton, roles):
+        return pose
+    motions = (entry.motion for entry in project.clips.values())
+    first = next((m for m in motions if m is not None and m.skeleton == skeleton), None)
+    return pose if first is None else first.pose_at(0.0)
+
+
 def find_body(project: Project) -> Body:
     """Return the body of a project with a skeleton."""
     skeleton = project.skeleton
     assert skeleton is not None
     roles = anatomy.project_roles(project)
-    turned, at = (x.astype(float) for x in skeleton.globals(anatomy.base_pose(project)))
+    turned, at = (x.astype(float) for x in skeleton.globals(_upright_pose(project, roles)))
     left, up, ahead = axes = axes_of(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
     face = find_face(project)
 
