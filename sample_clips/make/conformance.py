@@ -91,7 +91,8 @@ def without_authors(path: Path) -> None:
 
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
-    for project in (stick(), varied(), sparse(), standing(), stepping(), *touched, *still()):
+    footed = standing(), stepping(), stepping("arms")
+    for project in (stick(), varied(), sparse(), *footed, *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
@@ -104,7 +105,7 @@ def main() -> None:
             chosen = [case for case in list_cases(project) if case.name in LIVING]
         if project.name == "standing":  # all else in "stick"
             chosen = [case for case in list_cases(project) if case.name.startswith(STANDING)]
-        if project.name == "stepping":
+        if project.name in ("stepping", "striding"):
             chosen = [case for case in list_cases(project) if case.name.startswith("feet")]
         path = write_vectors(made.json, chosen)
         print(
