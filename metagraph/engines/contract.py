@@ -393,12 +393,13 @@ class ExportedWeightCollar(Struct, forbid_unknown_fields=True):
     side: Annotated[int, Meta(ge=0, le=1)]
 
 
-class ExportedWeightRig(Struct, forbid_unknown_fields=True):
+class ExportedWeightRig(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """The parts of the body that answer its arms. joints: those that are needed, parents first; parents: the
     place of each one's parent among them, -1 if that is not needed. legs: left, right: places of upper leg,
     lower leg, foot. hands: names of the hands' joints. bends: the hips first. knees: the direction in which
     straight legs bend, in the upper legs' own spaces. levers: how far to the left and ahead of the hips each
     arm is, metres. height: of the figure. strength: how much the motion of the arms' layer counts.
+    feet_layer: the layer that moves the legs, whose clips have `feet`.
     """
 
     joints: list[Count]
@@ -416,6 +417,7 @@ class ExportedWeightRig(Struct, forbid_unknown_fields=True):
     up: Direction
     height: Annotated[float, Meta(gt=0)]
     strength: Annotated[float, Meta(ge=0, le=1)]
+    feet_layer: LayerName = "body"
 
 
 class ExportedVoice(Struct, forbid_unknown_fields=True):

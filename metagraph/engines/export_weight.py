@@ -12,7 +12,6 @@ from metagraph.motion.contact_solve import ContactArm, ContactRig
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
-from metagraph.playback.posing.feet import moves_legs_alone
 from metagraph.playback.posing.rigs import rigs_of
 from metagraph.playback.posing.weight import Weight, arm_track_rows, foot_rows_of, has_planted_feet, has_sway
 
@@ -21,8 +20,9 @@ def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
     """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None where none
     does.
     """
-    rig = rigs_of(project).weight.rig
-    if rig is None or not (_sways(project, rig) or _plants(project, rig)):
+    weight = rigs_of(project).weight
+    rig = weight.rig
+    if rig is None or not (_sways(project, rig) or _plants(project)):
         return None
     return c.ExportedWeightRig(
         list(rig.body.joints),
@@ -36,6 +36,7 @@ def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
         list(rig.up),
         rig.height,
         rig.strength,
+        weight.feet_layer or "body",
     )
 
 
@@ -49,11 +50,11 @@ def arms_of(project: Project) -> dict[str, list[list[int]]]:
 
 
 def feet_of(project: Project) -> dict[str, list[list[int]]]:
-    """Return where the feet of the clips are that the body's layer plays, none where none stays planted."""
+    """Return where the feet are in the clips of the layer that moves the legs; none where none is planted."""
     weight = rigs_of(project).weight
-    if weight.rig is None or not _plants(project, weight.rig):
+    if weight.feet_layer is None or not _plants(project):
         return {}
-    clips = {action.clip for action in project.graphs["body"].actions.values()}
+    clips = {action.clip for action in project.graphs[weight.feet_layer].actions.values()}
     return {clip: [[int(x) for x in row] for row in foot_rows_of(weight, project, clip)] for clip in clips}
 
 
@@ -61,8 +62,8 @@ def _sways(project: Project, rig: WeightRig) -> bool:
     return has_sway(project) and rig.strength > 0
 
 
-def _plants(project: Project, rig: WeightRig) -> bool:
-    return has_planted_feet(project) and moves_legs_alone(project, rig)
+def _plants(project: Project) -> bool:
+    return has_planted_feet(project) and rigs_of(project).weight.feet_layer is not None
 
 
 def read_weight(
@@ -103,7 +104,7 @@ def read_weight(
         rig.height,
         rig.strength,
     )
-    return Weight(found, _floats(rows), _floats(feet))
+    return Weight(found, _floats(rows), _floats(feet), rig.feet_layer)
 
 
 def _floats(rows: Mapping[str, list[list[int]]]) -> dict[str, Sequence[Sequence[float]]]:

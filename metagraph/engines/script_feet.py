@@ -1,4 +1,4 @@
-"""Cases of feet that stay planted while the body's layer blends."""
+"""Cases of feet that stay planted while the layer blends that moves the legs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 
 from metagraph.engines.script_parts import ScriptCase, ask, make_case
 from metagraph.graph.model import Project
-from metagraph.playback.posing.feet import moves_legs_alone
 from metagraph.playback.posing.rigs import rigs_of
 from metagraph.playback.posing.weight import has_planted_feet
 
@@ -27,11 +26,12 @@ EDGES = (
 
 
 def list_feet_cases(project: Project) -> Iterator[ScriptCase]:
-    """Yield cases of one of the body's actions after the other, from stance to stance, and of its loops."""
-    rig = rigs_of(project).weight.rig if has_planted_feet(project) and project.skeleton is not None else None
-    body = project.graphs["body"]
-    if rig is None or not moves_legs_alone(project, rig):
+    """Yield cases of one of that layer's actions after the other, from stance to stance, and of its loops."""
+    planted = has_planted_feet(project) and project.skeleton is not None
+    layer = rigs_of(project).weight.feet_layer if planted else None
+    if layer is None:
         return
+    body = project.graphs[layer]
     for stance in [*body.stances][:2]:
         acts = [a for kind in ("gesture", "fidget") for a in body.of(stance, kind)][:MOST]
         asks = [ask(f"f{n}", "action", 1.0 + 3.0 * n, action=a.id) for n, a in enumerate(acts)]
@@ -41,13 +41,13 @@ def list_feet_cases(project: Project) -> Iterator[ScriptCase]:
                 start, end = project.span(action)
                 times |= {1.0 + 3.0 * n + x for x in EDGES} | {1.0 + 3.0 * n + end - start - x for x in EDGES}
             about = "feet are held, and step, as the body's actions come and go"
-            more = {"stances": {"body": stance}, "times": tuple(sorted(round(t, 3) for t in times))}
+            more = {"stances": {layer: stance}, "times": tuple(sorted(round(t, 3) for t in times))}
             yield make_case(f"feet in {stance}", about, asks, 20.0, alive=(True,), **more)
     ways = [a for a in body.actions.values() if a.kind == "transition" and a.stance == body.start][:2]
     asks = []
     for n, action in enumerate(ways):
-        asks.append(ask(f"to{n}", "stance", 1.0 + 6.0 * n, layer="body", stance=action.end_stance))
-        asks.append(ask(f"back{n}", "stance", 4.0 + 6.0 * n, layer="body", stance=body.start))
+        asks.append(ask(f"to{n}", "stance", 1.0 + 6.0 * n, layer=layer, stance=action.end_stance))
+        asks.append(ask(f"back{n}", "stance", 4.0 + 6.0 * n, layer=layer, stance=body.start))
     every = tuple(np.round(np.arange(0.5, 4.0 + 6.0 * len(ways), 0.13), 3).tolist())
     for seed in (1, 2):
         about = "loops take over from loops, and transitions lead from stance to stance"

@@ -93,7 +93,12 @@ def without_authors(path: Path) -> None:
 
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
+<<<<<<< HEAD
     for project in (stick(), varied(), sparse(), standing(), stepping(), repeating(), *touched, *still()):
+=======
+    footed = standing(), stepping(), stepping("arms")
+    for project in (stick(), varied(), sparse(), *footed, *touched, *still()):
+>>>>>>> 28bc321af3a59cf7cae4188048f98e33261bcbe0
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
@@ -106,7 +111,7 @@ def main() -> None:
             chosen = [case for case in list_cases(project) if case.name in LIVING]
         if project.name == "standing":  # all else in "stick"
             chosen = [case for case in list_cases(project) if case.name.startswith(STANDING)]
-        if project.name == "stepping":
+        if project.name in ("stepping", "striding"):
             chosen = [case for case in list_cases(project) if case.name.startswith("feet")]
         if project.name == "repeating":
             chosen = [*list_repeat_cases(project), *(c for c in list_cases(project) if c.name == "chatter 1")]

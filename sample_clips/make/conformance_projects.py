@@ -568,36 +568,41 @@ LEGS = tuple(f"{side}{part}" for side in ("Left", "Right") for part in ("UpperLe
 
 
 @numbered_ids()
-def stepping() -> Project:
+def stepping(layer: Layer = "body") -> Project:
     """Return a project whose feet stand in different places: a loop with a seam, another of the same stance,
     transitions, gestures that are held, near, far, too far, that step themselves, that move some joints.
+
+    layer: the one that moves the legs; the other than the body's is called "striding".
     """
-    b = Builder("stepping", legs=True)
+    b = Builder("stepping" if layer == "body" else "striding", legs=True)
     m = b.moves
     still, sway, apart = m.stance(0, ()), ("Spine", "Chest"), m.stance(2, LEGS, 0.09)
     loose = m.clip("sway", 11, 2.0, still, m.stance(6, LEGS, 0.03), sway, 0.05)  # its ends do not meet
-    stand = b.stance("body", "stand", m.clip("stand", 12, 1.7, still, None, sway, 0.05), loose)
+    stand = b.stance(layer, "stand", m.clip("stand", 12, 1.7, still, None, sway, 0.05), loose)
     spread = m.clip("wide", 13, 1.5, apart, None, sway, 0.05)
     turns = np.array(spread.rotations)
     turns[:, spread.skeleton.index("LeftFoot")] *= -1  # a quaternion and its negative are one rotation
     spread = replace(spread, rotations=turns)
-    wide = b.stance("body", "wide", spread)
-    for n, action in enumerate([*b.project.graphs["body"].of(stand, "stance")]):
+    wide = b.stance(layer, "wide", spread)
+    for n, action in enumerate([*b.project.graphs[layer].of(stand, "stance")]):
         timing = replace(action.timing, blend_in=0.4 * n)
         b.project = edits.update_actions(b.project, [action.id], timing=timing, likelihood=1.0 + n)
-    b.act("body", "transition", stand, m.clip("to wide", 14, 1.3, still, apart, ("Hips", *LEGS), 0.1), wide)
-    b.act("body", "transition", wide, m.clip("to stand", 15, 1.1, apart, still, sway, 0.1), stand)
+    b.act(layer, "transition", stand, m.clip("to wide", 14, 1.3, still, apart, ("Hips", *LEGS), 0.1), wide)
+    b.act(layer, "transition", wide, m.clip("to stand", 15, 1.1, apart, still, sway, 0.1), stand)
     for n, (name, size) in enumerate((("near", 0.02), ("far", 0.1), ("too far", 0.22))):
         there = m.stance(20 + n, LEGS, size)
-        b.act("body", "gesture", stand, m.clip(name, 30 + n, 2.2 + 0.3 * n, there, None, sway, 0.2))
-        b.act("body", "fidget", wide, m.clip(f"{name} again", 40 + n, 0.6 + 0.2 * n, there, None, sway, 0.1))
+        b.act(layer, "gesture", stand, m.clip(name, 30 + n, 2.2 + 0.3 * n, there, None, sway, 0.2))
+        b.act(layer, "fidget", wide, m.clip(f"{name} again", 40 + n, 0.6 + 0.2 * n, there, None, sway, 0.1))
     own = m.clip("of its own", 35, 2.5, m.stance(24, LEGS, 0.08), None, LEGS, 0.2)
-    b.act("body", "gesture", stand, own)
+    b.act(layer, "gesture", stand, own)
     some = m.clip("some joints", 36, 1.6, m.stance(25, LEGS, 0.1), None, sway, 0.2)
-    b.act("body", "gesture", stand, some, joints=("Spine", "LeftUpperLeg"))
+    b.act(layer, "gesture", stand, some, joints=("Spine", "LeftUpperLeg"))
+    if layer != "body":
+        b.project = edits.set_weight(b.project, layer, "legs", 1.0)
+        return replace(b.project, life=Life(breath_rate=18.0, planted_feet=0.9))
     sides = b.stance("arms", "at sides", m.clip("sides", 21, 1.9, m.stance(3, ARMS, 0.4), None, ARMS, 0.05))
     b.act("arms", "gesture", sides, m.clip("reach", 51, 1.5, m.stance(3, ARMS, 0.4), None, ARMS))
-    b.project = edits.set_base(b.project, b.project.graphs["body"].of(stand, "stance")[0].clip, 0)
+    b.project = edits.set_base(b.project, b.project.graphs[layer].of(stand, "stance")[0].clip, 0)
     return replace(b.project, life=Life(breath_rate=18.0, planted_feet=0.9))
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.checks.end_gaps import motion_of
-from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.feet_solve import FootGoal
@@ -30,19 +30,19 @@ SAME = 10  # units of a row: a clip that moves less all along needs only one row
 # Speeds are measured over the time between two rows: from frame to frame, clips stored in 16 bits tremble.
 
 
-def moves_legs_alone(project: Project, rig: WeightRig) -> bool:
-    """Return whether only the body's layer moves the joints from the root to the feet, with full weight. The
-    feet are then where its clips have them.
+def find_feet_layer(project: Project, rig: WeightRig) -> Layer | None:
+    """Return the layer that alone moves the joints from the root to the feet, with full weight: the feet are
+    then where its clips have them. None where several do, or one in part. A layer without actions moves
+    nothing.
     """
     parts = anatomy.project_parts(project)
     legs = {rig.body.joints[p] for leg in rig.body.arms for p in leg.below}
     above = [j for j in range(len(rig.body.parents)) if rig.body.joints[j] not in legs]
     chain = legs | {rig.body.joints[p] for p in above if _leads(rig, p)}
-    return all(
-        project.graphs[layer].weight(parts[joint]) == (1 if layer == "body" else 0)
-        for joint in chain
-        for layer in LAYERS
-    )
+    playing = [layer for layer in LAYERS if project.graphs[layer].actions]
+    weights = {layer: {project.graphs[layer].weight(parts[joint]) for joint in chain} for layer in playing}
+    moving = [layer for layer in playing if weights[layer] != {0}]
+    return moving[0] if len(moving) == 1 and weights[moving[0]] == {1} else None
 
 
 def _leads(rig: WeightRig, place: int) -> bool:
@@ -86,13 +86,13 @@ def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
 class FeetOfPlan:
     """Says where the feet should be in a plan."""
 
-    def __init__(self, rows: Any, height: float) -> None:
-        self.rows, self.height = rows, height
+    def __init__(self, rows: Any, height: float, layer: Layer) -> None:
+        self.rows, self.height, self.layer = rows, height, layer
         self.tracks: dict[str, FootTrack] = {}
 
     def goals(self, plan: Plan, project: Project, time: float) -> list[FootGoal]:
         """Return where both feet should be at a time; an empty list if nothing blends."""
-        layer = plan.layers["body"]
+        layer = plan.layers[self.layer]
         if not layer.rests:
             return []
         cue = layer.cue_at(time)

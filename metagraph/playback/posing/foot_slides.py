@@ -83,12 +83,13 @@ def slide_speeds(places: Array, rate: float) -> Array:
 
 
 def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Array]:
-    """Return what the body's layer plays at each time `[N]`, as words, and how fast its clips themselves move
-    the joints of the feet `[N, F]` in the window that begins there, in metres a second. Of two that blend,
-    the faster one counts. `times` ascend.
+    """Return what the layer that moves the legs plays at each time `[N]`, as words, and how fast its clips
+    themselves move the joints of the feet `[N, F]` in the window that begins there, in metres a second. Of
+    two that blend, the faster one counts. `times` ascend.
     """
-    layer, skeleton = plan.layers["body"], project.skeleton
+    skeleton = project.skeleton
     assert skeleton is not None
+    layer = plan.layers[rigs_of(project).weight.feet_layer or "body"]
     feet = [joint for side in feet_joints(project) for joint in side]
     own, kind = np.zeros((len(times), len(feet))), np.full(len(times), "loops", object)
 
@@ -148,8 +149,11 @@ class FeetWatch:
         weight = rigs_of(project).weight if self.feet else None
         rig = weight.rig if weight is not None else None
         self._height = rig.height if rig is not None else project.skeleton.height if project.skeleton else 1.0
+        layer = weight.feet_layer if weight is not None else None
         steps = plan is not None and has_planted_feet(project) and rig is not None
-        self._goals = FeetOfPlan(partial(foot_rows_of, weight), self._height) if steps and weight else None
+        self._layer = layer or "body"
+        rows = partial(foot_rows_of, weight) if steps and weight is not None else None
+        self._goals = FeetOfPlan(rows, self._height, layer) if rows and layer else None
         self._floor: Array | None = None
         self._known: dict[int, tuple[Array, Array, Array]] = {}  # by sample: places, clips' speeds, steps
 
@@ -211,7 +215,7 @@ class FeetWatch:
         if self._floor is None:
             assert self.project.skeleton is not None
             motion = self._clip
-            rests = self.plan.layers["body"].rests if self.plan is not None else ()
+            rests = self.plan.layers[self._layer].rests if self.plan is not None else ()
             if motion is None and rests:
                 motion = playable(self.project, rests[0].action)
             if motion is not None:

@@ -8,7 +8,7 @@ this module applies them to arrays.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.checks.end_gaps import motion_of
 from metagraph.graph.face.rig import axes_of
-from metagraph.graph.model import Action, Project
+from metagraph.graph.model import Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_solve import ContactArm, ContactPose, ContactRig
@@ -27,7 +27,7 @@ from metagraph.motion.feet_solve import FootGoal, plant_feet
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig, answer_arms, moves_body
 from metagraph.playback.plan import LayerPlan, Plan
-from metagraph.playback.posing.feet import FeetOfPlan, Rows, moves_legs_alone, rows_of_feet
+from metagraph.playback.posing.feet import FeetOfPlan, Rows, find_feet_layer, rows_of_feet
 from metagraph.playback.posing.follow_through import (
     KNOTS,
     NUMBERS,
@@ -65,19 +65,22 @@ KEPT = 4096  # times of a plan that are kept
 class Weight:
     """The part of a project's body that answers its arms.
 
-    `rows` has the rows of `ArmTrack`s found so far, by clip, and `feet` those of `FootTrack`s.
+    `rows` has the rows of `ArmTrack`s found so far, by clip, and `feet` those of `FootTrack`s. `feet_layer`
+    moves the legs, None if no single layer does.
     """
 
     rig: WeightRig | None
     rows: dict[str, Rows]
     feet: dict[str, Rows]
+    feet_layer: Layer | None = None
 
 
 def find_weight(project: Project) -> Weight:
     """Return the part of a project's body that answers its arms."""
     arms = project.graphs["arms"]
     strength = min(1.0, arms.weight("arms")) * max(0.0, 1.0 - arms.weight("legs"))
-    return Weight(_rig(project, strength), {}, {})
+    rig = _rig(project, strength)
+    return Weight(rig, {}, {}, find_feet_layer(project, rig) if rig is not None else None)
 
 
 def _rig(project: Project, strength: float) -> WeightRig | None:
@@ -171,15 +174,15 @@ def arm_track_rows(weight: Weight, project: Project, clip: str) -> Rows:
 
 
 def foot_rows_of(weight: Weight, project: Project, clip: str) -> Rows:
-    """Return the rows of a clip's `FootTrack`; empty if the clip is missing, has another skeleton, or if
-    other layers than the body's move the legs.
+    """Return the rows of a clip's `FootTrack`; empty if the clip is missing, has another skeleton, or if no
+    single layer moves the legs.
     """
     found = weight.feet.get(clip)
     if found is None:
         entry = project.clips.get(clip)
         motion = entry.motion if entry is not None else None
         fits = motion is not None and motion.skeleton == project.skeleton
-        if fits and motion is not None and weight.rig is not None and moves_legs_alone(project, weight.rig):
+        if fits and motion is not None and weight.rig is not None and weight.feet_layer is not None:
             found = rows_of_feet(project, motion, weight.rig)
         else:
             found = ()
@@ -275,8 +278,8 @@ class WeightStage:
         self._sways: dict[int, list[float]] = {}
         rig = weight.rig
         self._feet = (
-            FeetOfPlan(partial(foot_rows_of, weight), rig.height)
-            if rig and has_planted_feet(project)
+            FeetOfPlan(partial(foot_rows_of, weight), rig.height, weight.feet_layer)
+            if rig and weight.feet_layer and has_planted_feet(project)
             else None
         )
         self._answers = bool(rig and rig.strength > 0 and has_sway(project) and plan.layers["arms"].cues)
@@ -299,6 +302,11 @@ class WeightStage:
         for part, time in zip(parts, times.tolist(), strict=True):
             drives.append(self.drive(time) if part > 0 else [])
             goals.append(feet.goals(self._plan, self._project, time) if feet else [])
+        if shown is not None and feet is not None and feet.layer != "body":  # other motion covers that layer
+            goals = [
+                [replace(goal, planted=goal.planted * part) for goal in some]
+                for some, part in zip(goals, shown.tolist(), strict=True)
+            ]
         busy = [n for n in range(len(times)) if goals[n] or moves_body(drives[n])]
         if not busy:
             return pose

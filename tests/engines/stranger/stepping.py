@@ -144,7 +144,7 @@ def planted(character: Character, layers: dict[str, Any], made: Pose, t: float) 
     strength = dials.get("planted_feet", 1.0)
     if rig is None or not dials.get("on", True) or strength <= 0.0:
         return made
-    goals = wanted(character, layers["body"], rig["height"], t)
+    goals = wanted(character, layers[rig.get("feet_layer", "body")], rig["height"], t)
     if goals is None:
         return made
     joints, up = rig["joints"], np.array(rig["up"])

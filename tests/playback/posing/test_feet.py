@@ -127,3 +127,35 @@ def test_still_feet_need_one_row_and_feet_that_others_move_none() -> None:
     moved = edits.set_weight(project(), "arms", "legs", 0.2)
     assert weight_of(moved).rig is not None
     assert foot_rows_of(weight_of(moved), moved, clips["far"]) == ()
+
+
+def test_feet_stay_planted_whichever_layer_moves_the_legs() -> None:
+    made = stepping("arms")
+    near = next(a.id for a in made.graphs["arms"].actions.values() if a.name == "near")
+    plan = make_plan(made, 8.0, [MetaRequest("r", "arms", "gesture", 2.0, action=near)], idle=False)
+    (cue,) = plan.layers["arms"].cues
+    times = np.arange(cue.start - 0.1, cue.end + 0.1, 1 / FPS)
+    loose = replace(made, life=msgspec.structs.replace(made.life, planted_feet=0.0))
+    slid = [
+        np.linalg.norm(np.diff(joints(plan, p, times)[:, :, 2][..., (0, 2)], axis=0), axis=-1)
+        for p in (loose, made)
+    ]
+    moving = [(some * FPS > 0.02).all(1).mean() for some in slid]
+    assert moving[0] > 0.1 and moving[1] < 0.5 * moving[0]  # one steps at a time
+
+
+@pytest.mark.parametrize(("weights", "layer"), [
+    ({"arms": 1.0}, "arms"),
+    ({"arms": 0.5}, None),
+    ({"arms": 0.0}, None),
+])  # fmt: skip
+def test_a_layer_that_moves_the_legs_in_part_plants_none(
+    weights: dict[str, float], layer: str | None
+) -> None:
+    made = edits.set_weight(stepping("arms"), "arms", "legs", weights["arms"])
+    assert weight_of(made).feet_layer == layer
+
+
+def test_two_layers_that_move_the_legs_plant_none() -> None:
+    made = edits.set_weight(project(), "arms", "legs", 1.0)
+    assert weight_of(project()).feet_layer == "body" and weight_of(made).feet_layer is None

@@ -83,6 +83,7 @@ struct Graph {
     Ref<WeightRig> weight_rig;
     Map<std::string, Ref<ArmTrack>> arm_tracks;
     Map<std::string, Ref<FootTrack>> foot_tracks;
+    std::string feet_layer = "body"; // it moves the legs
 
     const LayerGraph& layer(const std::string& word) const { return *layers.at(word); }
 };

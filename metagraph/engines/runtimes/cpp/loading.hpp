@@ -310,6 +310,10 @@ inline Ref<const Graph> read(const Node& root, const std::uint8_t* glb, std::siz
     if (!root.maybe("contact_rig").empty()) out->contact_rig = contacts::read_rig(root["contact_rig"], out->joints);
     if (!root.maybe("weight_rig").empty()) out->weight_rig = weight::read_rig(root["weight_rig"], lang::len(out->joints));
     out->arm_tracks = weight::read_tracks(*out, root["clips"]);
+    if (out->weight_rig != nullptr) {
+        const Node legs = root["weight_rig"].maybe("feet_layer");
+        if (!legs.empty() && (legs.text() == "arms" || legs.text() == "head")) out->feet_layer = legs.text();
+    }
     out->foot_tracks = weight::read_feet(*out, root["clips"]);
     return trouble.found() ? nullptr : out;
 }

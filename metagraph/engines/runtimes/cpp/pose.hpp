@@ -154,9 +154,10 @@ private:
         const List<double> drive = drive_at(time);
         List<Ref<FootGoal>> feet;
         if (life.planted_feet > 0) {
-            const auto [cue, place] = playing(0, time);
+            const std::size_t n = graph_->feet_layer == "body" ? 0 : graph_->feet_layer == "arms" ? 1 : 2; // of LAYERS
+            const auto [cue, place] = playing(n, time);
             feet = planted_feet::foot_goals(
-                graph_->project, graph_->foot_tracks, graph_->weight_rig->height, plan_->layers.at(graph::LAYERS[0]), cue, place, time
+                graph_->project, graph_->foot_tracks, graph_->weight_rig->height, plan_->layers.at(graph::LAYERS[n]), cue, place, time
             );
         }
         if (feet.empty() && !weight_solve::moves_body(drive)) return;

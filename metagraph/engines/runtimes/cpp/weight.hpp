@@ -87,7 +87,7 @@ inline Map<std::string, Ref<ArmTrack>> read_tracks(const Graph& graph, const Nod
     return out;
 }
 
-/// Where the feet of the body's actions are, by action.
+/// Where the feet of the actions are of the layer that moves the legs, by action.
 inline Map<std::string, Ref<FootTrack>> read_feet(const Graph& graph, const Node& clips) {
     Map<std::string, List<List<double>>> rows;
     for (const Node& one : clips.items()) {
@@ -97,7 +97,7 @@ inline Map<std::string, Ref<FootTrack>> read_feet(const Graph& graph, const Node
         for (const Node& row : feet.items()) own.push_back(row.numbers(2 * planted_feet::FOOT_NUMBERS));
     }
     Map<std::string, Ref<FootTrack>> out;
-    for (const auto& [id, action] : graph.layer("body").graph->actions) out[id] = lang::made<FootTrack>(rows[action->clip]);
+    for (const auto& [id, action] : graph.layer(graph.feet_layer).graph->actions) out[id] = lang::made<FootTrack>(rows[action->clip]);
     return out;
 }
 

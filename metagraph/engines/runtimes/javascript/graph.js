@@ -108,7 +108,8 @@ export class Graph {
     this.contactRig = readContactRig(data.contact_rig, this.joints);
     this.weightRig = readWeightRig(data.weight_rig, this.joints.length);
     this.armTracks = readArmTracks(this.layers, data.clips);
-    this.footTracks = readFootTracks(this.layers, data.clips);
+    this.feetLayer = data.weight_rig?.feet_layer in this.layers ? data.weight_rig.feet_layer : "body"; // it moves the legs
+    this.footTracks = readFootTracks(this.layers[this.feetLayer], data.clips);
     const own = [...this.clips.values()].flatMap((clip) => clip.morphs.map((morph) => morph.name));
     /** Names of all morph targets that anything here moves. */
     this.morphs = [...new Set([...own, ...(this.body?.face.morphs ?? []).map((morph) => morph.name)])];

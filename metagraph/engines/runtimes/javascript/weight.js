@@ -39,10 +39,10 @@ export function readArmTracks(layers, clips) {
   return new Map(actions.map(({ id, clip }) => [id, new ArmTrack(clip, rows.get(clip) ?? [])]));
 }
 
-/** Return where the feet of the body's actions are, by action. @param {object[]} clips the export's */
-export function readFootTracks(layers, clips) {
+/** Return where the feet of a layer's actions are, by action. @param {object} layer it moves the legs @param {object[]} clips the export's */
+export function readFootTracks(layer, clips) {
   const rows = new Map(clips.map((clip) => [clip.id, clip.feet ?? []]));
-  return new Map([...layers.body.actions.values()].map(({ id, clip }) => [id, new FootTrack(rows.get(clip) ?? [])]));
+  return new Map([...layer.actions.values()].map(({ id, clip }) => [id, new FootTrack(rows.get(clip) ?? [])]));
 }
 
 /** What the arms of a plan do at the times that are looked at, worked out once each. */
@@ -63,10 +63,11 @@ export class Swaying {
    * of the rest in force, -1 for none
    */
   answer(plan, playing, time, rotations, translations) {
-    const { weightRig: rig, footTracks, life } = this.graph;
+    const { weightRig: rig, footTracks, feetLayer, life } = this.graph;
     const calm = 1 - life.stillness;
     const drive = this.drive(plan, playing, time);
-    const feet = life.plantedFeet > 0 ? footGoals(this.graph, footTracks, rig.height, plan.layers.body, ...playing(time, "body"), time) : [];
+    const standing = () => footGoals(this.graph, footTracks, rig.height, plan.layers[feetLayer], ...playing(time, feetLayer), time);
+    const feet = life.plantedFeet > 0 ? standing() : [];
     if (!feet.length && !movesBody(drive)) return;
     const { joints } = rig.body;
     const pose = new ContactPose(

@@ -163,6 +163,7 @@ namespace Metagraph
         public Dictionary<string, ArmTrack> ArmTracks;
         /// <summary>Where the feet of the body's actions are, by action.</summary>
         public Dictionary<string, FootTrack> FootTracks;
+        public string FeetLayer = "body"; // it moves the legs
         public readonly Dictionary<string, double[]> Points = new Dictionary<string, double[]>();
         public readonly Dictionary<string, Line> Lines = new Dictionary<string, Line>();
         public readonly Voices Voices = new Voices();

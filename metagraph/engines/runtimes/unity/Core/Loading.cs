@@ -93,6 +93,8 @@ namespace Metagraph
             ContactRig = root.Maybe("contact_rig", out found) && !found.IsNull ? Contacts.ReadRig(found, Joints) : null;
             WeightRig = root.Maybe("weight_rig", out found) && !found.IsNull ? Weight.ReadRig(found, Joints.Length) : null;
             ArmTracks = Weight.ReadTracks(this, root["clips"]);
+            bool told = WeightRig != null && root["weight_rig"].Maybe("feet_layer", out found) && Layers.ContainsKey(found.Text);
+            FeetLayer = told ? found.Text : "body";
             FootTracks = Weight.ReadFeet(this, root["clips"]);
         }
 

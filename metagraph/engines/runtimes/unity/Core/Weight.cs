@@ -103,10 +103,10 @@ namespace Metagraph
             {
                 return Nowhere;
             }
-            LayerPlan body = plan.Layers["body"];
+            LayerPlan layer = plan.Layers[graph.FeetLayer];
             int place;
-            Cue cue = Playing(body, time, out place);
-            return PlantedFeetRules.FootGoals(graph, graph.FootTracks, rig.Height, body, cue, place, time);
+            Cue cue = Playing(layer, time, out place);
+            return PlantedFeetRules.FootGoals(graph, graph.FootTracks, rig.Height, layer, cue, place, time);
         }
 
         private List<double> At(Plan plan, int number)
@@ -199,7 +199,7 @@ namespace Metagraph
             return tracks;
         }
 
-        /// <summary>Where the feet of the body's actions are, by action. clips: the export's.</summary>
+        /// <summary>Where the feet of the actions are of the layer that moves the legs, by action. clips: the export's.</summary>
         internal static Dictionary<string, FootTrack> ReadFeet(Graph graph, Node clips)
         {
             var rows = new Dictionary<string, List<List<double>>>();
@@ -211,7 +211,7 @@ namespace Metagraph
                     : new List<List<double>>();
             }
             var tracks = new Dictionary<string, FootTrack>();
-            foreach (GraphAction action in graph.Layers["body"].Actions.Values)
+            foreach (GraphAction action in graph.Layers[graph.FeetLayer].Actions.Values)
             {
                 tracks[action.Id] = new FootTrack(rows[action.Clip.Id]);
             }

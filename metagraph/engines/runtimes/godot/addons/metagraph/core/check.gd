@@ -38,7 +38,7 @@ const CONTACT_RIG = {contacts = "switch", guard = "switch", joints = "list", par
 const CAPSULE = {joint = "number", a = "3", to = "number", b = "3", radius = "number", arm = "number", kind = "number"}
 const WEIGHT_RIG = {
 	joints = "list", parents = "list", legs = "list", hands = "list", bends = "list", collars = "list", knees = "list", levers = "list",
-	up = "3", height = "number", strength = "number"
+	up = "3", height = "number", strength = "number", feet_layer = "text?"
 }
 const BEND = {place = "number", left = "3", up = "3", ahead = "3", share = "number"}
 const COLLAR = {place = "number", upper = "number", axis = "3", side = "number"}

@@ -39,7 +39,8 @@ var rig = null  # see rig.gd; null where nothing lives
 var contact_rig = null  # see contacts.gd; null where the export has none
 var weight_rig = null  # see weight.gd; null where the export has none
 var arm_tracks = {}  # action -> what it weighs
-var foot_tracks = {}  # action of the body's layer -> where its feet are
+var feet_layer = "body"  # it moves the legs
+var foot_tracks = {}  # action of that layer -> where its feet are
 var name = ""  # of the project
 var points = {}  # name -> Vector3
 var spots = {}  # name -> [x, y, z], as the export has them
@@ -94,7 +95,8 @@ func _read(json, bytes):
 	if data.weight_rig != null:
 		weight_rig = Weight.rig_of(data.weight_rig)
 		arm_tracks = Weight.tracks_of(layers, data.clips)
-		foot_tracks = Weight.feet_of(layers, data.clips)
+		feet_layer = data.weight_rig.feet_layer if layers.has(data.weight_rig.feet_layer) else "body"
+		foot_tracks = Weight.feet_of(layers[feet_layer], data.clips)
 	if not shim.are_bytes(bytes):
 		return "the GLB cannot be read; check that '%s' is beside the JSON" % str(data.get("glb", "it"))
 	var glb = Glb.new(bytes, shim)

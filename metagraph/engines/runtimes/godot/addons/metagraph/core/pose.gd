@@ -55,7 +55,7 @@ static func _weigh(graph, plan, time, composed):
 		for at in Weight.knots(time):
 			var found = _playing(graph, plan, at)
 			playing.append([found[Util.LAYERS.find("arms")], found[Util.LAYERS.find("body")]])
-	Weight.answer(graph, playing, _playing(graph, plan, time)[Util.LAYERS.find("body")], time, composed)
+	Weight.answer(graph, playing, _playing(graph, plan, time)[Util.LAYERS.find(graph.feet_layer)], time, composed)
 
 
 static func _compose(graph, plan, time):

@@ -41,13 +41,13 @@ static func tracks_of(layers, clips):
 	return out
 
 
-# Returns where the feet of the body's actions are, by action; clips: the export's.
-static func feet_of(layers, clips):
+# Returns where the feet of a layer's actions are, by action; layer: it moves the legs; clips: the export's.
+static func feet_of(layer, clips):
 	var rows = {}
 	for clip in clips:
 		rows[clip.id] = clip.feet if clip.feet != null else []
 	var out = {}
-	for action in layers.body.actions.values():
+	for action in layer.actions.values():
 		out[action.id] = PlantedFeet.FootTrack.new(rows[action.clip])
 	return out
 
@@ -69,15 +69,15 @@ static func knots(time):
 
 
 # Changes a composed pose so that its feet stay planted and the body answers its arms. playing: for each of `knots`, what plays in arms
-# and body: [the layer's plan, its cue with motion or null, the place of its rest or -1]; empty where nothing is answered. body: the
-# same of the body at that time.
-static func answer(graph, playing, body, time, pose):
+# and body: [the layer's plan, its cue with motion or null, the place of its rest or -1]; empty where nothing is answered. legs: the
+# same of the layer that moves the legs at that time.
+static func answer(graph, playing, legs, time, pose):
 	var rig = graph.weight_rig
 	var life = graph.life
 	var drive = _drive(graph, playing, time)
 	var feet = []
 	if life.planted_feet > 0:
-		feet = PlantedFeet.foot_goals(graph, graph.foot_tracks, rig.height, body[0], body[1], body[2], time)
+		feet = PlantedFeet.foot_goals(graph, graph.foot_tracks, rig.height, legs[0], legs[1], legs[2], time)
 	if feet.size() == 0 and not WeightSolve.moves_body(drive):
 		return
 	var local = []
