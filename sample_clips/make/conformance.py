@@ -93,12 +93,8 @@ def without_authors(path: Path) -> None:
 
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
-<<<<<<< HEAD
-    for project in (stick(), varied(), sparse(), standing(), stepping(), repeating(), *touched, *still()):
-=======
     footed = standing(), stepping(), stepping("arms")
-    for project in (stick(), varied(), sparse(), *footed, *touched, *still()):
->>>>>>> 28bc321af3a59cf7cae4188048f98e33261bcbe0
+    for project in (stick(), varied(), sparse(), *footed, repeating(), *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
