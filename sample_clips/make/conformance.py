@@ -91,6 +91,13 @@ def without_authors(path: Path) -> None:
     path.write_bytes(msgspec.json.format(msgspec.json.encode(document), indent=1))
 
 
+def without_version(path: Path) -> None:
+    """Take out which version of Metagraph wrote an export: the shipped ones outlast it."""
+    document = json.loads(path.read_bytes())
+    del document["exporter"]
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(document), indent=1))
+
+
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
     footed = standing(), stepping(), stepping("arms")
@@ -100,6 +107,7 @@ def main() -> None:
         made = write_project_files(
             project, folder, character=_face(project, project.face.morphs) if project.face.morphs else None
         )
+        without_version(made.json)
         if project.name == "varied":
             without_authors(made.json)
         chosen = None
