@@ -68,16 +68,16 @@ class SoftWishes(QWidget):
             )
         )
         for words, field in (
-            (tr("Beside: as loud"), self.loudness),
-            (tr("as fast"), self.rate),
-            (tr("words"), self.words),
+            (tr("Also match: loudness"), self.loudness),
+            (tr("speaking rate"), self.rate),
+            (tr("key words"), self.words),
         ):
             row.addWidget(QLabel(words, self))
             row.addWidget(field, int(field is self.words))
             row.addSpacing(6)
         row.addWidget(self.must)
         row.addSpacing(6)
-        row.addWidget(QLabel(tr("speed"), self))
+        row.addWidget(QLabel(tr("change speed"), self))
         row.addWidget(self.speed)
         row.addSpacing(12)
 
