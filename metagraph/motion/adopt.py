@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import find_known_roles
@@ -66,21 +67,30 @@ class _Match:
         clip, project = self.clip, self.project
         if len(self.own) < max(1, len(clip) // 2):
             extra = next(name for name in clip.names if name not in project)
-            return f"its joints have other names (it has '{extra}', the project has '{project.names[0]}')"
+            return phrase(
+                "its joints have other names (it has '{one}', the project has '{other}')",
+                one=extra,
+                other=project.names[0],
+            )
         for name, chain in self.own.items():
             above, here = clip.parents[chain[0]], project.parents[self.ours[name][0]]
             one = clip.names[above] if above >= 0 else "nothing"
             other = project.names[here] if here >= 0 else "nothing"
             if one != other:
-                return f"joint '{name}' hangs on '{one}' instead of '{other}'"
+                return phrase(
+                    "joint '{name}' hangs on '{one}' instead of '{other}'", name=name, one=one, other=other
+                )
         between = sum(len(chain) - 1 for chains in (self.own, self.ours) for chain in chains.values())
         if between > _BETWEEN:
-            return f"{between} joints between those of the same names are there in one skeleton alone"
+            return phrase(
+                "{count} joints between those of the same names are there in one skeleton alone",
+                count=between,
+            )
         theirs, mine = self._lengths()
         inner = self._inner() & (mine > 1e-3)
         ratio = float(np.median(theirs[inner] / mine[inner])) if inner.any() else 1.0
         if not 0.7 < ratio < 1.4:
-            return f"its bones are {ratio:.3g} times as long"
+            return phrase("its bones are {ratio:.3g} times as long", ratio=ratio)
         return None
 
     def bone_difference(self) -> float:
@@ -96,10 +106,19 @@ class _Match:
         names = [name for joint, name in enumerate(self.clip.names) if joint not in kept]
         if not names:
             return ()
-        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        return (
-            f"the motion of its joint '{names[0]}'{more} was left out: the project's skeleton has none such",
+        if len(names) == 1:
+            alone = phrase(
+                "the motion of its joint '{name}' was left out: the project's skeleton has none such",
+                name=names[0],
+            )
+            return (alone,)
+        several = phrase(
+            "the motion of its joint '{name}' and {count:,} more was left out: the project's skeleton "
+            "has none such",
+            name=names[0],
+            count=len(names) - 1,
         )
+        return (several,)
 
     def _lengths(self) -> tuple[Array, Array]:
         return _lengths(self.clip, self.own), _lengths(self.project, self.ours)
