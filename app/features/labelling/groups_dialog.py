@@ -9,7 +9,6 @@ from typing import Any
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QFrame,
     QHBoxLayout,
@@ -30,6 +29,7 @@ from app.look.theme import KIND_MARKS, strengthen, theme
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_phrase, tr_plural
+from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import KINDS
 from metagraph.suggest.review import Field
@@ -75,8 +75,8 @@ class GroupsDialog(QDialog):
         self._regroup()
         self.list.setFocus()
 
-    def _combo(self, words: str, name: Field) -> QComboBox:
-        combo = QComboBox(self)
+    def _combo(self, words: str, name: Field) -> ComboBox:
+        combo = ComboBox(self)
         combo.setAccessibleName(words)
         combo.setToolTip(words)
         combo.activated.connect(lambda row: self._correct(name, combo.itemData(row)))
@@ -154,7 +154,7 @@ class GroupsDialog(QDialog):
         first = group.clips[0]
         self._fill(self.stance, review.choices(first, "stance"), review.value(first, "stance"))
 
-    def _fill(self, combo: QComboBox, choices: list[tuple[Any, str]], now: object) -> None:
+    def _fill(self, combo: ComboBox, choices: list[tuple[Any, str]], now: object) -> None:
         combo.clear()
         for value, words in choices:
             combo.addItem(words, value)

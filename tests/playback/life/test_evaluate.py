@@ -247,13 +247,23 @@ def test_far_targets_are_met_with_the_help_of_the_head(
     assert eye < 32
 
 
-def test_what_is_behind_is_looked_for_as_far_as_a_neck_goes(sample: Project) -> None:
-    for target in ((0.3, 1.5, -2.0), (-0.3, 1.5, -2.0)):
+def test_what_is_beside_is_looked_for_as_far_as_a_neck_goes_and_what_is_behind_ever_less(
+    sample: Project,
+) -> None:
+    def turned(target: tuple[float, float, float]) -> float:
         _, after = alive(sample, alone(QUIET, gaze=1), track_of([LookAt("l", 0.0, 99, target)]), [20.0])
         assert sample.skeleton is not None
-        turned, _ = sample.skeleton.globals(after)
-        x, _, z = rotation.rotate_vectors(turned[0, joint(sample, "Head")], np.array([0, 0, 1.0]))
-        assert np.sign(x) == np.sign(target[0]) and 55 < abs(np.degrees(np.arctan2(x, z))) < 75
+        turns, _ = sample.skeleton.globals(after)
+        x, _, z = rotation.rotate_vectors(turns[0, joint(sample, "Head")], np.array([0, 0, 1.0]))
+        return float(np.degrees(np.arctan2(x, z)))
+
+    for side in (1.0, -1.0):
+        far = [
+            side * turned((2 * side * np.sin(np.radians(a)), 1.5, 2 * np.cos(np.radians(a))))
+            for a in (100, 118, 140, 160, 179)
+        ]
+        assert 55 < far[0] < 75 and 55 < far[1] < 75
+        assert far[1] > far[2] > far[3] > far[4] and abs(far[4]) < 3, "no side is left to snap from"
 
 
 def test_the_gaze_holds_while_the_head_nods_and_shakes(sample: Project) -> None:
