@@ -163,4 +163,4 @@ def test_an_agent_in_a_page_talks_with_gestures(
     said = [action for layer, action, _ in begun if layer == "speech"]
     assert len(said) == 3 and "let us build a boat" in said[1] and 6 < free < 12
     gestures = [meta for layer, _, meta in begun if layer != "speech" and meta.startswith("said#")]
-    assert len(gestures) >= 3, begun
+    assert len(gestures) >= 2, begun  # the arms may be at something else when a sentence comes
