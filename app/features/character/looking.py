@@ -45,7 +45,7 @@ class Looking(QObject):
         super().__init__(panel.view)
         self.panel = panel
         self.trails = Trails(panel)
-        self._fitted: tuple[str | None, MeshFigure] | None = None  # what was last looked at whole
+        self._fitted: tuple[object, MeshFigure] | None = None  # what was last looked at whole
         self._turntable = QTimer(self, interval=TURN)
         self._turntable.timeout.connect(self._turn)
 
@@ -86,21 +86,25 @@ class Looking(QObject):
         return (np.min(hands, axis=0) - HANDS, np.max(hands, axis=0) + HANDS) if hands else None
 
     def keep_in_picture(self, shown: ShownPlayback, figure: MeshFigure) -> None:
-        """Step back where a clip that plays alone would leave the picture, once for each, unless the camera
-        was moved.
+        """Step back where a clip that plays alone would leave the picture, and go to a performance that plays
+        outside it; once for each, unless the camera was moved.
         """
         view, clip = self.panel.view, shown.clip
-        if self._fitted == (clip, figure) or view.moved_by_hand:
+        what: object = clip if clip is not None else (shown.project.base, id(shown.project.graphs))
+        if self._fitted == (what, figure) or view.moved_by_hand:
             return
-        self._fitted = (clip, figure)
-        pose = shown.pose(np.linspace(0, shown.length, LOOKS)) if clip is not None else None
+        self._fitted = (what, figure)
+        times = np.linspace(0, shown.length, LOOKS) if clip is not None else np.zeros(1)
+        pose = shown.pose(times) if not shown.others else None  # who talks with others is framed with them
         if pose is None or shown.skeleton is None or figure.skeleton != shown.skeleton:
             return
         low, high = figure.posed_bounds(*shown.skeleton.globals(pose))
         aspect = view.width() / max(1, view.height())
         corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), -1).reshape(-1, 3)
         at = view.camera.project(corners, aspect)
-        if not ((at > -CUT) & (at < 1 + CUT)).all():
+        middle = at.mean(0)
+        inside = (at > -CUT) & (at < 1 + CUT) if clip is not None else (middle > 0) & (middle < 1)
+        if not inside.all():
             view.camera = frame_whole_figure((low, high), aspect)
 
     @property

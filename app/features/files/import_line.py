@@ -74,8 +74,8 @@ class ImportLine(QToolBar):
         """Show what came of an import."""
         self.forget()
         words = describe_import(result)
-        fresh = words == describe_imported(result) and not result.failures
-        if fresh and not self._unlabelled(result):
+        fresh = not result.failures and not result.apart and self._unlabelled(result)
+        if not fresh and not result.failures and words == describe_imported(result):
             return
         if fresh:
             words = f"{tr_phrase(words)}. {tr(NEXT)}"

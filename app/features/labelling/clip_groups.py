@@ -9,16 +9,16 @@ from app.features.labelling.review_watch import order_similar
 from app.translation import tr, tr_plural
 from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import Kind, Layer
+from metagraph.suggest.flags import chance_wrong, needs_look
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
-
-DOUBT = 0.7  # certainty below which a clip is marked as worth a look
 
 
 @dataclass(frozen=True)
 class ClipGroup:
-    """`clips` wait, the least certain first, and are all taken for one kind on one layer, out of the stance
-    with the name `stance`. The stances of a layer are one group, and its transitions, with no such name.
+    """`clips` wait, the likeliest to be wrong first, and are all taken for one kind on one layer, out of the
+    stance with the name `stance`. The stances of a layer are one group, and its transitions, with no such
+    name.
     """
 
     layer: Layer
@@ -43,8 +43,10 @@ class ClipGroup:
 
 
 def is_doubtful(p: Proposal) -> bool:
-    """Return whether a clip should be looked at before its proposal is accepted."""
-    return bool(p.conflicts) or p.good is False or p.confidence < DOUBT
+    """Return whether a clip should be looked at before its proposal is accepted: report and command say so,
+    or its times show a jump.
+    """
+    return needs_look(p) or p.good is False
 
 
 def group_alike(review: Review, waiting: Sequence[str]) -> list[ClipGroup]:
@@ -56,6 +58,6 @@ def group_alike(review: Review, waiting: Sequence[str]) -> list[ClipGroup]:
         alone = p.kind.value in ("gesture", "fidget")
         stance = place.name if place is not None and alone else ""
         groups.setdefault((p.layer.value, p.kind.value, stance), []).append(clip)
-    certain = lambda clip: found.proposals[clip].confidence  # noqa: E731
-    made = [ClipGroup(*key, tuple(sorted(clips, key=certain))) for key, clips in groups.items()]
+    wrong = lambda clip: -chance_wrong(found.proposals[clip])  # noqa: E731
+    made = [ClipGroup(*key, tuple(sorted(clips, key=wrong))) for key, clips in groups.items()]
     return sorted(made, key=lambda g: (g.kind != "stance", -len(g.clips)))

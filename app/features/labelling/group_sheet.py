@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QHelpEvent, QImage, QMouseEvent, QPainter, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.look.shortening import shorten_to_font
+from app.look.shortening import shorten_to_lines_in_font
 from app.look.theme import theme
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
@@ -151,17 +151,20 @@ class GroupSheet(QWidget):
         painter.setBrush(QColor(look.field))
         painter.setPen(QPen(QColor(look.text if current else look.line), 1.6 if current else 1))
         painter.drawRoundedRect(rect, 6, 6)
-        painter.setOpacity(0.3 if out else 1.0)
+        painter.setOpacity(0.25 if out else 1.0)
         picture = self._picture(card.clip)
         if picture is not None:
             painter.drawImage(QRect(rect.left() + 4, rect.top() + 4, CARD - 8, CARD - 8), picture)
+        painter.setOpacity(1.0)
         font = self.font()
         font.setPixelSize(12)
         painter.setFont(font)
-        line = QRect(rect.left() + 8, rect.top() + CARD, rect.width() - 16, 16)
+        line = QRect(rect.left() + 8, rect.top() + CARD - 2, rect.width() - 16, 16)
         painter.setPen(QColor(look.dim if out else look.text))
-        name = shorten_to_font(card.name, line.width(), font.toString(), names)
-        painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, name)
+        for part in shorten_to_lines_in_font(card.name, line.width(), 2, font.toString(), names):
+            painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
+            line.translate(0, 16)
         painter.setPen(QColor(look.warning if card.doubtful and not out else look.dim))
         words = tr("left out") if out else f"{card.certainty:.0%}"
-        painter.drawText(line.translated(0, 16), Qt.AlignmentFlag.AlignVCenter, words)
+        corner = rect.adjusted(0, 6, -8, 0)
+        painter.drawText(corner, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignTop, words)

@@ -141,9 +141,11 @@ class GroupsDialog(QDialog):
             self.heading.setText(tr("All clips are placed."))
             return
         self.heading.setText(f"{group.title}  ·  {group.count()}")
-        names = drop_common_start([clips[clip].name for clip in group.clips])
+        there = [clip for clip in self.work.clips if clip in clips]
+        names = dict(zip(there, drop_common_start([clips[c].name for c in there]), strict=True))
         cards = []
-        for clip, name in zip(group.clips, names, strict=True):
+        for clip in group.clips:
+            name = names.get(clip, clips[clip].name)
             p = review.found.proposals[clip]
             reasons = [tr_phrase(p.kind.reason), *([tr_phrase(p.stance.reason)] if p.stance else [])]
             words = "\n".join([clips[clip].name, *reasons, *map(tr_phrase, p.conflicts)])
@@ -152,7 +154,9 @@ class GroupsDialog(QDialog):
         self.sheet.show_cards(cards)
         self._fill(self.kind, [(kind, vocabulary_title(kind)) for kind in KINDS], group.kind)
         first = group.clips[0]
-        self._fill(self.stance, review.choices(first, "stance"), review.value(first, "stance"))
+        several = group.kind in ("stance", "transition")  # of several stances: none is the one of all
+        choices = [] if several else review.choices(first, "stance")
+        self._fill(self.stance, choices, review.value(first, "stance"))
 
     def _fill(self, combo: ComboBox, choices: list[tuple[Any, str]], now: object) -> None:
         combo.clear()

@@ -49,7 +49,8 @@ class Reviewing(QObject):
         self.parted: tuple[str, ...] = ()
         self._looks_for_parted = False
         self.looked = False  # whether proposals have come
-        self._steps: list[str | None] = []  # the clips placed here, one per undo step; None for many at once
+        # One per undo step: the clip placed; None for many at once; the review before a correction of many.
+        self._steps: list[str | Review | None] = []
         self._clock = QElapsedTimer()
         self._anew = QTimer(self, singleShot=True, interval=REST)
         self._anew.timeout.connect(self._propose_anew)
@@ -142,7 +143,8 @@ class Reviewing(QObject):
         self.changed.emit()
 
     def tell_all(self, clips: list[str], name: Field, value: object) -> None:
-        """Correct a field of the proposals of several clips, those that it can be said of."""
+        """Correct a field of the proposals of several clips, those that it can be said of, as one step."""
+        self._steps.append(self.review)
         for clip in clips:
             if value in [choice for choice, _ in self.review.choices(clip, name)]:
                 self.review = self.review.tell(clip, name, value)
@@ -230,6 +232,10 @@ class Reviewing(QObject):
     def undo(self) -> str | None:
         """Take the last step back; return the clip to look at again."""
         step = self._steps.pop()
+        if isinstance(step, Review):
+            self.review = step
+            self.changed.emit()
+            return next(iter(self.waiting()), None)
         self.document.undo()
         return step if step is not None else next(iter(self.waiting()), None)
 

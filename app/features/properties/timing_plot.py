@@ -158,7 +158,7 @@ class TimingPlot(QWidget):
         fine = max(costs.values()) <= 1 and not far
         set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")
         times, reason = describe_times(seen), seen.proposed.reason
-        self.use.setToolTip(tr("{times}: it {reason}", times=times, reason=reason))
+        self.use.setToolTip(tr("{times}: {reason}", times=times, reason=reason))
 
     def _proposed(self) -> dict[str, Any]:
         """Return the Timing fields that the proposed times would change."""

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.formats.gltf.writer import write_glb
+from metagraph.graph import edits
 from preview.default_body.figure import DefaultBody
 from preview.figure import StickFigure
 
@@ -59,3 +60,25 @@ def test_the_camera_steps_back_for_a_clip_that_would_leave_the_picture(drive, cl
     drive.session.transport.show_clip(ids["still"])
     drive.pause(200)
     assert drive.preview.view.camera == kept, "a camera that was moved stays"
+
+
+def test_the_camera_goes_to_a_performance_that_plays_elsewhere(drive, clips):
+    drive.importing.import_paths([str(clips)])
+    drive.wait(lambda: len(drive.document.project.clips) == 2 and isinstance(shown(drive), DefaultBody))
+    ids = {entry.name: ident for ident, entry in drive.document.project.clips.items()}
+    drive.session.transport.show_clip(ids["still"])
+    drive.pause(200)
+    assert abs(drive.preview.view.camera.target[0]) < 1
+
+    def far(project):
+        entry = project.clips[ids["still"]]
+        motion = entry.motion
+        translations = motion.translations.copy()
+        translations[:, 0, 0] += 6.0
+        moved = replace(entry, motion=replace(motion, translations=translations))
+        project = replace(project, clips={**project.clips, ids["still"]: moved})
+        return edits.add_stance(project, "body", "far", [ids["still"]])
+
+    drive.document.edit("put far away", far)
+    drive.session.transport.show_plan()
+    drive.wait(lambda: abs(drive.preview.view.camera.target[0] - 6) < 1.5)

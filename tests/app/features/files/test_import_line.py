@@ -114,7 +114,8 @@ def test_a_file_of_stand_ins_offers_to_choose_a_character(drive, line, toy, tmp_
     drive.importing.import_paths([str(tmp_path / "rest.glb")])
     drive.wait(line.isVisible)
     assert "rest.glb" in line.words.text() and "1 triangle" in line.words.text()
-    (button,) = line.offered
+    label, button = line.offered
+    assert label.text() == "Label clips…"
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *a, **k: (str(tmp_path / "body.glb"), ""))
     press(button)
     drive.wait(lambda: drive.document.project.character is not None)

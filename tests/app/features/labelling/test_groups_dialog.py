@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 
+from metagraph.suggest.flags import chance_wrong
 from tests.app.features.labelling.test_review_dialog import begun, practice
 
 __all__ = ["practice"]
@@ -40,7 +41,8 @@ def test_a_group_is_accepted_without_what_was_clicked_away_and_taken_back_in_one
     groups.list.setCurrentRow(row)
     group = groups.group
     assert groups.heading.text().startswith(group.title) and len(groups.sheet.cards) == len(group.clips)
-    assert [card.certainty for card in groups.sheet.cards] == sorted(c.certainty for c in groups.sheet.cards)
+    chances = [chance_wrong(review.work.review.found.proposals[card.clip]) for card in groups.sheet.cards]
+    assert chances == sorted(chances, reverse=True), "what is likely wrong stands first"
     click(groups.sheet, 1)
     out = group.clips[1]
     assert groups.sheet.left_out == {out} and groups.go.text() == f"Accept {len(group.clips) - 1} clips"
@@ -74,6 +76,16 @@ def test_a_correction_is_of_every_clip_shown_but_those_left_out(practice):
     kinds = {clip: review.work.review.value(clip, "kind") for clip in clips}
     assert kinds == {clip: "gesture" if clip == clips[2] else "fidget" for clip in clips}
     assert next(g for g in groups.groups if clips[2] in g.clips).kind == "gesture"
+    assert not list(practice.document.project.actions())
+    QTest.keyClick(groups, K.Key_Backspace)
+    assert {review.work.review.value(clip, "kind") for clip in clips} == {"gesture"}, "a step of its own"
+
+
+def test_what_is_of_several_stances_has_no_field_for_one(practice):
+    _, groups = grouped(practice)
+    for row, group in enumerate(groups.groups):
+        groups.list.setCurrentRow(row)
+        assert groups.stance.isVisible() == (group.kind in ("gesture", "fidget"))
 
 
 def test_by_keyboard_alone_a_clip_is_left_out_and_escape_goes_back_to_the_review(practice):
