@@ -67,7 +67,8 @@ def test_keys_cut_at_the_playhead_and_the_preview_follows(talking):
     for _ in range(2):
         talking.document.undo() if timeline.now.cuts else None
     preview.view.grab()
-    assert timeline.now.cuts == () and preview.view.camera.distance == pytest.approx(free.distance, rel=0.2)
+    # It is framed on the poses of another second, so nearly as before.
+    assert timeline.now.cuts == () and preview.view.camera.distance == pytest.approx(free.distance, rel=0.3)
 
 
 def test_a_moved_camera_is_the_hand_s_until_it_is_framed_again(talking):
