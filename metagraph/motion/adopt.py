@@ -108,13 +108,13 @@ class _Match:
             return ()
         if len(names) == 1:
             alone = phrase(
-                "the motion of its joint '{name}' was left out: the project's skeleton has none such",
+                "the motion of its joint '{name}' was left out: the project's skeleton has no such joint",
                 name=names[0],
             )
             return (alone,)
         several = phrase(
             "the motion of its joint '{name}' and {count:,} more was left out: the project's skeleton "
-            "has none such",
+            "has no such joints",
             name=names[0],
             count=len(names) - 1,
         )

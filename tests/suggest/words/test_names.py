@@ -317,6 +317,7 @@ FLOORS: dict[str, dict[str, float]] = {
     "sample_clips": {"kind": 0.98, "stance": 0.98, "end_stance": 1.0, "layer": 0.98, "limb": 0.93},
     "kaykit-rogue": {"kind": 1.0, "stance": 1.0, "end_stance": 1.0, "layer": 1.0},
     "fbx-pab": {"kind": 1.0, "stance": 1.0, "layer": 1.0},
+    "smartbody-rachel": {"kind": 0.95, "stance": 0.95, "end_stance": 1.0, "layer": 0.9, "limb": 0.98},
     "rocketbox": {"kind": 0.98, "stance": 0.98, "layer": 0.98, "limb": 1.0},
     "mixamo-names": {"kind": 0.95, "stance": 1.0, "end_stance": 1.0, "layer": 1.0, "limb": 1.0},
     "smartbody-names": {"kind": 0.98, "stance": 1.0, "layer": 0.95, "limb": 0.93},
