@@ -44,7 +44,7 @@ def run(options: Namespace) -> int:
     quiet = options.json
     if not quiet:
         print(f"{project.name}: {whole.clips} clips placed")
-        print(f"the machine nobody had to draw: {whole.states} states, {whole.connections:,} connections")
+        print(f"as a state machine: {whole.states} states, {whole.connections:,} connections")
         print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
     shown = ShownPlayback(project, made, made.end)
     seen = [(load_figure(project, folder), shown)]

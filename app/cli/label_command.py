@@ -143,18 +143,24 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         output.save(taken.project, source if source.is_file() else None)
     changed = not begun.merged or bool(begun.clips)  # if not, the report of what was labelled earlier stays
     place = _free_report(path)
+    seen = rehearse(taken.project, options.play) if options.play > 0 and changed else []
+    faults = [p.message for p in seen if p.severity == "error"]
+    gaps = [] if options.no_bridges else describe_unbridged(taken.project)
     if changed:
+        lists = {
+            "Seen when it was played": [p.message for p in seen],
+            "Blended, because no clip leads there": describe_bridges(taken.project, bridges),
+            "Not joined to the other stances": gaps,
+            "While importing": count_alike(notes),
+        }
         drawn = (
             {}
             if options.no_pictures
             else draw_label_pictures(taken.project, path.resolve().parent, [*found.proposals])
         )
-        write_atomically(place, format_label_report(taken.project, found, taken, drawn, notes, path).encode())
+        write_atomically(place, format_label_report(taken.project, found, taken, drawn, lists, path).encode())
     look = [p for p in found.doubtful if needs_look(p, taken.left)]
     errors = [p.message for p in grave(check_project(taken.project))]
-    seen = rehearse(taken.project, options.play) if options.play > 0 and changed else []
-    faults = [p.message for p in seen if p.severity == "error"]
-    gaps = [] if options.no_bridges else describe_unbridged(taken.project)
     seconds = time.perf_counter() - began
     for note in count_alike(notes):
         print(f"note: {note}", file=sys.stderr)

@@ -8,7 +8,8 @@ import base64
 import os
 import shlex
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,6 @@ from app.cli.label_page import SCRIPT, STYLE
 from app.look.plural import count_clips
 from app.translation import tr_plural
 from metagraph.common.xml_text import escape
-from metagraph.formats.import_words import count_alike
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_look
@@ -37,14 +37,14 @@ def format_label_report(
     found: Proposals,
     taken: AcceptedProposals,
     pictures: Mapping[str, Any],
-    notes: Iterable[str] = (),
+    lists: Mapping[str, Sequence[str]] = {},
     path: Path | None = None,
 ) -> str:
-    """Return the page. pictures: clip, or stance of the labelled project -> `[H, W, 4]` uint8, of those that
-    could be drawn. path: the project's file, which the page says how to open.
+    """Return the page. `pictures`: clip, or stance of the labelled project -> `[H, W, 4]` uint8, of those
+    that could be drawn. `lists`: what else happened, by title; empty lists are left out. `path`: the
+    project's file, which the page says how to open.
     """
     doubtful = sorted((p for p in found.doubtful if needs_look(p, taken.left)), key=lambda p: -gain(p))
-    told = [f"<li>{escape(note)}</li>" for note in count_alike(notes)]
     stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
     held = [
         f"<li>{escape(stances[i])}: {escape(rest.reason)}</li>"
@@ -56,7 +56,7 @@ def format_label_report(
         f"<p class='dim'>{len(doubtful)} of them need a person's look. Each says what it was taken for, how "
         "sure that is, and why.</p>",
         f"<h2>Stances that no clip rests in</h2><ul>{''.join(held)}</ul>" if held else "",
-        f"<h2>While importing</h2><ul>{''.join(told)}</ul>" if told else "",
+        *(_list(title, lines) for title, lines in lists.items() if lines),
         _overview(taken.project, pictures),
         _bar(),
         _section(
@@ -81,6 +81,10 @@ def format_label_report(
     )
     body += f"\n<script>{SCRIPT}</script>"
     return f"<!doctype html><html lang='en'><head>{head}</head><body>\n{body}</body></html>\n"
+
+
+def _list(title: str, lines: Sequence[str]) -> str:
+    return f"<h2>{escape(title)}</h2><ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul>"
 
 
 def _aside(project: Project, found: Proposals) -> str:
@@ -206,7 +210,7 @@ def _card(
     ]
     details = [
         f"<li>{escape(_said(name, b.value))} {b.confidence:.0%}: {escape(b.reason)}</li>"
-        for name, b in p.details.items()
+        for name, b in _placed_details(p, taken).items()
     ]
     if details:
         reasons.append(
@@ -233,6 +237,23 @@ def _card(
         f"<div>{title} <span class='dim'>{escape(where)}{limb}</span><ul>{''.join(reasons)}</ul>{opening}"
         "</div></div>"
     )
+
+
+def _placed_details(p: Proposal, taken: AcceptedProposals) -> Mapping[str, Belief[Any]]:
+    """Return the details of a proposal with the times that its action has in the labelled project."""
+    action = next((a for a in taken.project.uses.get(p.clip, ()) if a.kind == p.kind.value), None)
+    if action is None or p.clip not in taken.placed:
+        return p.details
+    out = dict(p.details)
+    for name in ("blend_in", "blend_out", "repeat"):
+        value = getattr(action.timing, name)
+        if name in out and abs(value - (out[name].value or 0.0)) > 5e-4:
+            out[name] = replace(
+                out[name], value=value, reason="longer, to come from its stance and go back calmly"
+            )
+    if action.timing.repeat > 0:
+        out.pop("loop", None)  # what repeats neither loops nor plays once
+    return out
 
 
 def _picture(picture: Any) -> str:

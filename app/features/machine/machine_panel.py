@@ -1,4 +1,4 @@
-"""The machine nobody had to draw: the expanded graph of the current layer, every state and connection."""
+"""The expanded graph of the current layer as a state machine: every state and connection."""
 
 from __future__ import annotations
 

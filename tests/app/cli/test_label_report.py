@@ -117,16 +117,29 @@ def test_what_was_left_aside_stands_at_the_end_by_reason_with_a_count() -> None:
     assert "Left aside" not in format_label_report(project, Proposals({}, {}), taken, {})
 
 
-def test_many_notes_of_the_same_are_one_in_the_report() -> None:
-    from app.cli.label_report import format_label_report
+def test_what_else_happened_is_listed_by_title_and_empty_lists_are_left_out() -> None:
+    taken = AcceptedProposals(Project("p"), (), {})
+    lists = {"Seen when it was played": ["a < b", "c"], "Not joined": []}
+    page = format_label_report(Project("p"), Proposals({}, {}), taken, {}, lists)
+    assert "<h2>Seen when it was played</h2><ul><li>a &lt; b</li><li>c</li></ul>" in page
+    assert "Not joined" not in page
+
+
+def test_times_are_those_of_the_labelled_project_and_what_repeats_does_not_play_once(toy: Any) -> None:
     from metagraph.suggest.propose import accept, propose
 
-    project = edits.add_clips(Project("p"), [("a.glb", 0, "", clip("a"))])
+    rest, wave = toy.clip("idle", 4.0, 0.0, swing=0.02), toy.clip("wave", 0.6, 1.4, 1.4, swing=0.5)
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in (rest, wave)])
     found = propose(project)
-    notes = [f"f{n}.glb: the scale of {n} joints is animated" for n in range(1, 27)]
-    page = format_label_report(project, found, accept(project, found), {}, notes)
-    assert page.count("is animated") == 1
-    assert "f1.glb and 25 more: the scale of 1 to 26 joints is animated" in page
+    taken = accept(project, found)
+    ident = next(i for i, e in project.clips.items() if e.name == "wave")
+    (action,) = taken.project.uses[ident]
+    assert action.timing.repeat > 0 and action.timing.blend_in != found.proposals[ident].timing["blend_in"]
+    page = format_label_report(project, found, taken, {})
+    card = page[page.index("data-name='wave'") :].split("<div class='card'")[0]
+    assert f"blend in {action.timing.blend_in:.2f} s" in card
+    assert f"repeat {action.timing.repeat:.2f} s" in card
+    assert "plays once" not in card and "longer, to come from its stance" in card
 
 
 WINDOW = """
