@@ -149,8 +149,18 @@ def merge_at(project: Project, stance: str, hit: GraphHit) -> Drop:
     """Return what dropping a stance's chip on `hit` does."""
     if hit.area != "chip" or hit.ident is None or hit.ident == stance:
         return Drop(False, tr("drop this on another stance to merge the two"))
-    words = tr(
-        "merge *{stance}* into *{other}*", stance=_name(project, stance), other=_name(project, hit.ident)
+    two = {stance, hit.ident}
+    ways = sum(a.kind == "transition" and {a.stance, a.end_stance} == two for a in project.actions())
+    names = {"stance": _name(project, stance), "other": _name(project, hit.ident)}
+    words = (
+        tr_plural(
+            "merge *{stance}* into *{other}*; this removes the transition between them",
+            "merge *{stance}* into *{other}*; this removes {count:,} transitions between them",
+            ways,
+            **names,
+        )
+        if ways
+        else tr("merge *{stance}* into *{other}*", **names)
     )
     return Drop(True, words, None, hit.ident)
 

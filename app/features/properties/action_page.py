@@ -31,6 +31,7 @@ from app.widgets.restyling import set_sheet
 from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Action
+from metagraph.graph.repeating import cycle_of, times_played
 from metagraph.playback.timing.handles import set_timing_field
 from metagraph.suggest.jumps.soft_blends import repeat_actions
 
@@ -195,6 +196,7 @@ class ActionPage(Halves):
         _check(self.repeats, common_value([a.timing.repeat > 0 for a in actions]))
         self.repeat.setEnabled(any(a.timing.repeat > 0 for a in actions))
         self.repeat.show_value(common_value([a.timing.repeat for a in actions]))
+        self.repeats.setText(self._describe_repeats(actions))
         arms = layer == "arms" and not stance
         self.form.setRowVisible(self.limb, arms)
         self.limb.show_limb(common_value([a.limb for a in actions]))
@@ -267,13 +269,24 @@ class ActionPage(Halves):
             }
         self.edit(tr("Change earliest exit"), lambda p: edits.update_each(p, exits))
 
+    def _describe_repeats(self, actions: Sequence[Action]) -> str:
+        """Return how often actions play their part, where that is the same for all of them."""
+        spans = [(a, *self.document.project.span(a)) for a in actions]
+        cycles = [(cycle_of(a.kind, a.timing, start, end), a.timing.repeat) for a, start, end in spans]
+        times = {round(times_played(cycle, seconds)) if cycle > 0 else 0 for cycle, seconds in cycles}
+        if times == {0} or len(times) != 1:
+            return tr("for about")
+        return tr_plural("{count:,} time, for about", "{count:,} times, for about", times.pop())
+
     def _repeat(self) -> None:
         on, chosen = self.repeats.checkState() != Qt.CheckState.Unchecked, self.session.selection.actions
         self.edit(tr("Change repeats"), lambda p: repeat_actions(p, chosen, on))
 
     def _repeat_for(self, seconds: float) -> None:
         if seconds >= 0:
-            self._set(tr("Change repeats"), timing={"repeat": round(seconds, 3)})
+            spans = [self.document.project.span(a) for a in self.session.selection.selected_actions()]
+            once = min((end - start for start, end in spans), default=0.0)
+            self._set(tr("Change repeats"), timing={"repeat": round(max(seconds, once), 3)})
         self.show_actions(self.session.selection.selected_actions())
 
     def _rename(self) -> None:

@@ -443,6 +443,11 @@ def test_ticking_repeats_repeats_actions_in_one_step_and_only_what_can_repeat_ha
     assert p.repeat.isEnabled() and p.repeat.text() == "mixed"
     p.repeat.setValue(1.6)
     assert both() == [1.6, 1.6] and count(drive) == steps + 2
+    drive.session.selection.select_actions((beat,))
+    assert p.repeats.text() == "2 times, for about"
+    p.repeat.setValue(0.1)
+    assert both() == [0.9, 1.6] and p.repeats.text() == "1 time, for about", "its part plays at least once"
+    drive.key(KEY.Key_Z, CTRL)
     drive.key(KEY.Key_Z, CTRL)
     drive.key(KEY.Key_Z, CTRL)
     assert both() == [0.0, 0.0] and p.repeats.checkState() == Qt.CheckState.Unchecked

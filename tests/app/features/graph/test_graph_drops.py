@@ -197,7 +197,12 @@ def test_only_files_that_can_be_clips_and_folders_are_taken():
 def test_a_chip_on_another_merges_them_and_elsewhere_does_nothing(toy, project):
     rest, up = toy.id(project, "rest"), toy.id(project, "up")
     drop = merge_at(project, rest, GraphHit("chip", up))
-    assert (drop.possible, drop.stance, drop.words) == (True, up, "merge *rest* into *up*")
+    gone = "; this removes 2 transitions between them"
+    assert (drop.possible, drop.stance, drop.words) == (True, up, f"merge *rest* into *up*{gone}")
+    far = toy.id(project, "far")
+    assert merge_at(project, rest, GraphHit("chip", far)).words == "merge *rest* into *far*"
+    one = edits.remove_actions(project, [toy.id(project, "up to rest")])
+    assert merge_at(one, rest, GraphHit("chip", up)).words.endswith("removes the transition between them")
     for hit in (GraphHit("chip", rest), GraphHit("node", None, "gesture"), GraphHit("nothing")):
         assert not merge_at(project, rest, hit).possible
 
