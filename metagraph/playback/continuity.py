@@ -19,13 +19,12 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.own_moves import RATE, play_clips
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.composer import playable
 
 Array = NDArray[Any]
 Globals = tuple[Array, Array]  # rotations [N, J, 4] and positions [N, J, 3] in the character's space
 
-RATE = 60.0  # poses a second that are compared
 MOST_WAY = 0.03  # metres, of a figure of TALL
 MOST_TURN = float(np.radians(8.0))
 TALL = 1.75  # metres
@@ -142,17 +141,9 @@ def usual_moves(project: Project, joints: list[int]) -> tuple[Array, Array]:
     """Return how far each joint goes, metres, and turns, radians, in a sixtieth of a second of the clips,
     `[J]` each: the USUAL percentile over all that plays.
     """
-    skeleton = project.skeleton
-    assert skeleton is not None
     far: list[Array] = []
     turned: list[Array] = []
-    for action in project.actions():
-        clip = playable(project, action)
-        if clip is None:
-            continue
-        start, end = project.span(action)
-        times = start + np.arange(max(2, round((end - start) * RATE))) / RATE
-        turns, at = skeleton.globals(clip.pose_at(np.clip(times, 0.0, clip.duration)))
+    for turns, at in play_clips(project):
         found = moves_of((turns[:, joints].astype(np.float64), at[:, joints].astype(np.float64)))
         far.append(np.linalg.norm(found[0], axis=-1))
         turned.append(np.linalg.norm(found[1], axis=-1))

@@ -1,30 +1,49 @@
-"""How fast a joint goes in a clip itself, where a performance plays it: what is seen there need not come from
-a blend.
+"""How joints move in the clips themselves, by which what is seen in a performance is judged: what a clip does
+need not come from a blend, nor from what is added to it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from metagraph.graph.model import Layer, Project
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import playable
 
+Array = NDArray[Any]
 
-def own_moves(
-    project: Project, plan: Plan, layer: Layer, joint: int, time: float, rate: float
-) -> tuple[float, float]:
+RATE = 60.0  # poses a second that are looked at
+
+
+def play_clips(project: Project) -> Iterator[tuple[Array, Array]]:
+    """Yield the rotations `[F, J, 4]` and positions `[F, J, 3]`, metres, of all joints in what each action
+    plays of its clip, F >= 3 poses at RATE, in the character's space.
+    """
+    for action in project.actions():
+        clip = playable(project, action)
+        if clip is None:
+            continue
+        start, end = project.span(action)
+        times = start + np.arange(max(3, round((end - start) * RATE))) / RATE
+        yield clip.skeleton.globals(clip.pose_at(np.clip(times, 0.0, clip.duration)))
+
+
+def own_moves(project: Project, plan: Plan, layer: Layer, joint: int, time: float) -> tuple[float, float]:
     """Return how fast a joint goes, m/s, and how its speed changes, m/s2, in the clip that a layer plays at a
-    time, seconds, alone: the most of three neighbouring poses at `rate` a second. Zeros where no clip plays.
+    time, seconds, alone: the most of the poses next to it, at RATE. Zeros where no clip plays.
     """
     cue = plan.layers[layer].cue_at(time)
     clip = playable(project, cue.action) if cue is not None else None
     if cue is None or clip is None:
         return 0.0, 0.0
-    times = time + np.arange(-2, 4) / rate
+    times = time + np.arange(-2, 4) / RATE
     seconds = np.clip(cue.clip_seconds(times), 0.0, clip.duration)
     _, places = clip.skeleton.globals(clip.pose_at(seconds))
     way = np.diff(places[:, joint], axis=0)
-    speeds = np.linalg.norm(way, axis=-1) * rate
-    changes = np.linalg.norm(np.diff(way, axis=0), axis=-1) * rate**2
+    speeds = np.linalg.norm(way, axis=-1) * RATE
+    changes = np.linalg.norm(np.diff(way, axis=0), axis=-1) * RATE**2
     return float(speeds.max()), float(changes.max())

@@ -24,7 +24,7 @@ from metagraph.motion.in_place import travel_of
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.continuity import ContinuityLaw
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
-from metagraph.playback.own_moves import own_moves
+from metagraph.playback.own_moves import RATE, own_moves, play_clips
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.running_plan import plan_performance
@@ -36,7 +36,6 @@ Array = NDArray[Any]
 
 MINUTES = 10.0
 LEAST_MINUTES = 5.0  # below which a stance that was not reached means nothing
-RATE = 60.0  # poses a second that are looked at
 CHUNK = 600  # poses made at once
 GAP = 0.5  # seconds between the actions that are each played once
 TALL = 1.75  # metres: the lengths and speeds below are of a figure of that height
@@ -218,18 +217,10 @@ def _own_limits(project: Project) -> tuple[Array, Array]:
     """Return how fast each part goes in the clips, `[P]` m/s, and how its speed changes, `[P]` m/s2: the 99th
     percentile over all that plays.
     """
-    skeleton = project.skeleton
-    assert skeleton is not None
     roles = anatomy.project_roles(project)
     joints = [roles[part] for part in PARTS if part in roles]
     speeds, changes = [], []
-    for action in project.actions():
-        clip = playable(project, action)
-        if clip is None:
-            continue
-        start, end = project.span(action)
-        times = start + np.arange(max(3, round((end - start) * RATE))) / RATE
-        _, at = skeleton.globals(clip.pose_at(np.clip(times, 0.0, clip.duration)))
+    for _, at in play_clips(project):
         speeds.append(np.linalg.norm(np.diff(at[:, joints], axis=0), axis=-1) * RATE)
         changes.append(np.linalg.norm(np.diff(at[:, joints], 2, axis=0), axis=-1) * RATE**2)
     if not speeds:
@@ -360,7 +351,7 @@ class _Findings:
         """Return what a part does at a frame in the clip that the cause plays, as `own_moves`."""
         joint = anatomy.project_roles(self.project)[part]
         time = float(self.seen.times[frame])
-        return own_moves(self.project, self.plan, cause.layer, joint, time, RATE)
+        return own_moves(self.project, self.plan, cause.layer, joint, time)
 
     def _own_jump(self, part: str, far: float, frame: int, cause: _Cause, alone: bool) -> Problem:
         """Return that a clip itself moves so fast. alone: for a moment, as no limb does."""
