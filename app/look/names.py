@@ -15,6 +15,7 @@ from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, P
 MANY = 1 << 14  # names that are remembered, with what is made of them: after each edit all are asked for
 _TAKE = re.compile(r"[\s.#(-]*\d+\)?$")  # the number of a take, at a name's end
 _MARK = re.compile(r"[\s_@|:.#]+")  # between the words of a name
+_LETTER = re.compile(r"[^\W\d_]")
 _SIDES: Mapping[str, tuple[Limb, str]] = {
     **dict.fromkeys(("left", "l", "lf", "lft"), ("left", "L")),
     **dict.fromkeys(("right", "r", "rt", "rgt"), ("right", "R")),
@@ -166,5 +167,6 @@ def drop_common_start(names: Sequence[str]) -> list[str]:
     alike = next((n for n, (a, b) in enumerate(zip(first, last, strict=False)) if a != b), len(first))
     start = first[:alike] if len(names) > 1 else ""
     marks = [found.end() for found in _MARK.finditer(start)]
-    cut = marks[-1] if marks else 0
-    return [name[cut:] for name in names] if all(len(name) > cut for name in names) else list(names)
+    fits = (n for n in reversed(marks) if all(_LETTER.search(name[n:]) for name in names))  # no bare numbers
+    cut = next(fits, 0)
+    return [name[cut:] for name in names]

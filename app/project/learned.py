@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from functools import reduce
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -100,8 +101,16 @@ class Learned(QObject):
         """Remember that a clip of this name was corrected; see `Memory.corrected`. Nothing happens while
         learning is off.
         """
-        if self.on:
-            self._change(WORDS, lambda m: m.corrected(name, field, value, names))
+        self.correct_all([(name, field, value)], names)
+
+    def correct_all(
+        self, corrections: Sequence[tuple[str, str, str | Sequence[str]]], names: Sequence[str] = ()
+    ) -> None:
+        """Remember several corrections, each the name of a clip, a field and its value, in one write."""
+        if self.on and corrections:
+            self._change(
+                WORDS, lambda m: reduce(lambda kept, one: kept.corrected(*one, names), corrections, m)
+            )
 
     def keep(self, document: Document, jobs: Jobs | None = None) -> None:
         """Remember a saved project's labelled clips, in a job. Without `jobs`, on closing, what a job was not

@@ -8,7 +8,7 @@ holds when proposals are made again.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import median
 from typing import Any, Literal
@@ -191,9 +191,29 @@ class Review:
         """Return a clip's proposal with the times that the statistics give it as what it is now, and with
         corrected times.
         """
-        p = with_timing(project, self.found.proposals)[clip]
-        said = self.said.get(clip, {}).get("timing")
-        return replace(p, timing={**p.timing, **said}) if said else p
+        return self.timed_all(project, [clip])[0]
+
+    def timed_all(self, project: Project, clips: Sequence[str]) -> list[Proposal]:
+        """Return the proposals of clips, each as `timed` does."""
+        found = with_timing(project, self.found.proposals)
+        out = []
+        for clip in clips:
+            p, said = found[clip], self.said.get(clip, {}).get("timing")
+            out.append(replace(p, timing={**p.timing, **said}) if said else p)
+        return out
+
+    def with_former(self, former: Review, clips: Sequence[str]) -> Review:
+        """Return the review with the proposals of some clips, and what was said of them, as in an earlier
+        one.
+        """
+        mine = {clip: former.found.proposals[clip] for clip in clips}
+        found = replace(
+            self.found,
+            proposals={**self.found.proposals, **mine},
+            places={**former.found.places, **self.found.places},
+        )
+        said = {clip: what for clip, what in self.said.items() if clip not in mine}
+        return Review(found, said | {clip: former.said[clip] for clip in clips if clip in former.said})
 
     def with_times(self, p: Proposal) -> Review:
         """Return the review with what `timed` found, unless the clip has been changed to something else in

@@ -46,6 +46,7 @@ class Looking(QObject):
         self.panel = panel
         self.trails = Trails(panel)
         self._fitted: tuple[object, MeshFigure] | None = None  # what was last looked at whole
+        self._stepped_back = False  # whether the camera is as far away as that takes
         self._turntable = QTimer(self, interval=TURN)
         self._turntable.timeout.connect(self._turn)
 
@@ -87,11 +88,14 @@ class Looking(QObject):
 
     def keep_in_picture(self, shown: ShownPlayback, figure: MeshFigure) -> None:
         """Step back where a clip that plays alone would leave the picture, and go to a performance that plays
-        outside it; once for each, unless the camera was moved.
+        outside it; once until something else plays, unless the camera was moved. What plays after a step back
+        is framed anew.
         """
         view, clip = self.panel.view, shown.clip
-        what: object = clip if clip is not None else (shown.project.base, id(shown.project.graphs))
-        if self._fitted == (what, figure) or view.moved_by_hand:
+        entry = shown.project.clips.get(clip) if clip is not None else None
+        what: object = entry.motion if entry is not None else shown.project.graphs
+        same = self._fitted is not None and self._fitted[0] is what and self._fitted[1] is figure
+        if same or view.moved_by_hand:
             return
         self._fitted = (what, figure)
         times = np.linspace(0, shown.length, LOOKS) if clip is not None else np.zeros(1)
@@ -104,7 +108,8 @@ class Looking(QObject):
         at = view.camera.project(corners, aspect)
         middle = at.mean(0)
         inside = (at > -CUT) & (at < 1 + CUT) if clip is not None else (middle > 0) & (middle < 1)
-        if not inside.all():
+        if self._stepped_back or not inside.all():
+            self._stepped_back = clip is not None and not inside.all()
             view.camera = frame_whole_figure((low, high), aspect)
 
     @property

@@ -124,6 +124,8 @@ class GraphActs(QObject):
     def merge(self, merged: str, into: str) -> None:
         """Make one stance part of another, in one step, and show that."""
         stances = self.document.project.graphs[self.session.place.layer].stances
+        if merged not in stances or into not in stances:  # one was removed during the drag
+            return
         words = tr("Merge {stance} into {other}", stance=stances[merged].name, other=stances[into].name)
         try:
             self.document.edit(words, lambda p: merge_stances(p, merged, into))

@@ -17,8 +17,8 @@ from metagraph.suggest.review import Review
 @dataclass(frozen=True)
 class ClipGroup:
     """`clips` wait, the likeliest to be wrong first, and are all taken for one kind on one layer, out of the
-    stance with the name `stance`. The stances of a layer are one group, and its transitions, with no such
-    name.
+    stance with the name `stance`. A layer's stances form one group, and so do its transitions; their
+    `stance` is "".
     """
 
     layer: Layer

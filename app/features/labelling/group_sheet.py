@@ -31,8 +31,8 @@ class SheetCard:
 
 
 class GroupSheet(QWidget):
-    """`left_out` has the clips that were clicked away. `changed`: it is another. `opened`: a clip was
-    double-clicked.
+    """`left_out` has the clips that were clicked away. `changed`: the clips or `left_out` have changed.
+    `opened`: a clip was double-clicked.
     """
 
     changed = Signal()
@@ -58,9 +58,11 @@ class GroupSheet(QWidget):
         return [card.clip for card in self.cards if card.clip not in self.left_out]
 
     def show_cards(self, cards: Sequence[SheetCard]) -> None:
-        """Show other clips. Those that were left out and are still there stay so."""
-        self.left_out &= {card.clip for card in cards}
-        self.current = min(self.current, len(cards) - 1) if self.left_out else 0
+        """Show other clips. What was left out stays so; the current clip stays the current one if it is still
+        there.
+        """
+        was = self.cards[self.current].clip if self.cards else None
+        self.current = next((n for n, card in enumerate(cards) if card.clip == was), 0)
         self.cards = tuple(cards)
         self._fit()
         self.changed.emit()

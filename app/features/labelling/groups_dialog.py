@@ -48,6 +48,7 @@ class GroupsDialog(QDialog):
         super().__init__(parent)
         self.work, self.session = work, session
         self.groups: list[ClipGroup] = []
+        self._refused = ""  # why a clip could not be placed, until the next decision
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Review in groups"))
         if parent is not None:
@@ -72,8 +73,10 @@ class GroupsDialog(QDialog):
             button.clicked.connect(run)
         self._lay_out()
         work.changed.connect(self._regroup)
+        self.list.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # all keys but Tab are the dialog's
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._regroup()
-        self.list.setFocus()
+        self.setFocus()
 
     def _combo(self, words: str, name: Field) -> ComboBox:
         combo = ComboBox(self)
@@ -139,6 +142,9 @@ class GroupsDialog(QDialog):
         if group is None:
             self.sheet.show_cards(())
             self.heading.setText(tr("All clips are placed."))
+            self._fill(self.kind, [], None)
+            self._fill(self.stance, [], None)
+            self.told.clear()
             return
         self.heading.setText(f"{group.title}  ·  {group.count()}")
         there = [clip for clip in self.work.clips if clip in clips]
@@ -166,12 +172,14 @@ class GroupsDialog(QDialog):
         combo.setVisible(bool(choices))
 
     def _count(self) -> None:
-        count, out = len(self.sheet.chosen), len(self.sheet.left_out)
+        count = len(self.sheet.chosen)
+        out = len(self.sheet.cards) - count
         self.go.setText(tr_plural("Accept {count:,} clip", "Accept {count:,} clips", count))
         self.go.setEnabled(count > 0)
         hint = tr("Click a clip that does not belong to leave it out. Double-click to look at it by itself.")
         self.told.setText(
-            tr_plural("{count:,} clip stays in the review.", "{count:,} clips stay in the review.", out)
+            self._refused
+            or tr_plural("{count:,} clip stays in the review.", "{count:,} clips stay in the review.", out)
             if out
             else hint
         )
@@ -183,19 +191,22 @@ class GroupsDialog(QDialog):
         clips = self.sheet.chosen
         if not clips:
             return
-        row = self.list.currentRow()
-        self.sheet.left_out.clear()
+        row, key = self.list.currentRow(), self.groups[self.list.currentRow()].key
+        self._refused = ""
         taken = self.work.place(clips, tr("Label {clips} clips", clips=len(clips)), None)
-        self._regroup()
-        self.list.setCurrentRow(min(row, len(self.groups) - 1))  # what was left out is a group further down
         why = next(iter(taken.left.items()), None)
         if why is not None:
             name = self.work.document.project.clips[why[0]].name
-            self.told.setText(tr("{name} was not placed: {why}.", name=name, why=tr_phrase(why[1])))
+            self._refused = tr("{name} was not placed: {why}.", name=name, why=tr_phrase(why[1]))
+        self._regroup()
+        others = [n for n, group in enumerate(self.groups) if group.key != key]
+        self.list.setCurrentRow(next((n for n in others if n >= row), others[0] if others else row))
 
     def _correct(self, name: Field, value: object) -> None:
         """Take a value for a field of every clip that was not left out."""
+        self._refused = ""
         self.work.tell_all(self.sheet.chosen, name, value)
+        self.setFocus()
 
     def _open(self, clip: str) -> None:
         self.opened.emit(clip)
@@ -211,6 +222,11 @@ class GroupsDialog(QDialog):
                 self._regroup()
         elif key == Qt.Key.Key_Space and sheet.cards:
             sheet.toggle(sheet.cards[sheet.current].clip)
+        elif key in (Qt.Key.Key_Up, Qt.Key.Key_Down):
+            row = self.list.currentRow() + (1 if key == Qt.Key.Key_Down else -1)
+            self.list.setCurrentRow(min(max(0, row), len(self.groups) - 1))
+        elif Qt.Key.Key_1 <= key <= Qt.Key.Key_4 and sheet.cards:
+            self._correct("kind", KINDS[key - Qt.Key.Key_1])
         elif key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
             sheet.step(1 if key == Qt.Key.Key_Right else -1)
         else:

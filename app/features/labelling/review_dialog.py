@@ -431,6 +431,8 @@ class ReviewDialog(QDialog):
         from app.features.labelling.groups_dialog import GroupsDialog
 
         if self.work.waiting():
+            self.watching.stop()
+            self.context, self.stage.playing = True, False
             dialog = GroupsDialog(self.work, self.session, self.thumbnails, self)
             dialog.opened.connect(self.go_to)
             dialog.finished.connect(lambda _: self._go_on())

@@ -49,8 +49,9 @@ class Reviewing(QObject):
         self.parted: tuple[str, ...] = ()
         self._looks_for_parted = False
         self.looked = False  # whether proposals have come
-        # One per undo step: the clip placed; None for many at once; the review before a correction of many.
-        self._steps: list[str | Review | None] = []
+        # One per undo step: the clip placed; None for many at once; for a correction of many, the review
+        # before it and their clips.
+        self._steps: list[str | tuple[Review, tuple[str, ...]] | None] = []
         self._clock = QElapsedTimer()
         self._anew = QTimer(self, singleShot=True, interval=REST)
         self._anew.timeout.connect(self._propose_anew)
@@ -143,12 +144,30 @@ class Reviewing(QObject):
         self.changed.emit()
 
     def tell_all(self, clips: list[str], name: Field, value: object) -> None:
-        """Correct a field of the proposals of several clips, those that it can be said of, as one step."""
-        self._steps.append(self.review)
+        """Correct a field of the proposals of several clips, those that it can be said of, as one step; then
+        look for their times, on a thread.
+        """
+        now, changed = self.review, list[str]()
         for clip in clips:
-            if value in [choice for choice, _ in self.review.choices(clip, name)]:
-                self.review = self.review.tell(clip, name, value)
+            possible = value in [choice for choice, _ in now.choices(clip, name)]
+            if possible and now.value(clip, name) != value:
+                now = now.tell(clip, name, value)
+                changed.append(clip)
+        if not changed:
+            return
+        self._steps.append((self.review, tuple(changed)))
+        self.review = now
         self.changed.emit()
+        project = self.document.project
+
+        def found(times: list[Proposal]) -> None:
+            for p in times:
+                self.review = self.review.with_times(p)
+            self.changed.emit()
+
+        self.jobs.start(
+            "times of many", lambda _: now.timed_all(project, changed), found, self._failed, quick=True
+        )
 
     def take_up(self, clip: str, kind: Kind) -> None:
         """Make a clip that was left aside one of the review, as a kind."""
@@ -169,6 +188,9 @@ class Reviewing(QObject):
         at, None for many at once.
         """
         review, project = self.review, self.document.project
+        late = [c for c in clips if c in review.said and not review.found.proposals[c].timing]
+        for p in review.timed_all(project, late) if late else ():  # accepted before its times were found
+            review = review.with_times(p)
         taken = review.take(project, clips)
         if not taken.placed:
             return taken
@@ -220,8 +242,8 @@ class Reviewing(QObject):
             for name, value in self.review.said.get(c, {}).items()
             if name != "timing"
         ]
-        for clip, name, value in corrected:
-            self.learned.correct(entries[clip].name, name, value, names)
+        told = [(entries[clip].name, name, value) for clip, name, value in corrected]
+        self.learned.correct_all(told, names)
         if corrected:
             self._anew.start()
 
@@ -232,8 +254,8 @@ class Reviewing(QObject):
     def undo(self) -> str | None:
         """Take the last step back; return the clip to look at again."""
         step = self._steps.pop()
-        if isinstance(step, Review):
-            self.review = step
+        if isinstance(step, tuple):
+            self.review = self.review.with_former(*step).settled(self.document.project)
             self.changed.emit()
             return next(iter(self.waiting()), None)
         self.document.undo()

@@ -37,11 +37,13 @@ class Retargeting(QObject):
         super().__init__(window)
         self.document, self.jobs, self.window = document, jobs, window
         self._waiting: list[tuple[Strangers, Then]] = []
+        self._sure: list[tuple[Strangers, Then]] = []  # those that are not asked about any more
         document.loaded.connect(self._forget)
         self._asking = False
 
     def _forget(self) -> None:
         self._waiting.clear()  # they were of another project
+        self._sure.clear()
 
     def ask(self, groups: Iterable[Strangers], then: Then) -> None:
         """Ask about each group; `then` is called with what came of each, an empty import for those left
@@ -81,6 +83,11 @@ class Retargeting(QObject):
         )
 
     def _next(self) -> None:
+        if self._sure:
+            group, then = self._sure.pop(0)
+            self._asking = True
+            self._bring(group, group.joint_map, then)
+            return
         if not self._waiting:
             return
         from app.features.retargeting.joint_map_dialog import JointMapDialog
@@ -104,15 +111,14 @@ class Retargeting(QObject):
         dialog.open()
 
     def _accept(self, dialog: JointMapDialog, group: Strangers, then: Then) -> None:
-        """Retarget a group by the dialog's map, and where all were chosen, those that wait by theirs."""
+        """Retarget a group by the dialog's map, and if all were chosen, those that wait by theirs, one after
+        another.
+        """
         waiting, self._waiting = self._waiting, []
-        chosen: list[tuple[Strangers, Then]] = []
         for pair in waiting:
             whole = dialog.all_chosen and not pair[0].joint_map.missing
-            (chosen if whole else self._waiting).append(pair)
+            (self._sure if whole else self._waiting).append(pair)
         self._bring(group, dialog.map, then)
-        for other, told in chosen:
-            self._bring(other, other.joint_map, told)
 
     def _leave(self, group: Strangers, then: Then) -> None:
         self._end(lambda: then(Imported((), apart=(group,))))

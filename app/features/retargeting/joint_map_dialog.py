@@ -65,7 +65,7 @@ class JointMapDialog(QDialog):
             "",
             self.map,
         )  # the joint that was changed last, and the map before that
-        self.waiting, self.all_chosen = waiting, False
+        self.all_chosen = False
         self._asked = 0  # previews, so that a late one of an older map is not shown
         self._roles = {
             self.target.names[j]: role for role, j in find_known_roles(self.target, bringing.roles).items()
@@ -94,16 +94,16 @@ class JointMapDialog(QDialog):
         self.buttons = QDialogButtonBox(self)
         self.go = self.buttons.addButton(tr("Retarget"), QDialogButtonBox.ButtonRole.AcceptRole)
         self.leave = self.buttons.addButton(tr("Skip them"), QDialogButtonBox.ButtonRole.RejectRole)
-        if waiting:
-            everything = self.buttons.addButton(
-                tr("Retarget all {count:,} clips", count=waiting + len(strangers.clips)),
-                QDialogButtonBox.ButtonRole.ActionRole,
-            )
-            everything.setObjectName("retarget all")
-            everything.setToolTip(
-                tr("Retarget the clips of the other skeletons, too, by the joint maps offered for them")
-            )
-            everything.clicked.connect(self._choose_all)
+        count = waiting + len(strangers.clips)
+        self.everything = self.buttons.addButton(
+            tr_plural("Retarget all {count:,} clip", "Retarget all {count:,} clips", count),
+            QDialogButtonBox.ButtonRole.ActionRole,
+        )
+        self.everything.setVisible(waiting > 0)
+        self.everything.setToolTip(
+            tr("Retarget the clips of the other skeletons, too, by the joint maps offered for them")
+        )
+        self.everything.clicked.connect(self._choose_all)
         strengthen(self.go)
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
@@ -306,6 +306,7 @@ class JointMapDialog(QDialog):
         self.missing.setText(words)
         self.missing.setStyleSheet(f"color: {look.warning}" if missing else "")
         self.go.setEnabled(not missing)
+        self.everything.setEnabled(not missing)
         self._narrow()
 
     def _narrow(self, *_: object) -> None:

@@ -109,6 +109,8 @@ def test_names_of_a_node_are_made_anew_only_where_something_is_called_otherwise(
         (["Rachel@Idle01_Nod", "Rachel@Idle02_Nod", "Rachel@Guitar"], ["Idle01_Nod", "Idle02_Nod", "Guitar"]),
         (["idle_nod", "idle_wave"], ["nod", "wave"]),
         (["nodding", "nods"], ["nodding", "nods"]),
+        (["set_wave_01", "set_wave_02"], ["wave_01", "wave_02"]),
+        (["Idle.001", "Idle.002"], ["Idle.001", "Idle.002"]),
         (["idle_", "idle_nod"], ["idle_", "idle_nod"]),
         (["idle nod"], ["idle nod"]),
         ([], []),

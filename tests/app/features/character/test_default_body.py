@@ -55,6 +55,10 @@ def test_the_camera_steps_back_for_a_clip_that_would_leave_the_picture(drive, cl
     drive.session.transport.show_clip(ids["goes"])
     drive.wait(lambda: drive.preview.view.camera.distance > near.distance + 1)
     assert drive.preview.view.camera.target[0] == pytest.approx(3, abs=1)
+    drive.session.transport.show_clip(ids["still"])
+    drive.wait(lambda: drive.preview.view.camera.distance < near.distance + 0.5)
+    drive.session.transport.show_clip(ids["goes"])
+    drive.wait(lambda: drive.preview.view.camera.distance > near.distance + 1)
     drive.preview.view.moved_by_hand = True
     kept = drive.preview.view.camera
     drive.session.transport.show_clip(ids["still"])

@@ -27,6 +27,12 @@ def grouped(drive):
     return review, review.findChildren(GroupsDialog)[-1]
 
 
+def press(groups, *keys):
+    """Press keys as a person does: whatever has the focus gets them."""
+    for key in keys:
+        QTest.keyClick(groups.focusWidget(), key)
+
+
 def click(sheet, number, double=False):
     place = sheet.card_rect(number).center()
     (QTest.mouseDClick if double else QTest.mouseClick)(sheet, Qt.MouseButton.LeftButton, pos=place)
@@ -55,12 +61,32 @@ def test_a_group_is_accepted_without_what_was_clicked_away_and_taken_back_in_one
     assert set(review.work.waiting()) == before
 
 
+def test_more_that_is_left_out_than_the_next_group_has_is_not_accepted_by_pressing_enter_again(practice):
+    review, groups = grouped(practice)
+    press(groups, K.Key_Return)
+    group = max((g for g in groups.groups if g.kind == "gesture"), key=lambda g: len(g.clips))
+    groups.list.setCurrentRow(groups.groups.index(group))
+    out = set(group.clips[1:])
+    for number in range(1, len(group.clips)):
+        click(groups.sheet, number)
+    press(groups, K.Key_Return)
+    assert groups.group.key != group.key
+    while set(review.work.waiting()) > out:
+        waiting = len(review.work.waiting())
+        press(groups, K.Key_Return)
+        if len(review.work.waiting()) == waiting:
+            break
+    assert out <= set(review.work.waiting()), "what was clicked away is still waiting"
+
+
 def test_what_was_left_out_stays_so_while_the_rest_is_proposed_anew(practice):
     review, groups = grouped(practice)
     click(groups.sheet, 0)
     out = groups.sheet.cards[0].clip
     review.work.changed.emit()
     assert groups.sheet.left_out == {out}
+    press(groups, K.Key_Down, K.Key_Up)
+    assert groups.sheet.left_out == {out}, "also after a look at another group"
     click(groups.sheet, 0)
     assert not groups.sheet.left_out and groups.sheet.chosen == list(groups.group.clips)
 
@@ -79,6 +105,40 @@ def test_a_correction_is_of_every_clip_shown_but_those_left_out(practice):
     assert not list(practice.document.project.actions())
     QTest.keyClick(groups, K.Key_Backspace)
     assert {review.work.review.value(clip, "kind") for clip in clips} == {"gesture"}, "a step of its own"
+    assert not review.work.can_undo
+
+
+def test_taking_a_correction_back_leaves_what_came_after_it(practice):
+    review, groups = grouped(practice)
+    work = review.work
+    group = next(g for g in groups.groups if g.kind == "gesture" and len(g.clips) > 4)
+    groups.list.setCurrentRow(groups.groups.index(group))
+    press(groups, K.Key_3)
+    other = next(clip for clip in work.waiting() if clip not in group.clips)
+    work.tell(other, "tags", ("mine",))
+    work.undo()
+    assert work.review.value(group.clips[0], "kind") == "gesture"
+    assert work.review.said[other]["tags"] == ("mine",)
+
+
+def test_nothing_that_is_told_is_no_step(practice):
+    review, groups = grouped(practice)
+    review.work.tell_all([], "kind", "fidget")
+    review.work.tell_all(list(groups.group.clips), "kind", groups.group.kind)
+    assert not review.work.can_undo
+
+
+def test_what_was_corrected_is_placed_with_times_of_its_new_kind(practice):
+    review, groups = grouped(practice)
+    work = review.work
+    press(groups, K.Key_Return)
+    group = next(g for g in groups.groups if g.kind == "gesture" and len(g.clips) > 4)
+    work.tell_all([group.clips[0]], "kind", "fidget")
+    timed = work.review.timed(practice.document.project, group.clips[0])
+    work.place([group.clips[0]], "at once", None)
+    (action,) = practice.document.project.uses[group.clips[0]]
+    assert action.kind == "fidget" and timed.timing
+    assert (action.timing.start, action.timing.end) == (timed.timing["start"], timed.timing["end"])
 
 
 def test_what_is_of_several_stances_has_no_field_for_one(practice):
@@ -90,10 +150,11 @@ def test_what_is_of_several_stances_has_no_field_for_one(practice):
 
 def test_by_keyboard_alone_a_clip_is_left_out_and_escape_goes_back_to_the_review(practice):
     review, groups = grouped(practice)
-    QTest.keyClick(groups, K.Key_Right)
-    QTest.keyClick(groups, K.Key_Space)
+    press(groups, K.Key_Right, K.Key_Space)
     assert groups.sheet.left_out == {groups.sheet.cards[1].clip}
-    QTest.keyClick(groups, K.Key_Escape)
+    review.work.changed.emit()
+    assert groups.sheet.current == 1
+    press(groups, K.Key_Escape)
     practice.wait(lambda: not groups.isVisible())
     assert review.isVisible() and review.current in review.work.waiting()
 

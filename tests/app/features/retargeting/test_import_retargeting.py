@@ -10,7 +10,6 @@ from dataclasses import replace
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QPushButton
 
 from app.project import watching
 from app.project.autosave import state_folder
@@ -73,7 +72,7 @@ def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_st
     assert dialog.headline.text() == "2 clips have another skeleton"
     assert "other0.glb, other1.glb" in dialog.details.text() and "61 joints" in dialog.details.text()
     assert dialog.go.text() == "Retarget 2 clips" and dialog.go.isEnabled()
-    assert dialog.findChild(QPushButton, "retarget all") is None, "nobody else waits"
+    assert not dialog.everything.isVisible(), "nobody else waits"
     assert dialog.combo("LeftHand").currentText() == "LeftHand"
     assert dialog.rows["LeftHand"].text(2) == "left hand"
     press(dialog.go)
@@ -120,9 +119,11 @@ def test_one_click_retargets_the_clips_of_every_other_skeleton(own, folder, samp
     third = Skeleton(names, bones.parents, bones.rest_rotations, bones.rest_translations * 1.3)
     write_glb(folder / "third.glb", [replace(motion, name="third", skeleton=third)])
     dialog = bring(drive, folder, "other0", "other1", "third")
-    everything = dialog.findChild(QPushButton, "retarget all")
-    assert everything.text() == "Retarget all 3 clips"
-    press(everything)
+    assert dialog.everything.text() == "Retarget all 3 clips"
+    choose(drive, dialog, "LeftHand", None)
+    assert not dialog.everything.isEnabled(), "a needed joint is missing"
+    choose(drive, dialog, "LeftHand", "LeftHand")
+    press(dialog.everything)
     drive.wait(lambda: len(drive.document.project.clips) == 5)
     project = drive.document.project
     assert len(project.joint_maps) == 2 and sum(bool(e.brought_from) for e in project.clips.values()) == 3
