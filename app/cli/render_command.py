@@ -74,13 +74,12 @@ def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
     stick figure in place of the default body. Raises FileError.
     """
     from preview.character_file import figure_from_file as drawn
-    from preview.default_body.footing import find_footing
+    from preview.default_body.footing import footing_of
     from preview.figure import StickFigure
 
     assert project.skeleton is not None
     path = folder / project.character if project.character is not None else None
-    clip = next((e.motion for e in project.clips.values() if e.motion is not None), None)
-    footing = find_footing(clip) if clip is not None and clip.skeleton == project.skeleton else None
+    footing = footing_of((entry.motion for entry in project.clips.values()), project.skeleton)
     figure = drawn(path, project.skeleton, project.hidden, footing, sticks)
     if figure.instead:
         kind = "a stick figure" if isinstance(figure, StickFigure) else "the default body"

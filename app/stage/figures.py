@@ -17,7 +17,7 @@ from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
 from preview.character_file import figure_from_file
-from preview.default_body.footing import Footing, find_footing
+from preview.default_body.footing import Footing, footing_of
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
@@ -84,11 +84,10 @@ class Figures(QObject):
     def footing(self, skeleton: Skeleton, project: Project) -> Footing | None:
         """Return how a skeleton stands, told once by the first of the project's clips that is on it."""
         if skeleton.fingerprint not in self._footings:
-            motions = (entry.motion for entry in project.clips.values())
-            clip = next((m for m in motions if m is not None and m.skeleton == skeleton), None)
-            if clip is None:
+            found = footing_of((entry.motion for entry in project.clips.values()), skeleton)
+            if found is None:
                 return None
-            self._footings[skeleton.fingerprint] = find_footing(clip)
+            self._footings[skeleton.fingerprint] = found
         return self._footings[skeleton.fingerprint]
 
     def _choose_sticks(self) -> None:
@@ -121,9 +120,10 @@ class Figures(QObject):
             self.document.failed.emit(tr("The character cannot be drawn: {error}", error=error))
             self.changed.emit()
 
-    def figure(self, skeleton: Skeleton) -> MeshFigure | None:
+    def figure(self, skeleton: Skeleton, clips: Project | None = None) -> MeshFigure | None:
         """Return the figure for a skeleton: the project's character on the project's skeleton, else the
-        default body, or a stick figure.
+        default body, or a stick figure. `clips`: the project whose clips tell how the skeleton stands, the
+        document's if None.
 
         None while it is being made; `changed` is emitted when it is ready.
         """
@@ -134,7 +134,7 @@ class Figures(QObject):
             return self._skinned[1] if self._skinned is not None and self._skinned[0][:2] == key[:2] else None
         if skeleton.fingerprint not in self._bodies:
             self._bodies[skeleton.fingerprint] = None
-            footing, sticks = self.footing(skeleton, project), self.sticks
+            footing, sticks = self.footing(skeleton, clips or project), self.sticks
             self.jobs.start(
                 "figure",
                 lambda _: (sticks, _ready(figure_from_file(None, skeleton, (), footing, sticks))),
@@ -151,10 +151,10 @@ class Figures(QObject):
         if skeleton is None:
             return None
         if shown.folder is None or character is None or shown.clip is not None:
-            return self.figure(skeleton)
+            return self.figure(skeleton, shown.project)
         key = (str(shown.folder / character), skeleton.fingerprint, shown.project.hidden)
         if key == self._key(self.document.project):
-            return self.figure(skeleton)
+            return self.figure(skeleton, shown.project)
         if key not in self._guests:
             self._guests[key] = None
             footing, sticks = self.footing(skeleton, shown.project), self.sticks

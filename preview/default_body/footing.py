@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -41,6 +41,12 @@ class Footing:
     pose: Pose
     ankle: float | None = None
     ups: tuple[Array | None, Array | None] = (None, None)
+
+
+def footing_of(clips: Iterable[Clip | None], skeleton: Skeleton) -> Footing | None:
+    """Return how a skeleton stands, as the first of some clips that is on it tells; None if none is."""
+    clip = next((c for c in clips if c is not None and c.skeleton == skeleton), None)
+    return find_footing(clip) if clip is not None else None
 
 
 def find_footing(clip: Clip) -> Footing:

@@ -470,7 +470,7 @@ class ReviewDialog(QDialog):
         project = self.document.project
         names = [s.name for i in self.work.parted if (s := project.stance(i)) is not None]
         made = self._bridged if not names and any(self._bridged) else ()
-        self.queue.part(names, made)
+        self.queue.part(names, made, self.work.unbridged)
         self.back.setEnabled(self.work.can_undo)
 
     def _show(self) -> None:

@@ -23,7 +23,7 @@ from app.features.labelling.review_words import describe_length
 from app.look.names import drop_common_start
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import StageSession
-from app.translation import tr, tr_noop, tr_plural
+from app.translation import tr, tr_noop, tr_phrase, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import waiting
@@ -133,8 +133,10 @@ class ReviewQueue(QWidget):
             item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.list.blockSignals(False)
 
-    def part(self, stances: Sequence[str], made: Sequence[str]) -> None:
-        """Tell of stances, by name, that no clip leads to or from, or else what was made of blends."""
+    def part(self, stances: Sequence[str], made: Sequence[str], unbridged: Sequence[str] = ()) -> None:
+        """Tell of stances, by name, that no clip leads to or from, or else what was made of blends; and why
+        others cannot be joined by blending.
+        """
         names = ", ".join(stances[:4]) + (" …" if len(stances) > 4 else "")
         if stances:
             self.parted.setText(
@@ -155,8 +157,10 @@ class ReviewQueue(QWidget):
                 if made
                 else ""
             )
-        self.parted.setToolTip("\n".join(stances if stances else made))
-        self.parted.setVisible(bool(stances or made))
+        told = [text for text in (self.parted.text(), *(tr_phrase(words) for words in unbridged[:2])) if text]
+        self.parted.setText("\n".join(told))
+        self.parted.setToolTip("\n".join([*(stances if stances else made), *map(tr_phrase, unbridged)]))
+        self.parted.setVisible(bool(told))
         self.bridge.setVisible(bool(stances))
 
     def go_to(self, clip: str) -> None:

@@ -47,6 +47,7 @@ class Reviewing(QObject):
         self.clips: tuple[str, ...] = ()
         self.aside: tuple[str, ...] = ()
         self.parted: tuple[str, ...] = ()
+        self.unbridged: tuple[str, ...] = ()  # why stances cannot be joined by blending, in words
         self._looks_for_parted = False
         self.looked = False  # whether proposals have come
         # One per undo step: the clip placed; None for many at once; for a correction of many, the review
@@ -210,27 +211,31 @@ class Reviewing(QObject):
         """Look for stances that no clip leads to or from, even with the rest placed; on a thread."""
         project, review, rest = self.document.project, self.review, self.waiting()
 
-        def found(_: object) -> list[str]:
-            now = find_missing_bridges(project)
-            then = find_missing_bridges(review.take(project, rest).project) if now and rest else now
-            return [stance for stance in now if stance in then]
+        def found(_: object) -> tuple[list[str], list[str]]:
+            now, never = find_missing_bridges(project), describe_unbridged(project)
+            if (now or never) and rest:
+                then = review.take(project, rest).project
+                now = [stance for stance in find_missing_bridges(then) if stance in now] if now else now
+                never = [words for words in describe_unbridged(then) if words in never] if never else never
+            return now, never
 
-        def done(stances: list[str]) -> None:
-            if project is self.document.project and tuple(stances) != self.parted:
-                self.parted = tuple(stances)
+        def done(made: tuple[list[str], list[str]]) -> None:
+            parted, unbridged = (tuple(some) for some in made)
+            if project is self.document.project and (parted, unbridged) != (self.parted, self.unbridged):
+                self.parted, self.unbridged = parted, unbridged
                 self.changed.emit()
 
         self.jobs.start("parted stances", found, done, self._failed, quick=True)
 
     def bridge(self) -> tuple[str, ...]:
         """Join the stances that no clip leads to or from by blending, as one undo step; return what was made,
-        in words.
+        in words. `unbridged` says which stances cannot be joined.
         """
         after, made = bridge_all(self.document.project)
         if made:
             self._steps.append(None)
             self.document.edit(tr("Bridge by blending"), lambda p: bridge_all(p)[0])
-        return (*describe_bridges(after, made), *describe_unbridged(after))
+        return tuple(describe_bridges(after, made))
 
     def _learn(self, clips: list[str]) -> None:
         """Remember what was corrected of clips that are now placed, and look at the rest anew."""

@@ -402,7 +402,7 @@ def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_
 def test_a_clip_taken_up_stays_one_when_the_rest_is_looked_at_anew(toys, monkeypatch):
     drive = toys
     dialog = made_of(drive, "one stance and exercises")
-    monkeypatch.setattr(type(dialog.work.learned), "correct", lambda self, *a: None)
+    monkeypatch.setattr(type(dialog.work.learned), "correct_all", lambda self, *a: None)
     clip, other = dialog.work.aside[:2]
     dialog.go_to(clip)
     press(dialog, K.Key_2)
@@ -535,3 +535,16 @@ def test_clips_that_are_taken_for_the_same_are_watched_beside_each_other(practic
     assert len(list(groupby(signs))) == len(set(signs)) < 152 and sorted(order) == sorted(
         dialog.work.waiting()
     )
+
+
+def test_why_stances_cannot_be_joined_is_said_and_not_counted_as_a_transition(practice):
+    dialog = begun(practice)
+    dialog.queue.part((), (), ())
+    assert not dialog.queue.parted.isVisible()
+    dialog.queue.part((), ("one",), ('"far" is not joined to the others: …',))
+    assert dialog.queue.parted.text().startswith("Added 1 blended transition.\n")
+    assert "is not joined" in dialog.queue.parted.text() and dialog.queue.parted.isVisible()
+    dialog.work.unbridged = ('"up" is not joined to the others: …',)
+    dialog._refresh()
+    assert dialog.queue.parted.text() == dialog.work.unbridged[0]
+    dialog.close()
