@@ -19,7 +19,7 @@ from metagraph.graph.expand import reachable
 from metagraph.graph.manual.check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
-from metagraph.graph.repeating import seconds_played
+from metagraph.graph.repeating import cycle_of, seconds_played
 from metagraph.motion.in_place import travel_of
 
 Array = NDArray[Any]
@@ -294,7 +294,7 @@ class _ActionCheck:
         latest = entry.duration + tolerance
         blends = timing.blend_in + timing.blend_out
         length = seconds_played(self.action.kind, timing, timing.start, end)
-        repeats = length > end - timing.start
+        repeats = cycle_of(self.action.kind, timing, timing.start, end) > 0
         if not (0 <= timing.start <= latest and end <= latest):  # also true if one of them is NaN
             yield self.at(
                 "error",

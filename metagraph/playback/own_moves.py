@@ -34,14 +34,14 @@ def play_clips(project: Project) -> Iterator[tuple[Array, Array]]:
 
 def own_moves(project: Project, plan: Plan, layer: Layer, joint: int, time: float) -> tuple[float, float]:
     """Return how fast a joint goes, m/s, and how its speed changes, m/s2, in the clip that a layer plays at a
-    time, seconds, alone: the most of the poses next to it, at RATE. Zeros where no clip plays.
+    time, seconds, alone: the most of the poses next to it, at RATE. Zeros where only a stance's loop plays.
     """
     cue = plan.layers[layer].cue_at(time)
     clip = playable(project, cue.action) if cue is not None else None
     if cue is None or clip is None:
         return 0.0, 0.0
-    times = time + np.arange(-2, 4) / RATE
-    seconds = np.clip(cue.clip_seconds(times), 0.0, clip.duration)
+    near = float(cue.clip_seconds(time)) + np.arange(-2, 4) * cue.tempo / RATE  # not over a cycle's seam
+    seconds = np.clip(near, 0.0, clip.duration)
     _, places = clip.skeleton.globals(clip.pose_at(seconds))
     way = np.diff(places[:, joint], axis=0)
     speeds = np.linalg.norm(way, axis=-1) * RATE

@@ -369,9 +369,9 @@ class _Findings:
         assert skeleton is not None
         for name, (ways, turns, breaks, joints) in self.seen.added.items():
             what, part, remedy = _ADDED[name]
-            frame = int(np.argmax(breaks))
-            if breaks[frame] <= 1:
+            if not len(breaks) or breaks.max() <= 1:
                 continue
+            frame = int(np.argmax(breaks))
             words = phrase(
                 "{what} move '{joint}' {length:.0f} cm and {angle:.0f} degrees in a sixtieth of a second "
                 "beyond what the clips do",

@@ -22,12 +22,14 @@ def read_folder_tags(
     paths: Mapping[str, str], patterns: Patterns | None = None
 ) -> dict[str, Belief[tuple[str, ...]]]:
     """Return clip id -> the tags that its folders give. `paths` are those of all clips, by id, as a project
-    keeps them.
+    keeps them; absolute ones lie outside the project and give none.
 
     A folder gives a tag where it lies beside other folders with clips: its own name, and what that means as a
     word of a clip's name ("sad" is also negative).
     """
-    folders = {clip: PurePosixPath(path).parent.parts for clip, path in paths.items()}
+    folders = {
+        clip: PurePosixPath(path).parent.parts for clip, path in paths.items() if not path.startswith("/")
+    }
     beside: dict[tuple[str, ...], set[str]] = {}
     for parts in folders.values():
         for n, part in enumerate(parts):
@@ -35,16 +37,17 @@ def read_folder_tags(
     meanings = read_names(sorted({part for parts in folders.values() for part in parts}), patterns)
     out: dict[str, Belief[tuple[str, ...]]] = {}
     for clip, parts in folders.items():
-        found: list[str] = []
+        found, named = list[str](), list[str]()
         for n, part in enumerate(parts):
             name = " ".join(part.replace("_", " ").replace("-", " ").lower().split())
-            if len(beside[parts[:n]]) < 2 or name in KINDS_OF_FILES or not any(c.isalpha() for c in name):
+            if len(beside[parts[:n]]) < 2 or name.rstrip(" 0123456789") in (*KINDS_OF_FILES, ""):
                 continue
             said = meanings[part].tags
+            named.append(part)
             found += [name, *(said.value if said is not None else ())]
         if found:
             tags = tuple(dict.fromkeys(found))
-            out[clip] = Belief(tags, SURE, phrase("its folder is '{name}'", name=parts[-1]))
+            out[clip] = Belief(tags, SURE, phrase("its folder is '{name}'", name="/".join(named)))
     return out
 
 

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.requests import AnyRequest, Feel, Go, Look
+from metagraph.graph.requests import AnyRequest, Feel, Go, Look, Play
 from metagraph.motion import rotation
 from metagraph.playback.continuity import (
     MOST_TURN,
@@ -25,7 +26,7 @@ from metagraph.playback.continuity import (
     blending,
     moved_joints,
 )
-from metagraph.playback.evaluator import BLENDS, STAGES, Evaluator
+from metagraph.playback.evaluator import BLENDS, CONTACTS, STAGES, Evaluator
 from metagraph.playback.plan import LayerPlan, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.mood import MOODS
@@ -161,3 +162,22 @@ def test_nothing_that_is_added_jumps_in_ten_minutes(sample: Project) -> None:
     law, evaluator = ContinuityLaw(sample), Evaluator(make_plan(sample, 600.0, seed=SEED), sample)
     found = [list(broken(law, evaluator, start, start + 30.0)) for start in range(0, 600, 30)]
     assert [words for words in found if words] == []
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "end"), [("point_me_rt_01", 1.25, 2.27), ("shrug_bt_01", 0.23, 1.2)]
+)
+def test_contacts_of_an_action_that_repeats_go_over_the_seam_with_its_pose(
+    sample: Project, name: str, start: float, end: float
+) -> None:
+    """Contacts began anew with the clip's time at each seam, and threw a hand 41 cm in a sixtieth."""
+    action = next(a for a in sample.graphs["arms"].actions.values() if a.name.endswith(name) and a.contacts)
+    timing = {"start": start, "end": end, "repeat": 6.0, "earliest_exit": None, "stroke": None}
+    project = edits.update_actions(sample, [action.id], timing=timing)
+    plan = plan_performance(project, [Play(id="p", action=action.id, at=3.0)], 14.0, idle=False)
+    evaluator, law = Evaluator(plan, project), ContinuityLaw(project)
+    cue = next(c for c in plan.layers["arms"].cues if c.action.id == action.id)
+    assert cue.repeats
+    times = np.arange(round((cue.end - cue.start) * RATE)) / RATE + cue.start
+    added = law.added(plan, times, evaluator.stages(times))[CONTACTS]
+    assert added.breaks.max() <= 1.0

@@ -64,6 +64,10 @@ def sound(toy: Any) -> Project:
     return project
 
 
+def test_less_than_a_frame_is_nothing_to_look_at(sound: Project) -> None:
+    assert rehearse(sound, 0.004) is not None
+
+
 def test_nothing_plays_in_a_project_without_clips() -> None:
     assert rehearse(Project(), SECONDS) == []
 

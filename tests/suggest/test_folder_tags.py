@@ -21,6 +21,9 @@ def test_folders_beside_each_other_are_tags_with_what_their_names_mean() -> None
 def test_folders_within_folders_are_tags_too() -> None:
     found = tags("a/happy/kitchen/x.bvh", "a/happy/office/x.bvh", "a/sad/office/x.bvh")
     assert found == [("happy", "positive", "kitchen"), ("happy", "positive", "office"), ("sad", "negative")]
+    takes = {"0": "happy/take1/a.bvh", "1": "happy/take2/a.bvh", "2": "sad/take1/a.bvh"}
+    read = read_folder_tags(takes)
+    assert read["0"].value == ("happy", "positive") and read["0"].reason == "its folder is 'happy'"
 
 
 @pytest.mark.parametrize(
@@ -30,6 +33,7 @@ def test_folders_within_folders_are_tags_too() -> None:
         ["happy/wave.bvh", "happy/nod.bvh"],
         ["bvh/wave.bvh", "fbx/nod.fbx"],
         ["01/wave.bvh", "02/wave.bvh"],
+        ["/home/anna/wave.bvh", "/data/wave.bvh"],
         [],
     ],
 )

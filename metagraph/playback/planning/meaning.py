@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from metagraph.graph.model import Kind, Layer, Limb, MetaGraph, Mode, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.graphemes import read_aloud
 from metagraph.playback.life.items import BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom
@@ -160,7 +161,9 @@ class Meaning:
                 return f"there is no action '{ask.action}'{where}"
             if stroke is not None:
                 start = max(0.0, stroke - lead(self.project, action))
-            duration = ask.duration if action.timing.repeat > 0 else None
+            begins, ends = self.project.span(action)
+            repeats = cycle_of(action.kind, action.timing, begins, ends) > 0
+            duration = ask.duration if repeats else None
             request = MetaRequest(
                 ident, action.layer, action.kind, start, duration, action.id, (), None, None, priority, False,
                 stroke, ask.hold, ask.prepare, (), ask.late, ask.valence, ask.arousal, ask.intensity,

@@ -11,7 +11,7 @@ from metagraph.graph.model import Action, Project
 from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.motion.contact_spans import HANDS, ContactSpan, contact_key, contact_weight
 from metagraph.playback.plan import Cue, LayerPlan, Rest
-from metagraph.playback.posing.cue_times import cue_seconds, cue_weight, ease
+from metagraph.playback.posing.cue_times import cue_seconds, cue_weight, ease, seam_left
 
 LEAST = 1e-6  # of a hand: goals with less weight are not solved
 
@@ -38,7 +38,11 @@ def layer_goals(
             if _moves(rig, cue.action, arm, hand):
                 shown[arm] = weight
         if len(cue.action.contacts) > 0:
-            out += _goals(rig, project, cue.action, cue_seconds(cue, time), [strength * w for w in shown])
+            left = seam_left(cue, time)
+            if left > 0.0:  # what the cycle before wanted at its end, as far as its pose is still shown
+                out += _goals(rig, project, cue.action, cue.cycle_to, [strength * left * w for w in shown])
+            share = strength * (1.0 - left)
+            out += _goals(rig, project, cue.action, cue_seconds(cue, time), [share * w for w in shown])
     if place >= 0:
         rest = plan.rests[place]
         over = 1.0

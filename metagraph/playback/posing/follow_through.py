@@ -13,7 +13,7 @@ from math import floor
 
 from metagraph.graph.model import Action, Project
 from metagraph.playback.plan import Cue, LayerPlan, Rest
-from metagraph.playback.posing.cue_times import cue_seconds, cue_weight, ease, loop_spot
+from metagraph.playback.posing.cue_times import cue_seconds, cue_weight, ease, loop_spot, seam_left
 
 STEP = 0.08  # seconds between the sampled times; the answer comes two of them late
 OFFSET = 0.0111  # seconds by which they are shifted from whole steps, where cues begin and end
@@ -79,6 +79,9 @@ def arm_sway(
     rest = _stance(project, tracks, arms, place, time)
     entering = time < cue.start + cue.blend_in
     if cue.repeats:
+        back = seam_left(cue, time)
+        ends, begins = _row(track, cue.cycle_to), _row(track, cue.cycle_from)
+        row = [row[n] + back * (ends[n] - begins[n]) for n in range(NUMBERS)]
         row = [rest[n] + weight * (row[n] - rest[n]) for n in range(NUMBERS)]
     elif entering or time >= cue.end - cue.blend_out:
         edge = _row(track, cue.entry if entering else cue_seconds(cue, cue.end))

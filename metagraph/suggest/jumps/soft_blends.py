@@ -60,7 +60,7 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
 
 def repeat_actions(project: Project, actions: Collection[str], on: bool = True) -> Project:
     """Return the project with gestures and fidgets that repeat, or play once. Those that begin to repeat do
-    it for the usual time, and come and go at the pace of a movement.
+    so for the usual time, and blend at the pace of a movement. Parts under LEAST_CYCLE seconds cannot repeat.
     """
     changes = {}
     for ident in actions:
@@ -68,7 +68,9 @@ def repeat_actions(project: Project, actions: Collection[str], on: bool = True) 
         if action is None or action.kind not in ("gesture", "fidget") or (action.timing.repeat > 0) == on:
             continue
         start, end = project.span(action)
-        timing: dict[str, float] = {"repeat": usual_repeat(max(LEAST_CYCLE, end - start))}
+        if on and end - start < LEAST_CYCLE:
+            continue
+        timing: dict[str, float] = {"repeat": usual_repeat(end - start)}
         if not on:
             most = round(SHARE * (end - start), 3)
             now = {"blend_in": action.timing.blend_in, "blend_out": action.timing.blend_out}

@@ -28,6 +28,7 @@ def test_every_action_but_the_ways_between_the_two_is_kept_and_is_the_others(two
     after = merge_stances(TOYS, merged, into)
     before, graph = TOYS.graphs["arms"], after.graphs["arms"]
     assert list(graph.stances) == [s for s in STANCES if s != merged] and graph.start in graph.stances
+    # A transition that leads from a stance to itself is odd, and not the merge's to remove.
     between = {
         a.id
         for a in before.actions.values()
@@ -69,6 +70,24 @@ def test_requests_for_the_merged_stance_are_for_the_other(toy: Any) -> None:
     assert [ask.stance for ask in performance.asks if isinstance(ask, Go)] == [rest, rest, far, up]
     assert after.lines["l1"].asks == performance.asks
     assert performance.stances == {"arms": rest, "body": up}, "the other layer's stance is another"
+
+
+def test_a_name_that_means_another_layers_stance_goes_on_meaning_it(toy: Any) -> None:
+    project = edits.add_stance(toy.project(), "body", "up")
+    up, rest = toy.id(toy.project(), "up"), toy.id(toy.project(), "rest")
+    asks = (Go(id="a", stance="up"), Go(id="b", stance="up", layer="arms"))
+    project = replace(project, lines={"l1": Line(asks=asks)})
+    after = merge_stances(project, up, rest).lines["l1"].asks
+    assert [ask.stance for ask in after if isinstance(ask, Go)] == ["up", rest], "the body's comes first"
+
+
+def test_a_transition_of_a_third_stance_to_itself_stays(toy: Any) -> None:
+    project = toy.project()
+    way, far = toy.id(project, "up to far"), toy.id(project, "far")
+    graph = project.graphs["arms"]
+    round_trip = replace(graph.actions[way], stance=far, end_stance=far)
+    project = project.with_graph(graph.with_actions({way: round_trip}))
+    assert merge_stances(project, toy.id(project, "up"), toy.id(project, "rest")).action(way) == round_trip
 
 
 def test_what_is_no_pair_of_stances_of_one_layer_is_refused(toy: Any) -> None:

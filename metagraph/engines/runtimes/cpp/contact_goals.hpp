@@ -73,16 +73,25 @@ inline List<Ref<HandGoal>> layer_goals(
             }
         }
         if (lang::len(cue->action->contacts) > 0) {
-            List<double> found;
+            double left = cue_times::seam_left(cue, time);
+            if (left > 0.0) { // what the cycle before wanted at its end, as far as its pose is still shown
+                List<double> found;
+                for (const auto& w : shown) {
+                    found.push_back(strength * left * w);
+                }
+                lang::extend(out, contact_goals::_goals(rig, project, cue->action, cue->cycle_to, found));
+            }
+            double share = strength * (1.0 - left);
+            List<double> found2;
             for (const auto& w : shown) {
-                found.push_back(strength * w);
+                found2.push_back(share * w);
             }
             lang::extend(out, contact_goals::_goals(
                 rig,
                 project,
                 cue->action,
                 cue_times::cue_seconds(cue, time),
-                found
+                found2
             ));
         }
     }

@@ -129,18 +129,26 @@ inline List<double> arm_sway(
     List<double> rest = follow_through::_stance(project, tracks, arms, place, time);
     bool entering = time < cue->start + cue->blend_in;
     if (cue->repeats()) {
+        double back = cue_times::seam_left(cue, time);
+        List<double> ends = follow_through::_row(track, cue->cycle_to);
+        List<double> begins = follow_through::_row(track, cue->cycle_from);
         List<double> found;
         for (int n3 = 0; n3 < follow_through::NUMBERS; n3++) {
-            found.push_back(lang::at(rest, n3) + weight * (lang::at(row, n3) - lang::at(rest, n3)));
+            found.push_back(lang::at(row, n3) + back * (lang::at(ends, n3) - lang::at(begins, n3)));
         }
         row = found;
-    } else if (entering || time >= cue->end - cue->blend_out) {
-        List<double> edge = follow_through::_row(track, entering ? cue->entry : cue_times::cue_seconds(cue, cue->end));
         List<double> found2;
         for (int n4 = 0; n4 < follow_through::NUMBERS; n4++) {
-            found2.push_back(lang::at(row, n4) + (1.0 - weight) * (lang::at(rest, n4) - lang::at(edge, n4)));
+            found2.push_back(lang::at(rest, n4) + weight * (lang::at(row, n4) - lang::at(rest, n4)));
         }
         row = found2;
+    } else if (entering || time >= cue->end - cue->blend_out) {
+        List<double> edge = follow_through::_row(track, entering ? cue->entry : cue_times::cue_seconds(cue, cue->end));
+        List<double> found3;
+        for (int n5 = 0; n5 < follow_through::NUMBERS; n5++) {
+            found3.push_back(lang::at(row, n5) + (1.0 - weight) * (lang::at(rest, n5) - lang::at(edge, n5)));
+        }
+        row = found3;
     }
     double left = follow_through::_moves(cue->action, "left", lang::at(hands, 0)) ? share * follow_through::UNIT : 0.0;
     double right = follow_through::_moves(cue->action, "right", lang::at(hands, 1))

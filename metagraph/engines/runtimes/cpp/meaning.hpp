@@ -4,6 +4,7 @@
 #pragma once
 
 #include "model.hpp"
+#include "repeating.hpp"
 #include "alphabet.hpp"
 #include "graphemes.hpp"
 #include "items.hpp"
@@ -347,7 +348,9 @@ inline std::string Meaning::add(
         if (stroke.has_value()) {
             start = std::max(0.0, *stroke - phases::lead(this->project, action));
         }
-        std::optional<double> duration = action->timing->repeat > 0 ? ask->duration : std::nullopt;
+        auto [begins, ends] = this->project->span(action);
+        bool repeats = repeating::cycle_of(action->kind, action->timing, begins, ends) > 0;
+        std::optional<double> duration = repeats ? ask->duration : std::nullopt;
         Ref<MetaRequest> request = lang::made<MetaRequest>(
             ident,
             action->layer,

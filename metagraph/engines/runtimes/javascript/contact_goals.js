@@ -7,7 +7,7 @@
 
 import { HandGoal } from "./contact_solve.js";
 import { HANDS, contactKey, contactWeight } from "./contact_spans.js";
-import { cueSeconds, cueWeight, ease } from "./cue_times.js";
+import { cueSeconds, cueWeight, ease, seamLeft } from "./cue_times.js";
 
 export const LEAST = 1e-06; // of a hand: goals with less weight are not solved
 
@@ -36,7 +36,12 @@ export function layerGoals(rig, project, plan, cue, place, time, strength) {
       }
     }
     if (cue.action.contacts.length > 0) {
-      out.push(..._goals(rig, project, cue.action, cueSeconds(cue, time), shown.map((w) => strength * w)));
+      const left = seamLeft(cue, time);
+      if (left > 0) { // what the cycle before wanted at its end, as far as its pose is still shown
+        out.push(..._goals(rig, project, cue.action, cue.cycleTo, shown.map((w) => strength * left * w)));
+      }
+      const share = strength * (1 - left);
+      out.push(..._goals(rig, project, cue.action, cueSeconds(cue, time), shown.map((w) => share * w)));
     }
   }
   if (place >= 0) {

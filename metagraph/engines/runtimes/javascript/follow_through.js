@@ -7,7 +7,7 @@
  * Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
  */
 
-import { cueSeconds, cueWeight, ease, loopSpot } from "./cue_times.js";
+import { cueSeconds, cueWeight, ease, loopSpot, seamLeft } from "./cue_times.js";
 import { range } from "./basics.js";
 
 export const STEP = 0.08; // seconds between the sampled times; the answer comes two of them late
@@ -87,6 +87,10 @@ export function armSway(project, tracks, hands, arms, cue, place, body, bodyCue,
   const rest = _stance(project, tracks, arms, place, time);
   const entering = time < cue.start + cue.blendIn;
   if (cue.repeats) {
+    const back = seamLeft(cue, time);
+    const ends = _row(track, cue.cycleTo);
+    const begins = _row(track, cue.cycleFrom);
+    row = range(NUMBERS).map((n) => row[n] + back * (ends[n] - begins[n]));
     row = range(NUMBERS).map((n) => rest[n] + weight * (row[n] - rest[n]));
   } else if (entering || time >= cue.end - cue.blendOut) {
     const edge = _row(track, entering ? cue.entry : cueSeconds(cue, cue.end));

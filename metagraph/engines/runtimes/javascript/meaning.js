@@ -4,6 +4,7 @@
  * Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
  */
 
+import { cycleOf } from "./repeating.js";
 import { readAloud } from "./graphemes.js";
 import { BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom } from "./items.js";
 import { timedSeconds, toldText } from "./line_timing.js";
@@ -252,7 +253,9 @@ export class Meaning {
       if (stroke !== null) {
         start = Math.max(0, stroke - lead(this.project, action));
       }
-      const duration = action.timing.repeat > 0 ? ask.duration : null;
+      const [begins, ends] = this.project.span(action);
+      const repeats = cycleOf(action.kind, action.timing, begins, ends) > 0;
+      const duration = repeats ? ask.duration : null;
       let request = new MetaRequest(
         ident,
         action.layer,

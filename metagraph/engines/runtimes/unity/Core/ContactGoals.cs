@@ -45,12 +45,24 @@ namespace Metagraph
                 }
                 if (cue.Action.Contacts.Count > 0)
                 {
+                    var left = CueTimesRules.SeamLeft(cue, time);
+                    if (left > 0.0) // what the cycle before wanted at its end, as far as its pose is still shown
+                    {
+                        out_.AddRange(Goals(
+                            rig,
+                            project,
+                            cue.Action,
+                            cue.CycleTo,
+                            shown.Select(w => strength * left * w).ToList()
+                        ));
+                    }
+                    var share = strength * (1.0 - left);
                     out_.AddRange(Goals(
                         rig,
                         project,
                         cue.Action,
                         CueTimesRules.CueSeconds(cue, time),
-                        shown.Select(w => strength * w).ToList()
+                        shown.Select(w => share * w).ToList()
                     ));
                 }
             }

@@ -86,6 +86,10 @@ namespace Metagraph
             var entering = time < cue.Start + cue.BlendIn;
             if (cue.Repeats)
             {
+                var back = CueTimesRules.SeamLeft(cue, time);
+                var ends = Row(track, cue.CycleTo);
+                var begins = Row(track, cue.CycleFrom);
+                row = PlainNumbers.Range(Numbers).Select(n => row[n] + back * (ends[n] - begins[n])).ToList();
                 row = PlainNumbers.Range(Numbers).Select(n => rest[n] + weight * (row[n] - rest[n])).ToList();
             }
             else if (entering || time >= cue.End - cue.BlendOut)

@@ -312,7 +312,11 @@ namespace Metagraph
                 {
                     start = Math.Max(0.0, stroke.Value - PhasesRules.Lead(Project, action));
                 }
-                var duration = action.Timing.Repeat > 0 ? ask.Duration : (double?)null;
+                var found = Project.Span(action);
+                double begins = found.Item1;
+                double ends = found.Item2;
+                var repeats = RepeatingRules.CycleOf(action.Kind, action.Timing, begins, ends) > 0;
+                var duration = repeats ? ask.Duration : (double?)null;
                 var request = new MetaRequest(
                     ident,
                     action.Layer,

@@ -24,10 +24,17 @@ static func layer_goals(rig, project, plan, cue, place, time, strength):
 			if _moves(rig, cue.action, arm, hand):
 				shown[arm] = weight
 		if cue.action.contacts.size() > 0:
-			var found = []
+			var left = CueTimes.seam_left(cue, time)
+			if left > 0.0:  # what the cycle before wanted at its end, as far as its pose is still shown
+				var found = []
+				for w in shown:
+					found.append(strength * left * w)
+				Util.extend(out, _goals(rig, project, cue.action, cue.cycle_to, found))
+			var share = strength * (1.0 - left)
+			var found2 = []
 			for w in shown:
-				found.append(strength * w)
-			Util.extend(out, _goals(rig, project, cue.action, CueTimes.cue_seconds(cue, time), found))
+				found2.append(share * w)
+			Util.extend(out, _goals(rig, project, cue.action, CueTimes.cue_seconds(cue, time), found2))
 	if place >= 0:
 		var rest = plan.rests[place]
 		var over = 1.0

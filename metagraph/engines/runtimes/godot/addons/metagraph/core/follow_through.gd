@@ -61,16 +61,23 @@ static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, b
 	var rest = _stance(project, tracks, arms, place, time)
 	var entering = time < cue.start + cue.blend_in
 	if cue.repeats:
+		var back = CueTimes.seam_left(cue, time)
+		var ends = _row(track, cue.cycle_to)
+		var begins = _row(track, cue.cycle_from)
 		var found = []
 		for n3 in range(NUMBERS):
-			found.append(rest[n3] + weight * (row[n3] - rest[n3]))
+			found.append(row[n3] + back * (ends[n3] - begins[n3]))
 		row = found
-	elif entering or time >= cue.end - cue.blend_out:
-		var edge = _row(track, cue.entry if entering else CueTimes.cue_seconds(cue, cue.end))
 		var found2 = []
 		for n4 in range(NUMBERS):
-			found2.append(row[n4] + (1.0 - weight) * (rest[n4] - edge[n4]))
+			found2.append(rest[n4] + weight * (row[n4] - rest[n4]))
 		row = found2
+	elif entering or time >= cue.end - cue.blend_out:
+		var edge = _row(track, cue.entry if entering else CueTimes.cue_seconds(cue, cue.end))
+		var found3 = []
+		for n5 in range(NUMBERS):
+			found3.append(row[n5] + (1.0 - weight) * (rest[n5] - edge[n5]))
+		row = found3
 	var left = share * UNIT if _moves(cue.action, "left", hands[0]) else 0.0
 	var right = share * UNIT if _moves(cue.action, "right", hands[1]) else 0.0
 	for n in range(NUMBERS):

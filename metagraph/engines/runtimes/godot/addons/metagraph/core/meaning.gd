@@ -2,6 +2,7 @@
 #
 # Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
 
+const Repeating = preload("repeating.gd")
 const Graphemes = preload("graphemes.gd")
 const Items = preload("items.gd")
 const LineTiming = preload("line_timing.gd")
@@ -280,7 +281,11 @@ class Meaning:
 				return "there is no action '%s'%s" % [ask.action, where]
 			if stroke != null:
 				start = Util.most(0.0, stroke - Phases.lead(self.project, action))
-			var duration = ask.duration if action.timing.repeat > 0 else null
+			var both = self.project.span(action)
+			var begins = both[0]
+			var ends = both[1]
+			var repeats = Repeating.cycle_of(action.kind, action.timing, begins, ends) > 0
+			var duration = ask.duration if repeats else null
 			var request = MetaPlan.MetaRequest.new(
 				ident,
 				action.layer,
