@@ -101,7 +101,7 @@ def without_version(path: Path) -> None:
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
     footed = standing(), stepping(), stepping("arms")
-    for project in (stick(), varied(), sparse(), *footed, repeating(), *touched, *still()):
+    for project in (stick(), varied(), sparse(), *footed, repeating(), repeating(True), *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
@@ -119,6 +119,8 @@ def main() -> None:
             chosen = [case for case in list_cases(project) if case.name.startswith("feet")]
         if project.name == "repeating":
             chosen = [*list_repeat_cases(project), *(c for c in list_cases(project) if c.name == "chatter 1")]
+        if project.name == "clasping":
+            chosen = [case for case in list_repeat_cases(project) if case.name.startswith("arms")]
         path = write_vectors(made.json, chosen)
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "

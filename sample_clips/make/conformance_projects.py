@@ -541,12 +541,13 @@ def standing() -> Project:
 
 
 @numbered_ids()
-def repeating() -> Project:
+def repeating(touch: bool = False) -> Project:
     """Return the project of `standing` with actions on every layer that repeat a part of their clip, whose
-    ends do not meet: with a longer blend than the part, of one arm, that may be left before its first end,
-    with a hand kept on the chest at two places.
+    ends do not meet: with a longer blend than the part, of one arm, that may be left before its first end.
+
+    touch: with a hand kept on the chest at two places, which makes the project "clasping".
     """
-    project = replace(standing(), name="repeating")
+    project = replace(standing(), name="clasping" if touch else "repeating")
     changes = {}
     for layer, kind, fields in (
         ("body", "gesture", {"repeat": 1.7}),
@@ -562,12 +563,13 @@ def repeating() -> Project:
             timing = replace(timing, earliest_exit=0.45 * length)
         whole = dict.fromkeys(("ready", "stroke", "stroke_end", "relax"))
         changes[action.id] = {"timing": replace(timing, **whole), "tags": (*action.tags, "again")}  # type: ignore[arg-type]
-        if (layer, kind) == ("arms", "gesture"):
+        if touch and (layer, kind) == ("arms", "gesture"):
             chance, times = np.random.default_rng(3), (0.2 * length, 0.5 * length)
             keys = tuple(_near(project, action, "right", "Chest", float(t), chance) for t in times)
             span = ContactSpan("right", "palm", "Chest", *times, keys, 0.2, 0.05)
             changes[action.id]["contacts"] = (span,)
-    return replace(edits.update_each(project, changes), touch=Touch(True, True))
+    project = edits.update_each(project, changes)
+    return replace(project, touch=Touch(True, True)) if touch else project
 
 
 LEGS = tuple(f"{side}{part}" for side in ("Left", "Right") for part in ("UpperLeg", "LowerLeg", "Foot"))

@@ -145,13 +145,19 @@ def led(shown: Pose, to: Pose, since: Pose, left: float) -> Pose:
     return d, shown[1] + left * (to[1] - since[1])
 
 
+def seam_left(cue: dict[str, Any], t: float) -> float:
+    """docs/reference, "Time in a cue": z, 0 in the first cycle."""
+    p = cue["cycle_to"] - cue["cycle_from"]
+    y = cue["entry"] - cue["cycle_from"] + (t - cue["start"]) * cue.get("tempo", 1.0)
+    return 1.0 - float(ease(y % p / min(0.4, p / 2.0))) if y >= p else 0.0
+
+
 def repeated(character: Character, cue: dict[str, Any], shown: Pose, rest: Pose, t: float) -> Pose:
     """docs/reference, "Time in a cue" and "Blending"."""
-    action, p = character.actions[cue["action"]], cue["cycle_to"] - cue["cycle_from"]
-    y = cue["entry"] - cue["cycle_from"] + (t - cue["start"]) * cue.get("tempo", 1.0)
-    if y >= p:
+    action = character.actions[cue["action"]]
+    if z := seam_left(cue, t):
         ends = [offset(character, action, cue[name]) for name in ("cycle_to", "cycle_from")]
-        shown = led(shown, *ends, 1.0 - ease(y % p / min(0.4, p / 2.0)))
+        shown = led(shown, *ends, z)
     if t < cue["start"] + cue["blend_in"] or t >= cue["end"] - cue["blend_out"]:
         shown = mix(rest, shown, cue_weight(cue, t))
     return masked(character, cue, shown, rest)

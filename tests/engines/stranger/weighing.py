@@ -7,7 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from tests.engines.stranger.posing import Pose, cue_second, cue_weight, ease, loop_seconds, playing, resting
+from tests.engines.stranger.posing import (
+    Pose,
+    cue_second,
+    cue_weight,
+    ease,
+    loop_seconds,
+    playing,
+    resting,
+    seam_left,
+)
 from tests.engines.stranger.reading import Character
 from tests.engines.stranger.rotating import Numbers, about, inverse, times, turned, unit
 
@@ -78,7 +87,8 @@ def moment(character: Character, layers: dict[str, Any], hands: list[str], t: fl
     out = row(character, action, cue_second(cue, t)) - r
     entering = t < cue["start"] + cue["blend_in"]
     if "cycle_to" in cue:
-        out = w * out
+        ends = [row(character, action, cue[name]) for name in ("cycle_to", "cycle_from")]
+        out = w * (out + seam_left(cue, t) * (ends[0] - ends[1]))
     elif entering or t >= cue["end"] - cue["blend_out"]:
         edge = cue["entry"] if entering else cue_second(cue, cue["end"])
         out = out + (1.0 - w) * (r - row(character, action, edge))
