@@ -233,14 +233,15 @@ def _played(action: Action, clip: Clip, start: float, end: float, times: Array) 
 
 
 def clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
-    """Return a clip's motion; where an action repeats a part of it, that part as often as it plays. None if
-    its file is missing.
+    """Return a clip's motion; where its only action repeats a part of it, that part as often as it plays.
+    None if its file is missing.
     """
-    motion = entry.motion
-    for action in project.uses.get(entry.id, ()) if motion is not None else ():
+    motion, uses = entry.motion, project.uses.get(entry.id, ())
+    if motion is not None and len(uses) == 1:
+        action = uses[0]
         start, end = project.span(action)
-        if motion is None or cycle_of(action.kind, action.timing, start, end) <= 0:
-            continue
+        if cycle_of(action.kind, action.timing, start, end) <= 0:
+            return motion
         seconds = seconds_played(action.kind, action.timing, start, end)
         times = np.arange(round(seconds * motion.fps) + 1) / motion.fps
         rotations, translations = _played(action, motion, start, end, times)
@@ -251,6 +252,12 @@ def clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
         moved = translations[:, list(motion.translated)]
         return replace(motion, rotations=rotations, translations=moved, weights=weights)
     return motion
+
+
+def count_unrepeated(project: Project) -> int:
+    """Return how many clips `clip_as_played` leaves as they are though an action repeats a part of them."""
+    shared = [some for some in project.uses.values() if len(some) > 1]
+    return sum(any(cycle_of(a.kind, a.timing, *project.span(a)) > 0 for a in some) for some in shared)
 
 
 def write_machine_glb(

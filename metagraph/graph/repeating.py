@@ -21,7 +21,7 @@ def cycle_of(kind: Kind, timing: Timing, start: float, end: float) -> float:
 
 
 def times_played(cycle: float, seconds: float) -> float:
-    """Return how often a cycle plays to last as long as wanted as nearly as it can, at least once."""
+    """Return how many whole times, at least once, a cycle plays to come nearest to `seconds`."""
     return max(1.0, floor(min(seconds / cycle, MOST_TIMES) + 0.5))
 
 

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion import rotation
+from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.own_moves import RATE, play_clips
+from metagraph.playback.own_moves import RATE, body_joints, play_clips
 from metagraph.playback.plan import Plan
 
 Array = NDArray[Any]
@@ -28,7 +29,7 @@ Globals = tuple[Array, Array]  # rotations [N, J, 4] and positions [N, J, 3] in 
 MOST_WAY = 0.03  # metres, of a figure of TALL
 MOST_TURN = float(np.radians(8.0))
 TALL = 1.75  # metres
-USUAL = 99.0  # per cent of the clips' own moves that are what they do
+USUAL = 99.0  # the percentile of the clips' own moves that counts as what they do
 # What turns faster than that by nature: eyes in saccades, lids in blinks, jaws in speech.
 FACE = ("jaw", *(f"{s}_{part}" for s in ("left", "right") for part in ("eye", "upper_lid", "lower_lid")))
 
@@ -44,7 +45,7 @@ class AddedMoves:
 
     @property
     def breaks(self) -> Array:
-        """By how much each move breaks the law, `[N-1, J]`: times what is allowed; above 1 it does."""
+        """Each move as a multiple of what the law allows, `[N-1, J]`; above 1 breaks it."""
         return np.maximum(self.ways / MOST_WAY, self.turns / MOST_TURN)
 
     def worst(self, joints: Sequence[int]) -> Array:
@@ -105,15 +106,14 @@ class ContinuityLaw:
 
 
 def moved_joints(project: Project) -> list[int]:
-    """Return the joints that the law is about: the body's, hands' and feet's; not the face's, nor control
-    joints, props and clothes.
+    """Return the joints that the law is about: those of the body, as `body_joints` says, with fingers and
+    without the face.
     """
     assert project.skeleton is not None
     roles = anatomy.project_roles(project)
-    ends = [roles[r] for s in ("left", "right") for r in (f"{s}_foot", f"{s}_hand") if r in roles]
-    wanted = {joint for end in ends for joint in project.skeleton.descendants(end)}
-    wanted |= {joint for role, joint in roles.items() if role not in FACE}
-    return sorted(wanted) or list(range(len(project.skeleton)))
+    known = find_known_roles(project.skeleton, roles)
+    face = {roles[role] for role in FACE if role in roles}
+    return [joint for joint in body_joints(project.skeleton, known) if joint not in face]
 
 
 def moves_of(shown: Globals) -> tuple[Array, Array]:

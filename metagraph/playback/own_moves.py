@@ -4,19 +4,29 @@ need not come from a blend, nor from what is added to it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Layer, Project
+from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import playable
 
 Array = NDArray[Any]
 
 RATE = 60.0  # poses a second that are looked at
+
+
+def body_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> list[int]:
+    """Return the joints of the body itself, with what its feet end in; without control joints, props and
+    clothes, which may be anywhere. All joints where no roles are known.
+    """
+    feet = [roles[foot] for foot in ("left_foot", "right_foot") if foot in roles]
+    ends = {joint for foot in feet for joint in skeleton.descendants(foot)}
+    return sorted(ends.union(roles.values())) or list(range(len(skeleton)))
 
 
 def play_clips(project: Project) -> Iterator[tuple[Array, Array]]:

@@ -21,10 +21,10 @@ from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
 from metagraph.motion.in_place import travel_of
-from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.skeleton import Pose
 from metagraph.playback.continuity import ContinuityLaw
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
-from metagraph.playback.own_moves import RATE, own_moves, play_clips
+from metagraph.playback.own_moves import RATE, body_joints, own_moves, play_clips
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.running_plan import plan_performance
@@ -42,7 +42,7 @@ TALL = 1.75  # metres: the lengths and speeds below are of a figure of that heig
 USUAL = 1.5  # times the clips' own 99th percentile, up to which nothing is reported
 JUMP = 100.0  # m/s2: 2.8 cm from one sixtieth of a second to the next
 FAST = 3.0  # m/s that a hand may go in a blend
-OWN = 0.8  # of what is seen, from which on a clip that does so itself is why
+OWN = 0.8  # share of what is seen that a clip must do by itself to be the reason
 GLIDE, GLIDES = 0.6, 0.15  # m/s that the hips may go over the floor in a blend; metres that are seen
 UNDER = 0.05  # metres below the floor
 ABOVE = 0.20  # metres of the lowest joint above it
@@ -78,7 +78,7 @@ _NAMES = {
 class PlayedPoses:
     """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
     `[F]`: how high the lowest joint of the body is. inside `[F]`: how deep an arm is within the body, metres.
-    added: what each stage adds up to each frame, as `AddedMoves.worst`.
+    added: by stage, what it adds on the way to each frame, `[4, F]`, as `AddedMoves.worst` returns it.
     """
 
     times: Array
@@ -202,15 +202,6 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     worst = {name: np.concatenate(rows, 1) for name, rows in added.items()}
     found = [np.concatenate(rows) for rows in (places, lowest, inside)]
     return PlayedPoses(times, parts, found[0], found[1], found[2], worst)
-
-
-def body_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> list[int]:
-    """Return the joints of the body itself, with what its feet end in; without control joints, props and
-    clothes, which may be anywhere. All joints where no roles are known.
-    """
-    feet = [roles[foot] for foot in ("left_foot", "right_foot") if foot in roles]
-    ends = {joint for foot in feet for joint in skeleton.descendants(foot)}
-    return sorted(ends.union(roles.values())) or list(range(len(skeleton)))
 
 
 def _own_limits(project: Project) -> tuple[Array, Array]:
@@ -354,7 +345,9 @@ class _Findings:
         return own_moves(self.project, self.plan, cause.layer, joint, time)
 
     def _own_jump(self, part: str, far: float, frame: int, cause: _Cause, alone: bool) -> Problem:
-        """Return that a clip itself moves so fast. alone: for a moment, as no limb does."""
+        """Return that a clip itself moves so fast. alone: whether it lasts a single moment, which no limb can
+        do.
+        """
         words = phrase(
             "{part} moves {length:.0f} cm in a sixtieth of a second, in the clip itself",
             part=_NAMES[part],

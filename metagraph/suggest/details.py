@@ -109,7 +109,7 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -
     if _repeats(p):
         timing["repeat"] = usual_repeat(motion.duration)
         reasons["repeat"] = phrase(
-            "one cycle of {seconds:.2f} s, played {count} times, or for as long as a request asks",
+            "one cycle of {seconds:.2f} s, played {count} times, or for as long as a request asks for",
             seconds=motion.duration,
             count=round(timing["repeat"] / motion.duration),
         )

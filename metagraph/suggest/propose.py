@@ -154,16 +154,16 @@ def propose(
     mine = {c: traits[c] for c in chosen if c in traits}
     called = {c: said[c] for c in mine}
     begun = {
-        c: guess_.stance.value
-        for c, guess_ in called.items()
-        if guess_.stance is not None and guess_.stance.confidence >= TOLD
+        c: name_said.stance.value
+        for c, name_said in called.items()
+        if name_said.stance is not None and name_said.stance.confidence >= TOLD
     }
     fresh = not any(True for _ in project.actions())
     whole = moving and (is_whole_body_carried(project) or (fresh and are_whole_body_recordings(mine, begun)))
     cycles = {c for c, t in mine.items() if _is_cycle(t, called[c])} if moving else set()
     standing = {c: t for c, t in mine.items() if called[c].other is None}  # nobody stands where fights begin
     still = {c: t for c, t in standing.items() if not (moving and _is_cycle(t, called[c], True))}
-    standing = still or standing  # nor in the midst of a wave
+    standing = still or standing  # nor in the middle of a wave
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     odd = sum(1 for c in chosen if said[c].other is not None)

@@ -13,7 +13,8 @@ from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.playback import continuity
-from metagraph.playback.rehearsal import LEAST_MINUTES, body_joints, rehearse
+from metagraph.playback.own_moves import body_joints
+from metagraph.playback.rehearsal import LEAST_MINUTES, rehearse
 
 SECONDS = 40.0
 

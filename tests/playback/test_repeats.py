@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.engine_machine import animations, clip_as_played, machines
+from metagraph.engines.engine_machine import animations, clip_as_played, count_unrepeated, machines
 from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
 from metagraph.formats.project.data import action_data, action_from
@@ -202,3 +202,22 @@ def test_a_clip_that_is_written_alone_shows_its_movement_as_often_as_it_plays(
     assert shown is not None and shown.duration == pytest.approx(2.0, abs=1 / shown.fps)
     other = next(e for e in project.clips.values() if e.id != entry.id)
     assert clip_as_played(project, other) is other.motion
+
+
+def test_a_clip_that_another_action_uses_too_is_written_whole_and_counted(
+    project: Project, wave: str, toy: Any
+) -> None:
+    action = project.action(wave)
+    assert action is not None and count_unrepeated(project) == 0
+    twice = edits.place_clips(project, [action.clip], "arms", "gesture", toy.id(project, "up"))
+    entry = twice.clips[action.clip]
+    assert clip_as_played(twice, entry) is entry.motion and count_unrepeated(twice) == 1
+
+
+def test_a_duration_is_for_what_can_repeat_alone(project: Project, toy: Any) -> None:
+    """One of a transition, or of a part too short to repeat, kept the layer busy for nothing."""
+    way, beat = toy.id(project, "rest to up"), toy.id(project, "up beat")
+    odd = edits.update_actions(project, [way], timing={"repeat": 2.0})
+    asks = [Play(id="go", action=way, at=1.0, duration=10.0), Play(id="beat", action=beat, at=5.0)]
+    plan = plan_performance(odd, asks, 12.0, idle=False)
+    assert [cue.action.id for cue in plan.layers["arms"].cues] == [way, beat]

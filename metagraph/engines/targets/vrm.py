@@ -17,7 +17,7 @@ import numpy as np
 
 from metagraph.common.files import read_file
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import clip_as_played
+from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
@@ -234,6 +234,10 @@ TARGETS = (
         (
             Loss(phrase("no meta-graph: the avatar's program moves it and finds the clips by name")),
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
+            Loss(
+                phrase("{n} clips that an action repeats play once: other actions use them, too"),
+                count_unrepeated,
+            ),
         ),
     ),
 )

@@ -38,12 +38,16 @@ def join_faces(clips: Sequence[Clip], faces: Sequence[bool]) -> list[Clip]:
 
 
 def _by_name(clips: Sequence[Clip], bodies: Sequence[int], faces: Sequence[int]) -> dict[int, int]:
-    """Return each body with the face whose name has its own; nothing unless each has exactly one."""
-    found = {
-        body: [f for f in faces if clips[body].name.casefold() in clips[f].name.casefold()] for body in bodies
-    }
-    sure = {body: some[0] for body, some in found.items() if len(some) == 1}
-    return sure if len(set(sure.values())) == len(bodies) else {}
+    """Return each body with the face that has its name, and no longer name of another body, within its own;
+    nothing unless each has exactly one.
+    """
+    names = {body: clips[body].name.casefold() for body in bodies if clips[body].name}
+    owners: dict[int, int] = {}
+    for face in faces:
+        within = [body for body, name in names.items() if name in clips[face].name.casefold()]
+        if within:
+            owners[max(within, key=lambda body: len(names[body]))] = face
+    return owners if len(owners) == len(bodies) == len(faces) else {}
 
 
 def _as_long(clip: Clip, length: int) -> bool:

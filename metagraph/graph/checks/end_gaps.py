@@ -95,7 +95,7 @@ def distances_to_stance(project: Project, action: Action, times: Array) -> tuple
             out.append(np.full(len(times), np.inf))
             continue
         there = target.pose_at(np.full(len(times), project.span(loop)[0]))
-        joints = _reached(project, graph, action)
+        joints = reached_joints(project, graph, action)
         out.append(pose_distance(motion.skeleton, motion.pose_at(times), there, joints))
     return out[0], out[1]
 
@@ -107,7 +107,7 @@ def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[En
     motion = motion_of(project, action)
     if motion is None or project.skeleton is None or action.kind == "stance":
         return []
-    joints, height = _reached(project, graph, action), project.skeleton.height
+    joints, height = reached_joints(project, graph, action), project.skeleton.height
     start, end = project.span(action)
     t, out = action.timing, []
     ends: tuple[tuple[Edge, str | None, float, float], ...] = (
@@ -132,7 +132,7 @@ def measure_seam(project: Project, graph: MetaGraph, loop: Action) -> EndGap | N
     if motion is None or project.skeleton is None:
         return None
     start, end = project.span(loop)
-    metres = _gap(ref(motion), start, ref(motion), end, _reached(project, graph, loop))
+    metres = _gap(ref(motion), start, ref(motion), end, reached_joints(project, graph, loop))
     return EndGap("ends", loop.stance, metres, OPEN_LOOP * project.skeleton.height / TALL, 0.0)
 
 
@@ -143,7 +143,10 @@ def motion_of(project: Project, action: Action | None) -> Clip | None:
     return motion if motion is not None and motion.skeleton == project.skeleton else None
 
 
-def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
+def reached_joints(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
+    """Return the joints that an action's layer moves and its mask leaves in, without those that only control
+    others.
+    """
     moved = anatomy.action_mask(project, action)
     weighty = tuple(part for part in PARTS if part != "face" and graph.weight(part) > 0)
     reached = _reached_by(project.skeleton, anatomy.project_parts(project), weighty)

@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import Phrase, phrase
 from metagraph.graph import anatomy, edits
-from metagraph.graph.checks.end_gaps import TALL, motion_of
+from metagraph.graph.checks.end_gaps import TALL, motion_of, reached_joints
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
+from metagraph.motion.features import pose_distance
+from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
@@ -135,8 +137,9 @@ def describe_unbridged(project: Project) -> list[str]:
         home = [s for s in poses if _joined(project, layer, s)]
         for stance in (s for s in poses if s not in home):
             lost = poses[stance]
-            nearest = min((poses[s] for s in home), key=lambda one: _metres(one, lost))
-            why = _refusal(project, nearest, lost)
+            near = sorted((poses[s] for s in home), key=lambda one: _metres(one, lost))
+            reasons = [_refusal(project, one, lost) for one in near]
+            why = reasons[0] if reasons and None not in reasons else None
             if why is not None:
                 name = graph.stances[stance].name
                 out.append(phrase('"{name}" is not joined to the others: {why}', name=name, why=why))
@@ -193,11 +196,13 @@ def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
 class _Rest:
     """The pose that a stance's loop begins in.
 
-    `places` `[J, 3]`, metres, from the first joint. `hips` `[2]`, metres, on the floor. `heading`: where the
-    hips face, degrees. `on_legs`: whether the layer moves the legs. `room`: seconds of the loop's clip.
+    `joints` are those that the layer moves. `hips` `[2]`, metres, on the floor. `heading`: where the hips
+    face, degrees. `on_legs`: whether the layer moves the legs. `room`: seconds of the loop's clip.
     """
 
-    places: Array
+    skeleton: Skeleton
+    pose: Pose
+    joints: tuple[int, ...]
     hips: Array
     heading: float
     on_legs: bool
@@ -212,11 +217,14 @@ def _poses(project: Project, graph: MetaGraph) -> dict[str, _Rest]:
         loop = _loop(project, graph, stance)
         motion = motion_of(project, loop)
         if loop is not None and motion is not None:
-            _, places = motion.skeleton.globals(motion.pose_at(project.span(loop)[0]))
+            pose = motion.pose_at(project.span(loop)[0])
+            _, places = motion.skeleton.globals(pose)
             left, right = (places[roles.get(f"{side}_upper_leg", 0)] for side in ("left", "right"))
             across = left - right
             out[stance] = _Rest(
-                places - places[:1],
+                motion.skeleton,
+                pose,
+                reached_joints(project, graph, loop),
                 places[roles.get("hips", 0)][[0, 2]],
                 degrees(atan2(-across[2], across[0])),
                 graph.weight("legs") > 0,
@@ -226,7 +234,8 @@ def _poses(project: Project, graph: MetaGraph) -> dict[str, _Rest]:
 
 
 def _metres(one: _Rest, other: _Rest) -> float:
-    return float(np.linalg.norm(one.places - other.places, axis=-1).max())
+    joints = tuple(sorted({*one.joints, *other.joints}))
+    return float(pose_distance(one.skeleton, one.pose, other.pose, joints))
 
 
 def _size(project: Project) -> float:

@@ -444,6 +444,10 @@ def test_the_face_of_a_take_that_is_an_animation_of_its_own_is_joined_to_it(tmp_
     [
         (("talk", "wave", "wave_face", "talk_face"), {"talk_face": "talk", "wave_face": "wave"}),
         (("talk", "wave", "one", "two"), {"one": "talk", "two": "wave"}),
+        (
+            ("wave", "talk", "talk_face", "face of the wave"),
+            {"face of the wave": "wave", "talk_face": "talk"},
+        ),
     ],
 )
 def test_of_as_many_faces_as_takes_each_goes_by_its_name_or_else_its_place(
@@ -455,6 +459,18 @@ def test_of_as_many_faces_as_takes_each_goes_by_its_name_or_else_its_place(
         take(scene, name, 1.0, name in ("talk", "wave"), name not in ("talk", "wave"))
     found = read_gltf_clips(scene.glb(tmp_path / "file.glb"))
     assert {clip.name: clip.face_of for clip in found if clip.face_of} == owners
+
+
+def test_a_name_within_another_takes_name_does_not_take_its_face(tmp_path: Path) -> None:
+    scene = smiling()
+    scene.json["animations"] = []
+    for name in ("talk2", "talk", "talk_face", "talk2_face"):
+        take(scene, name, 1.0, "face" not in name, "face" in name)
+    found = read_gltf_clips(scene.glb(tmp_path / "file.glb"))
+    assert {clip.name: clip.face_of for clip in found if clip.face_of} == {
+        "talk_face": "talk",
+        "talk2_face": "talk2",
+    }
 
 
 def test_of_several_takes_as_long_as_a_face_none_is_given_it(tmp_path: Path) -> None:
