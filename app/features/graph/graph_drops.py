@@ -151,16 +151,17 @@ def merge_at(project: Project, stance: str, hit: GraphHit) -> Drop:
         return Drop(False, tr("drop this on another stance to merge the two"))
     two = {stance, hit.ident}
     ways = sum(a.kind == "transition" and {a.stance, a.end_stance} == two for a in project.actions())
-    names = {"stance": _name(project, stance), "other": _name(project, hit.ident)}
+    name, other = _name(project, stance), _name(project, hit.ident)
     words = (
         tr_plural(
             "merge *{stance}* into *{other}*; this removes the transition between them",
             "merge *{stance}* into *{other}*; this removes {count:,} transitions between them",
             ways,
-            **names,
+            stance=name,
+            other=other,
         )
         if ways
-        else tr("merge *{stance}* into *{other}*", **names)
+        else tr("merge *{stance}* into *{other}*", stance=name, other=other)
     )
     return Drop(True, words, None, hit.ident)
 
