@@ -28,7 +28,7 @@ inline double cycle_of(const std::string& kind, const Ref<Timing>& timing, doubl
     return (repeats && end - start >= repeating::LEAST_CYCLE) ? end - start : 0.0;
 }
 
-/// Return how often a cycle plays to last as long as wanted as nearly as it can, at least once.
+/// Return how many whole times, at least once, a cycle plays to come nearest to `seconds`.
 inline double times_played(double cycle, double seconds) {
     return std::max(
         1.0,

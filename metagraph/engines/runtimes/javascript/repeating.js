@@ -23,7 +23,7 @@ export function cycleOf(kind, timing, start, end) {
 }
 
 /**
- * Return how often a cycle plays to last as long as wanted as nearly as it can, at least once.
+ * Return how many whole times, at least once, a cycle plays to come nearest to `seconds`.
  * @param {number} cycle
  * @param {number} seconds
  * @returns {number}

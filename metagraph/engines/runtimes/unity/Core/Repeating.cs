@@ -23,7 +23,7 @@ namespace Metagraph
             return (repeats && end - start >= LeastCycle) ? end - start : 0.0;
         }
 
-        /// <summary>Return how often a cycle plays to last as long as wanted as nearly as it can, at least once.</summary>
+        /// <summary>Return how many whole times, at least once, a cycle plays to come nearest to `seconds`.</summary>
         public static double TimesPlayed(double cycle, double seconds)
         {
             return Math.Max(1.0, (int)Math.Floor(Math.Min(seconds / cycle, MostTimes) + 0.5));

@@ -14,7 +14,7 @@ static func cycle_of(kind, timing, start, end):
 	return end - start if (repeats and end - start >= LEAST_CYCLE) else 0.0
 
 
-# Return how often a cycle plays to last as long as wanted as nearly as it can, at least once.
+# Return how many whole times, at least once, a cycle plays to come nearest to `seconds`.
 static func times_played(cycle, seconds):
 	return Util.most(1.0, float(int(floor(Util.least(seconds / cycle, MOST_TIMES) + 0.5))))
 
