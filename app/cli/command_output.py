@@ -16,9 +16,9 @@ from metagraph.formats.outputs import declare_inputs
 from metagraph.formats.store import files_of
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
+from metagraph.graph.words import MODES
 from metagraph.playback.plan import Plan
-from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
+from metagraph.playback.planning.running_plan import improvise, list_kept_asks, plan_performance
 
 LONGEST = 36000  # seconds of one performance, ten hours
 
@@ -63,7 +63,7 @@ def stage_performance(project: Project, options: Namespace) -> Plan:
     if options.start and kept is not None:  # a part is the same as in the whole
         length = max(length, kept.length)
     if kept is None:
-        return make_plan(project, length, seed=options.seed)
+        return improvise(project, length, options.seed, options.mode)
     seed = kept.seed if options.seed is None else options.seed
     return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
@@ -100,6 +100,12 @@ def add_performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     parser.set_defaults(usual_seconds=seconds, start=0.0)
     parser.add_argument(
         "--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)"
+    )
+    parser.add_argument(
+        "--mode",
+        choices=MODES,
+        default="talking",
+        help="what the character does while the models improvise (default: talking)",
     )
     parser.add_argument(
         "--seed", type=int, help="another performance of the same project (default: the project's seed)"

@@ -64,6 +64,11 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         True,
         "find where hands touch the body, and keep them there: write it into the project",
     ),
+    "behaviour": (
+        "behaviour_command",
+        True,
+        "count what the character does by itself in an hour, next to what people do",
+    ),
     "plan": ("plan_command", True, "plan a performance and print its actions"),
     "render": (
         "render_command",

@@ -28,6 +28,7 @@ FEATURES = (
     "timing_editor",
     "problems",
     "machine",
+    "behaviour",
     "compatibility",
     "skeleton",
     "retargeting",

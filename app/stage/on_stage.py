@@ -8,6 +8,7 @@ from typing import Literal
 
 from PySide6.QtCore import QObject, Signal
 
+from metagraph.graph.model import Mode as Behaviour
 from metagraph.graph.model import Project
 
 Mode = Literal["meta", "manual"]
@@ -29,6 +30,7 @@ class OnStage(QObject):
         super().__init__(parent)
         self.mode: Mode = "meta"
         self.performance: str | None = None  # the kept performance on stage, None while the models improvise
+        self.improvised: Behaviour = "talking"  # what the character does while the models improvise
         self.requests: tuple[str, ...] = ()  # selected in the timeline
         self.conversation: str | None = (
             None  # the conversation on stage, None for none; never together with a kept performance
@@ -47,6 +49,16 @@ class OnStage(QObject):
             self.set_conversation(None)
         if ident != self.performance:
             self.performance, self.requests = ident, ()
+            self.performance_changed.emit()
+
+    def improvise(self, mode: Behaviour) -> None:
+        """Let the models improvise while the character talks, listens or idles."""
+        changes = mode != self.improvised
+        self.improvised = mode
+        self.set_conversation(None)
+        if self.performance is not None:
+            self.set_performance(None)
+        elif changes:
             self.performance_changed.emit()
 
     def select_requests(self, requests: tuple[str, ...]) -> None:

@@ -28,9 +28,8 @@ from metagraph.graph.timeline_edits import differs_only_in_timeline
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.manual_playback import Fire
 from metagraph.playback.plan import Plan
-from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import AskAnswer, answer_asks
-from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
+from metagraph.playback.planning.running_plan import improvise, list_kept_asks, plan_performance
 
 LENGTH = 60.0  # seconds planned ahead, and added whenever the playhead comes near the end
 BEFORE = 1.0  # seconds before a shown moment at which playback stops
@@ -69,7 +68,7 @@ class StagePerformance(QObject):
         self.conversations = ConversationPlans()
         self._noted: tuple[str, ...] = ()  # about a conversation, reported once
         self._fires: tuple[Fire, ...] = ()  # triggers of the manual state machine, fired since it began
-        self._on_stage: str | None = None
+        self._on_stage = session.onstage.performance, session.onstage.improvised
         self.live = LiveControl(document, session, self)
         self.live.changed.connect(self.replan)
         self.live.ticked.connect(self._ticked)
@@ -112,11 +111,13 @@ class StagePerformance(QObject):
         self.live.last = None
         self.length = LENGTH
         self._fires = ()
+        self.session.onstage.improvised = "talking"
         self.session.onstage.set_performance(None)
 
     def _staged(self) -> None:
-        if self.session.onstage.performance != self._on_stage:
-            self._on_stage = self.session.onstage.performance
+        onstage = self.session.onstage
+        if (onstage.performance, onstage.improvised) != self._on_stage:
+            self._on_stage = onstage.performance, onstage.improvised
             self.length = self.requests.kept.length if self.requests.kept is not None else LENGTH
             self.replan()
 
@@ -209,7 +210,7 @@ class StagePerformance(QObject):
             self.session.transport.tried is not None,
         )
         stances = {layer: s for layer in LAYERS if (s := self.session.place.stance(layer)) is not None}
-        layer = self.session.place.layer
+        layer, mode = self.session.place.layer, self.session.onstage.improvised
         talk, side, folder = self.conversation, self.session.onstage.side, self.document.folder or Path()
 
         def work(_: object) -> ShownPlayback:
@@ -223,7 +224,7 @@ class StagePerformance(QObject):
             if talk is not None and project.skeleton is not None:
                 return self.conversations.show(project, talk, folder, side)
             if kept is None:
-                return ShownPlayback(project, make_plan(project, length), length)
+                return ShownPlayback(project, improvise(project, length, mode=mode), length)
             return ShownPlayback(
                 project,
                 plan_performance(
@@ -276,6 +277,7 @@ class StagePerformance(QObject):
         if self.live.stage is not None or self.conversation is not None or self.requests.kept is not None:
             return
         transport = self.session.transport
+        self.session.onstage.improvise("talking")
         transport.show_plan()
         transport.set_playing(False)
         if seconds + AHEAD > self.length:

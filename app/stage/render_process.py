@@ -15,7 +15,7 @@ from app.translation import lazy_texts, tr
 from metagraph.common.network_paths import is_allowed
 from metagraph.common.programs import python_command, start
 from metagraph.formats.store import absolute, save_project
-from metagraph.graph.model import Project
+from metagraph.graph.model import Mode, Project
 
 SUFFIXES = lazy_texts(
     lambda: {
@@ -31,10 +31,10 @@ SUFFIXES = lazy_texts(
 class RenderOrder:
     """What to write.
 
-    `performance` is the id of a kept one, None to improvise. `conversation` is the id of one, then with all
-    its sides. `size` is width and height in pixels. `light` and `background` are names from `preview.looks`.
-    `start` is the second at which it begins. `captions` shows words, `cuts` uses a conversation's camera
-    cuts, and `sticks` draws a stick figure where a character has no mesh.
+    `performance` is the id of a kept one, None to improvise in `mode`. `conversation` is the id of one,
+    then with all its sides. `size` is width and height in pixels. `light` and `background` are names from
+    `preview.looks`. `start` is the second at which it begins. `captions` shows words, `cuts` uses a
+    conversation's camera cuts, and `sticks` draws a stick figure where a character has no mesh.
     """
 
     out: Path
@@ -50,6 +50,7 @@ class RenderOrder:
     captions: bool = False
     cuts: bool = True
     sticks: bool = False
+    mode: Mode = "talking"
 
 
 def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: WindowJob) -> Path:
@@ -79,6 +80,8 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             "--progress",
             "--start",
             f"{wanted.start:.6f}",
+            "--mode",
+            wanted.mode,
             "--captions" if wanted.captions else "--no-captions",
         ]
         if not wanted.cuts:

@@ -106,8 +106,9 @@ class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
     phases: for a gesture, clip seconds of ready, stroke, stroke end and relax; own_phases: ready, stroke_end,
     relax as the user set them, null if found. cooldown: seconds in which it is not drawn again; spacing: how
     many others come between, null for as never_twice says. vigour: how fast its hands, head or trunk move
-    beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast. contacts: where
-    its hands stay. joint_weights: how far joints move that move in part; 1 for those not listed. repeat: for
+    beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast. prominence: how
+    much it stands out, 0 hardly .. 1 much, which says how soon it is done again; own_prominence: as the user
+    set it, null if measured. contacts: where its hands stay. joint_weights: how far joints move that move in part; 1 for those not listed. repeat: for
     how many seconds a gesture or fidget repeats its part where nobody says how long, left out of those that
     play once; its blends may be longer than the part.
     """
@@ -138,6 +139,8 @@ class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
     vigour: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     joint_weights: dict[str, Annotated[float, Meta(gt=0, le=1)]] = {}
     repeat: Seconds | msgspec.UnsetType = msgspec.UNSET
+    prominence: Annotated[float, Meta(ge=0, le=1)] = 0.0
+    own_prominence: Annotated[float, Meta(ge=0, le=1)] | None = None
 
 
 class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):
@@ -204,7 +207,8 @@ class Planner(Struct, forbid_unknown_fields=True):
     window: seconds for a request without a duration. blend: the curve of a blend's weight over its time x.
     memory: seconds after which a use no longer counts, 0 for never. rest: least seconds between two actions
     of a layer. lookahead: seconds ahead of now that stay as planned. hurry: how many times as fast as made a
-    hold plays at most. least_blend: seconds in which an action blends in that skips its preparation.
+    hold plays at most. least_blend: seconds in which an action blends in that skips its preparation. variety:
+    factor of the times for which the model keeps from repeating itself, 0 for not at all.
     """
 
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
@@ -220,6 +224,7 @@ class Planner(Struct, forbid_unknown_fields=True):
     lookahead: Annotated[float, Meta(ge=0, le=10)] = 0.1
     hurry: Annotated[float, Meta(ge=1, le=100)] = 2.0
     least_blend: Seconds = 0.25
+    variety: Annotated[float, Meta(ge=0, le=4)] = 0.0
 
 
 class Randomness(Struct, forbid_unknown_fields=True):

@@ -10,6 +10,7 @@ from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import contacts_of
 from metagraph.graph.model import MetaGraph, Project
 from metagraph.graph.repeating import cycle_of
+from metagraph.playback.planning.prominence import prominence
 from metagraph.playback.planning.vigour import mean_speed_within, vigours
 from metagraph.playback.timing.phases import find_phases_within
 
@@ -66,6 +67,8 @@ def actions_of(project: Project, graph: MetaGraph) -> list[c.ExportedAction]:
                 0.0,
                 dict(action.joint_weights) if action.joint_weights else {},
                 timing.repeat if cycle_of(action.kind, timing, start, end) > 0.0 else UNSET,
+                prominence(project, action) if action.kind in ("gesture", "fidget") else 0.0,
+                action.prominence,
             )
         )
     found_vigours = vigours(project, graph, speeds)

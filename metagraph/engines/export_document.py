@@ -110,7 +110,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
 def _planner(s: Settings) -> c.Planner:
     return c.Planner(
         s.seed & 0xFFFFFFFF, s.alpha, s.never_twice, s.shortest, s.wait, WINDOW, LOOP_FADE, "3x^2-2x^3",
-        s.memory, s.rest, s.lookahead, HURRY, LEAST_BLEND,
+        s.memory, s.rest, s.lookahead, HURRY, LEAST_BLEND, s.variety,
     )  # fmt: skip
 
 

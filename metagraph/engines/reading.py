@@ -116,7 +116,9 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
             if (model := _markov(layer, document.layers[layer].markov)) != DEFAULTS[layer]
             or document.layers[layer].own_markov
         },
-        settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
+        settings=Settings(
+            p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead, p.variety
+        ),
         life=document.life,
         touch=touch,
         face=document.face,
@@ -298,6 +300,7 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
             a.spacing,
             read_contacts(a.contacts),
             tuple((joint, weight) for joint, weight in a.joint_weights.items() if weight < 1),
+            prominence=a.prominence if resolved else a.own_prominence,
         )
     if unknown := [part for part in data.own_weights if part not in data.weights]:
         raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")

@@ -103,6 +103,7 @@ class Action:
     words, "positive" and "negative" among them. `likelihood` is relative, above 0. `cooldown` is the number
     of seconds after its end in which it is not drawn again. `spacing` is the number of other actions of its
     kind and stance that are drawn before it may be drawn again; None follows the setting `never_twice`.
+    `prominence` says how much it stands out, 0..1; None for as its motion and name say.
     `contacts` are the times when its hands stay on the body. `clip_name` and `clip_sha256` say which clip it
     was made of if that is not the clip it has now, else "" (see `formats.clip_identity`).
     """
@@ -125,6 +126,7 @@ class Action:
     joint_weights: tuple[tuple[str, float], ...] = ()
     clip_name: str = ""
     clip_sha256: str = ""
+    prominence: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -381,7 +383,8 @@ class Settings:
     of seconds for which the remainder of a cut meta action is kept. `wait` is how many seconds late a request
     may start. `memory` is the number of seconds after which a use no longer counts, 0 for never (as in the
     paper). `rest` is the least number of seconds in the stance between two actions of a layer. A running plan
-    is not changed for the next `lookahead` seconds.
+    is not changed for the next `lookahead` seconds. `variety`, 0..4, multiplies the times of
+    `planning.director`, so how seldom actions repeat and stances change; 0 for as often as in the paper.
     """
 
     alpha: float = 4.0
@@ -392,6 +395,7 @@ class Settings:
     memory: float = 0.0
     rest: float = 0.0
     lookahead: float = 0.1
+    variety: float = 1.0
 
 
 def _empty_graphs() -> dict[Layer, MetaGraph]:

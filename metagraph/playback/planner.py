@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from metagraph.graph.model import LAYERS, Layer, Markov, Project
 from metagraph.playback.life.near_life import with_past
 from metagraph.playback.life.schedule import schedule
-from metagraph.playback.life.wanted import moods_of
+from metagraph.playback.life.wanted import mode_at, moods_of
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Report
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.layer_planning import draft
@@ -114,4 +114,4 @@ def _performed(chain: Markov, plan: Plan, layer: Layer, meta: MetaAction, moods:
         return False
     if meta.request.kind == "transition" and plan.track.stays_at(layer, meta.start):
         return False
-    return markov.performs(chain, plan.seed, meta, plan.track.told_mode(meta.start))
+    return markov.performs(chain, plan.seed, meta, mode_at(plan.track, meta.start))

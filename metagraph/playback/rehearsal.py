@@ -26,8 +26,7 @@ from metagraph.playback.continuity import ContinuityLaw
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
 from metagraph.playback.own_moves import RATE, body_joints, own_moves, play_clips
 from metagraph.playback.plan import Plan
-from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.running_plan import plan_performance
+from metagraph.playback.planning.running_plan import improvise, plan_performance
 from metagraph.playback.posing.composer import playable
 from metagraph.playback.posing.contacts import contact_depths
 from metagraph.playback.posing.rigs import rigs_of
@@ -119,7 +118,7 @@ def rehearse(
     playing = [g for g in project.graphs.values() if any(a.kind == "stance" for a in g.actions.values())]
     if project.skeleton is None or not playing:
         return []
-    untouched = make_plan(project, seconds)
+    untouched = improvise(project, seconds)
     asked, length = _ask_for_each(project)
     plans = [(untouched, seconds, True)]
     if length > 0:

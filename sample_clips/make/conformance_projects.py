@@ -407,7 +407,8 @@ def stick(
         "7": Line(text="Seven!", duration=0.8, asks=(Nod(),), mood=(-0.6, 0.4), intensity=1.3),
     }
     voices = {"hello": voice_from_text(lines["hello"].text, 1.7)}
-    return replace(b.project, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
+    plain = edits.set_settings(b.project, variety=0.0)  # as in the paper; the other characters have some
+    return replace(plain, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
 
 
 @numbered_ids()
@@ -464,6 +465,7 @@ def varied() -> Project:
         memory=8.0,
         rest=0.3,
         lookahead=0.5,
+        variety=0.5,
         seed=0xDEADBEEF,
     )
     for layer, part, weight in (

@@ -36,6 +36,7 @@ def randomised(seed: int, morphs: tuple[str, ...] = ()) -> Project:
         memory=chance.choice((0.0, chance.randrange(5, 26))),
         rest=chance.choice((0.0, _of(chance, 0.05, 0.6))),
         lookahead=_of(chance, 0.0, 0.8),
+        variety=chance.choice((0.05, _of(chance, 0.1, 1.5))),
         seed=chance.getrandbits(32),
     )
     for layer in LAYERS:
@@ -85,6 +86,7 @@ def _fields(chance: random.Random, project: Project, action: Action) -> dict[str
         "likelihood": _of(chance, 0.2, 3.0),
         "cooldown": chance.choice((0.0, 0.0, _of(chance, 0.2, 1.0), _of(chance, 1.0, 9.0))),
         "spacing": chance.choice((None, 0, 1, 2, 3, 5)),
+        "prominence": chance.choice((None, _of(chance, 0.0, 1.0))),
     }
 
 

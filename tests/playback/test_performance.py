@@ -19,6 +19,7 @@ from metagraph.playback.planning import sampling
 from metagraph.playback.planning.mood import Mood
 from metagraph.playback.planning.sampling import Performer
 from tests.posing import pose_at, rig
+from tests.projects import as_in_the_paper
 
 LENGTH = 600.0
 SEEDS = range(1, 11)
@@ -47,7 +48,12 @@ def performances(sample: Project) -> list[Performance]:
             return chosen
 
         def watch_all(
-            self: Performer, candidates: list[Action], key: str, now: float, mood: Mood, draws: Any = draws
+            self: Performer,
+            candidates: list[Action],
+            key: str,
+            now: float,
+            mood: Mood,
+            draws: Any = draws,
         ) -> Action:
             left = self._spaced(candidates)
             if len(left) == 1:  # which is not drawn for
@@ -58,7 +64,7 @@ def performances(sample: Project) -> list[Performance]:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(sampling, "pick", watch)
             patch.setattr(Performer, "_draw", watch_all)
-            made.append(Performance(make_plan(sample, LENGTH, seed=seed), draws))
+            made.append(Performance(make_plan(as_in_the_paper(sample), LENGTH, seed=seed), draws))
     return made
 
 
@@ -185,8 +191,8 @@ def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(
     performances: list[Performance], sample: Project, layer: Layer
 ) -> None:
     """Within 0.1 s of where an action begins, is fully there, begins to leave or ends, each joint of the
-    layer alone turns and moves no faster than it does somewhere in the layer's own clips, but for 5 %: what
-    the loop's swaying adds.
+    layer alone turns and moves no faster than it does somewhere in the layer's own clips, but for 5 % and 3
+    degrees a second: what the loop's swaying adds.
     """
     joints = rig(sample).reach[layer].joints
     turn, move = np.zeros(len(joints)), np.zeros(len(joints))
@@ -212,7 +218,7 @@ def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(
             if len(run) < 2:
                 continue
             w, v = speeds(every.rotations[run][:, joints], every.translations[run][:, joints])
-            assert (w <= turn * 1.05 + np.radians(1)).all(), np.degrees((w - turn).max())
+            assert (w <= turn * 1.05 + np.radians(3)).all(), np.degrees((w - turn).max())
             assert (v <= move * 1.05 + 0.005).all()
             worst = max(worst, float((w / np.maximum(turn, np.radians(5))).max()))
             fastest = max(fastest, float(w.max()))

@@ -107,7 +107,7 @@ def test_a_short_memory_forgets_what_was_used(project: Project, toy: Any) -> Non
     used = [MetaRequest(f"u{n}", "arms", "gesture", 2.0 * n, action=ident) for n in range(10)]
 
     def drawn(memory: float) -> int:
-        changed = edits.set_settings(project, memory=memory, never_twice=False)
+        changed = edits.set_settings(project, memory=memory, never_twice=False, variety=0.0)
         first = [
             arms(changed, *used, MetaRequest("x", "arms", "gesture", 80.0), end=100, seed=seed)[0].cues[-1]
             for seed in range(200)
@@ -260,7 +260,7 @@ def test_whatever_is_asked_of_the_phases_cues_stay_apart_and_within_their_clips(
 
 def test_draws_follow_likelihood_over_uses(project: Project, toy: Any) -> None:
     project = edits.update_actions(
-        edits.set_settings(project, alpha=0.0, never_twice=False),
+        edits.set_settings(project, alpha=0.0, never_twice=False, variety=0.0),
         [toy.id(project, "rest short")],
         likelihood=3.0,
     )

@@ -42,7 +42,7 @@ TITLES = lazy_texts(
         "joints": tr("Joints it moves"),
         "tags": tr("Tags"),
         "likelihood": tr("Likelihood"),
-        "variation": tr("Cooldown and spacing"),
+        "variation": tr("Cooldown, spacing and how much it stands out"),
     }
 )
 

@@ -17,6 +17,8 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
+from metagraph.playback.planning.director import interval
+from metagraph.playback.planning.prominence import prominence
 from metagraph.playback.timing.phases import phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
@@ -66,6 +68,17 @@ class ActionRows(QWidget):
         self.spacing.setKeyboardTracking(False)
         self.spacing.valueChanged.connect(self._spaced)
         self.rest_row = self._row(tr("Cooldown"), self.cooldown, self.spacing)
+        self.prominence = Seconds(parent, "", 100, " %", 5, 0)
+        self.prominence.setAccessibleName(tr("How much it stands out"))
+        self.prominence.valueChanged.connect(self._stood_out)
+        self.measured = make_widget(
+            QToolButton, parent, text=tr("Automatic"), toolTip=tr("Judge by its motion and its name again")
+        )
+        self.measured.setAccessibleName(tr("Judge how much it stands out"))
+        self.measured.clicked.connect(
+            lambda: self.changed.emit(tr("Judge how much it stands out"), {"prominence": None})
+        )
+        self.shown_row = self._row(tr("Stands out"), self.prominence, self.measured)
 
     def _row(self, title: str, *fields: QWidget) -> QWidget:
         row = QWidget(self.parentWidget())
@@ -81,7 +94,11 @@ class ActionRows(QWidget):
         gestures = all(a.kind == "gesture" for a in actions)
         for row in self.phase_rows:
             self.form.setRowVisible(row, gestures)
-        self.form.setRowVisible(self.rest_row, all(a.kind in ("gesture", "fidget") for a in actions))
+        acts = all(a.kind in ("gesture", "fidget") for a in actions)
+        self.form.setRowVisible(self.rest_row, acts)
+        self.form.setRowVisible(self.shown_row, acts)
+        if acts:
+            self._show_prominence(project, actions)
         if gestures:
             found = [phases(project, a) for a in actions]
             self.ready.show_value(common_value([p.ready for p in found]))
@@ -101,6 +118,24 @@ class ActionRows(QWidget):
         if self.spacing.value() != shown or self.spacing.lineEdit().isModified():
             self.spacing.setValue(shown)
         self.spacing.blockSignals(False)
+
+    def _show_prominence(self, project: Project, actions: Sequence[Action]) -> None:
+        shares = [prominence(project, a) for a in actions]
+        self.prominence.show_value(common_value([100 * share for share in shares]))
+        variety = project.settings.variety
+        soonest = min(interval(a.kind, x) for a, x in zip(actions, shares, strict=True)) * variety
+        self.prominence.setToolTip(
+            tr(
+                "How much viewers notice it. The more it stands out, the longer the character waits before "
+                "it does it again by itself: now {seconds:.0f} s or more.",
+                seconds=soonest,
+            )
+        )
+        self.measured.setEnabled(any(a.prominence is not None for a in actions))
+
+    def _stood_out(self, percent: float) -> None:
+        if percent >= 0:
+            self.changed.emit(tr("Change how much it stands out"), {"prominence": round(percent / 100, 2)})
 
     def _phase(self, field: str, seconds: float) -> None:
         if seconds >= 0:
@@ -140,6 +175,18 @@ class PlannerRows(QWidget):
                 100,
                 "",
                 0.5,
+            ),
+            (
+                "variety",
+                tr("Variety"),
+                tr("Change variety"),
+                tr(
+                    "How seldom the character repeats actions and changes stances by itself: 1 is natural, "
+                    "0 lets it repeat at once, as in the published method"
+                ),
+                4,
+                "",
+                0.25,
             ),
             (
                 "memory",

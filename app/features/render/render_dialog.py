@@ -209,6 +209,7 @@ class RenderDialog(QDialog):
             self.captions.isChecked(),
             self.cuts.isChecked(),
             self.session.watch.now.sticks,
+            self.session.onstage.improvised,
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

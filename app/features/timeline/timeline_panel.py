@@ -28,7 +28,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
-from app.translation import tr, tr_error, tr_noop, tr_plural
+from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -43,7 +43,13 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS
 
-IMPROVISED = tr_noop("Improvised")
+IMPROVISED = lazy_texts(
+    lambda: {
+        "talking": tr("Improvised, talking"),
+        "listening": tr("Improvised, listening"),
+        "idle": tr("Improvised, idle"),
+    }
+)
 MAGNET = tr_noop(
     "Snap to markers, words, strokes, starts, ends and seconds while dragging (S; hold Shift to drag freely)"
 )
@@ -97,7 +103,10 @@ class TimelinePanel(QWidget):
         """Add which performance is on stage, what can be done with it, and what is said of it."""
         self.stage = ComboBox(
             self,
-            toolTip=tr('The performance on stage. With "Improvised", the models choose all actions.'),
+            toolTip=tr(
+                "The performance on stage. In an improvised one, the models choose all actions: gestures "
+                "while the character talks, nods while it listens, fidgets while it idles."
+            ),
         )
         self.stage.setAccessibleName(tr("Performance"))
         self.stage.setMinimumWidth(150)
@@ -199,7 +208,9 @@ class TimelinePanel(QWidget):
     def _put_on(self, _: int) -> None:
         """Put on stage what was chosen: a performance, improvising, or another of those who talk."""
         chosen = self.stage.currentData()
-        if isinstance(chosen, int):
+        if chosen in IMPROVISED:
+            self.session.onstage.improvise(chosen)
+        elif isinstance(chosen, int):
             self.session.onstage.set_side(chosen)
         else:
             self.session.onstage.set_conversation(None)
@@ -207,12 +218,13 @@ class TimelinePanel(QWidget):
 
     def _restage(self) -> None:
         """Show which performance is on stage, and its seed."""
-        wanted: list[tuple[str, str | int | None]] = [(tr(IMPROVISED), None)]
+        wanted: list[tuple[str, str | int]] = [(words, mode) for mode, words in IMPROVISED.items()]
         wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
         talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
         if talk is not None:  # then it is one of those who talk whose plan is seen
             wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in range(len(talk.sides))]
-        shown = self.session.onstage.performance if talk is None else self.session.onstage.side
+        onstage = self.session.onstage
+        shown = (onstage.performance or onstage.improvised) if talk is None else onstage.side
         if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
             self.stage.clear()
             for name, ident in wanted:

@@ -20,7 +20,7 @@ from app.widgets.lane_geometry import LEFT, LaneScale
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_conversation
 from metagraph.graph.editing import performances as performance_edits
-from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.model import LAYERS, Layer, Mode, Project
 from metagraph.graph.requests import Performance as KeptPerformance
 
 if TYPE_CHECKING:
@@ -140,13 +140,13 @@ class WhatIf(QObject):
         """
         project, seeds, live = self.document.project, self._seeds(), self._live
         length, talk = self.performance.length, self.performance.conversation
-        kept = self.performance.requests.kept
+        kept, mode = self.performance.requests.kept, self.performance.session.onstage.improvised
         if live is not None:
             end = live.session.plan.end
 
             def relive() -> Callable[[int], Plan]:
                 asked = live.performance()
-                return lambda seed: plan_with(project, asked, end, seed)
+                return lambda seed: plan_with(project, asked, end, seed, mode)
 
             return (project, live, live.tape.count, int(end / STEP), seeds), relive
         if talk is not None:
@@ -157,7 +157,13 @@ class WhatIf(QObject):
                 return self.performance.conversations.show(other, talk, folder, side).plan
 
             return (project, None, talk, side, folder, seeds), lambda: converse
-        return (project, kept, length, seeds), lambda: lambda seed: plan_with(project, kept, length, seed)
+        return (
+            project,
+            kept,
+            length,
+            mode,
+            seeds,
+        ), lambda: lambda seed: plan_with(project, kept, length, seed, mode)
 
     def take(self, seed: int) -> None:
         """Play with a seed from now on; of a live session the next one, since this one's record is of one
@@ -207,13 +213,12 @@ class WhatIf(QObject):
         )
 
 
-def plan_with(project: Project, kept: KeptPerformance | None, length: float, seed: int) -> Plan:
+def plan_with(project: Project, kept: KeptPerformance | None, length: float, seed: int, mode: Mode) -> Plan:
     """Return what another seed plays of a performance, or improvises."""
-    from metagraph.playback.planner import make_plan
-    from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
+    from metagraph.playback.planning.running_plan import improvise, list_kept_asks, plan_performance
 
     if kept is None:
-        return make_plan(project, length, seed=seed)
+        return improvise(project, length, seed, mode)
     return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
 

@@ -72,9 +72,10 @@ LISTING = (
     Translated(
         "metagraph.playback.planning.markov",
         "markov",
-        ("write", "_row", "performs", "length", "KINDS", "BEGIN"),
+        ("write", "_row", "performs", "length", "rest_length", "KINDS", "BEGIN", "RESTS"),
     ),
     Translated("metagraph.playback.planning.mood", "mood"),
+    Translated("metagraph.playback.planning.director", "director"),
     Translated("metagraph.playback.planning.replan", "replan"),
     Translated("metagraph.playback.timing.phase_times", "phase_times"),
     Translated("metagraph.playback.planning.bounds", "bounds"),
@@ -103,6 +104,7 @@ LISTING = (
 NATIVE = {
     "metagraph.playback.timing.phases": "phases",  # found from motion; exports tell them
     "metagraph.playback.planning.vigour": "vigour",  # as are phases
+    "metagraph.playback.planning.prominence": "prominence",  # as are phases
     "metagraph.playback.planning.hashing": "hashing",  # integers of 32 bits, which languages have differently
     "metagraph.graph.words": "words",  # the words layers, kinds and modes are told apart by
     "metagraph.graph.face.names": "words",  # and mouth shapes

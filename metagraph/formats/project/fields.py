@@ -164,6 +164,8 @@ _RANGES = {  # field -> least and greatest value of what no check of the graph l
     "rest": (0, 600),
     "lookahead": (0, 10),
     "cooldown": (0, LARGEST),
+    "prominence": (0, 1),
+    "variety": (0, 4),
 }
 
 
@@ -184,13 +186,21 @@ def fill_fields(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) ->
             out[name] = tuple(items)
         elif isinstance(kind, tuple):
             out[name] = get(data, name, kind[0], where, None)
+            if out[name] is not None:
+                _check_range(name, out[name], where)
         else:
             out[name] = get(data, name, kind, where)
-            if name in _RANGES and not _RANGES[name][0] <= out[name] <= _RANGES[name][1]:
-                low, high = _RANGES[name]
-                limit = f"{low:g} or more" if high in (1e9, LARGEST) else f"between {low:g} and {high:.10g}"
-                raise DataError(f"{where}.{name}", f"should be {limit}, found {name_reference(data[name])}")
+            _check_range(name, out[name], where)
     return out
+
+
+def _check_range(name: str, value: Any, where: str) -> None:
+    if name not in _RANGES:
+        return
+    low, high = _RANGES[name]
+    if not low <= value <= high:
+        limit = f"{low:g} or more" if high in (1e9, LARGEST) else f"between {low:g} and {high:.10g}"
+        raise DataError(f"{where}.{name}", f"should be {limit}, found {name_reference(value)}")
 
 
 @cache

@@ -24,7 +24,7 @@ PROPERTIES: Mapping[str, tuple[str, ...]] = {
     "joints": ("joints", "joint_weights"),
     "tags": ("tags",),
     "likelihood": ("likelihood",),
-    "variation": ("cooldown", "spacing"),
+    "variation": ("cooldown", "spacing", "prominence"),
 }
 FIELDS = ("name", "clip", "kind", "layer", "stance", "end", "limb", "n")
 

@@ -26,18 +26,19 @@ from metagraph.playback.life.wanted import (
     targets_between,
     ways_in,
 )
-from metagraph.playback.planning.choice import chance_of, keyed, uniform
+from metagraph.playback.planning.choice import chance_of, keyed, log_normal, uniform
 from metagraph.playback.planning.hashing import Bits
 from metagraph.playback.planning.mood import Mood
 
 BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes
 
-# Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
-# themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+# Blinks: on stressed syllables at least so many seconds after the last (Yang et al., section 7.3); of
+# themselves after gaps that spread as people's do, log-normal, a few of them doubles.
 AFTER_BLINK = 1.0
-BLINK_GAP = 0.57  # the shortest gap
-BLINK_CHANCE = 0.845  # and what chance adds to it
+BLINK_SPREAD = 0.7  # standard deviation of the gaps, times their mean
+DOUBLES = 0.06  # share of blinks that follow the one before at once
+DOUBLE = 0.4  # seconds after which they do
 # Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 # with what they look at.
 FIXATION = 0.2
@@ -350,7 +351,8 @@ class LifeDraw:
             own = math.inf
             if mean < math.inf:
                 key = self.key("blink", number)
-                need = mean * (BLINK_GAP + BLINK_CHANCE * chance_of(key, "gap"))
+                drawn = log_normal(mean, BLINK_SPREAD * mean, chance_of(key, "gap"), chance_of(key, "gap2"))
+                need = DOUBLE if chance_of(key, "double") < DOUBLES else max(DOUBLE, drawn)
                 own = max(self.cut, self.after(last, need, rates))
             # A stressed syllable may bring a blink: the first of a speech always, the others some time after
             # the last blink.

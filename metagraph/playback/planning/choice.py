@@ -41,6 +41,16 @@ def chance_of(key: Bits, purpose: str) -> float:
     return (mix(absorb(key, purpose)) + 0.5) / ALL
 
 
+def log_normal(mean: float, deviation: float, u: float, v: float) -> float:
+    """Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do
+    alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+    """
+    share = deviation / mean
+    spread = math.log1p(share * share)
+    z = math.sqrt(-2.0 * math.log(u)) * math.cos(2.0 * math.pi * v)
+    return mean * math.exp(math.sqrt(spread) * z - spread / 2.0)
+
+
 def pick(seed: Bits, key: str, purpose: str, weights: Mapping[str, float]) -> str:
     """Return one of the ids, as `picked` does."""
     return picked(keyed(seed, key), purpose, weights)

@@ -8,14 +8,13 @@ is said to idle, listen or talk: hands gesture with one's own speech, the head n
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Mode, Project
 from metagraph.graph.words import MODES
 from metagraph.playback.plan import WRITTEN, Cursor, MetaAction, MetaRequest
-from metagraph.playback.planning.choice import chance_of, keyed, picked, uniform
+from metagraph.playback.planning.choice import chance_of, keyed, log_normal, picked, uniform
 from metagraph.playback.planning.hashing import Bits
 
 _LIMB: Mapping[str, Limb] = {"L": "left", "R": "right", "LR": "both"}
@@ -47,7 +46,7 @@ ARMS = Markov(
     0    0    0    0    20 20 0    0    60
     """),
     gap=1.6,
-    modes=((0.1, 1.0, 1.0), (0.15, 0.8, 0.7), (1.0, 0.4, 0.7)),
+    modes=((0.0, 1.0, 0.8), (0.05, 0.7, 0.5), (1.0, 0.3, 0.5)),
 )
 HEAD = Markov(
     "head",
@@ -56,14 +55,14 @@ HEAD = Markov(
     gap=2.4,
     positive=0.2,
     negative=0.1,
-    modes=((0.2, 1.0, 1.0), (1.0, 0.6, 0.8), (0.7, 1.0, 1.0)),
+    modes=((0.0, 1.0, 0.8), (1.0, 0.5, 0.6), (0.7, 0.6, 0.7)),
 )
 BODY = Markov(
     "body",
     _states("LR,G LR,F LR,T"),
     _rows("10 40 50\n20 30 50\n25 45 30"),
     gap=6.0,
-    modes=((0.3, 1.0, 1.0), (0.3, 0.7, 0.7), (1.0, 0.5, 0.8)),
+    modes=((0.0, 1.0, 0.7), (0.1, 0.8, 0.6), (1.0, 0.5, 0.6)),
 )
 DEFAULTS: Mapping[Layer, Markov] = {"body": BODY, "arms": ARMS, "head": HEAD}
 
@@ -76,6 +75,7 @@ def model(project: Project, layer: Layer) -> Markov:
 
 
 BEGIN = Cursor()
+RESTS = 0.9  # standard deviation of rests, times their mean
 
 
 def write(
@@ -84,7 +84,8 @@ def write(
     """Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before
     the first one left out.
 
-    Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says.
+    Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are.
+    Windows are as `length` says.
     kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
 
     Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a
@@ -99,7 +100,7 @@ def write(
     while able:
         ident = f"auto/{chain.layer}/{number}"
         key = keyed(seed, ident)
-        start = time + chain.gap * (0.35 + 1.3 * chance_of(key, "gap"))
+        start = time + rest_length(chain, key)
         if not start < until:  # nor when it is no number
             break
         if state not in rows:
@@ -134,28 +135,29 @@ def _row(chain: Markov, state: int, open_to: Sequence[float]) -> dict[str, float
     return {str(i): p for i, p in enumerate(row) if p > 0}
 
 
-def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode | None) -> bool:
+def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode) -> bool:
     """Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`).
     What is left out leaves the rest as it was, so that it does not matter when a mode became known.
     """
-    if len(chain.modes) == 0 or mode is None or meta.request.kind not in KINDS:
+    if len(chain.modes) == 0 or meta.request.kind not in KINDS:
         return True
     share = chain.modes[MODES.index(mode)][KINDS.index(meta.request.kind)]
     return share >= 1 or uniform(seed, meta.request.id, "mode") < share
 
 
 def length(chain: Markov, state: int, key: Bits) -> float:
-    """Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
-
-    Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by
-    Box and Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`,
-    `m exp(sqrt(a) z - a / 2)`.
+    """Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths;
+    else log-normal with the state's mean and standard deviation.
     """
-    u = chance_of(key, "length")
     if len(chain.lengths) == 0:
-        return 1.0 + 2.0 * u
+        return 1.0 + 2.0 * chance_of(key, "length")
     mean, deviation = chain.lengths[state]
-    share = deviation / mean
-    spread = math.log1p(share * share)
-    z = math.sqrt(-2.0 * math.log(u)) * math.cos(2.0 * math.pi * chance_of(key, "length2"))
-    return mean * math.exp(math.sqrt(spread) * z - spread / 2.0)
+    return log_normal(mean, deviation, chance_of(key, "length"), chance_of(key, "length2"))
+
+
+def rest_length(chain: Markov, key: Bits) -> float:
+    """Return how many seconds of rest come before a meta action of a key: log-normal with the mean
+    `chain.gap`, between a fifth and five times of it.
+    """
+    drawn = log_normal(chain.gap, RESTS * chain.gap, chance_of(key, "gap"), chance_of(key, "gap2"))
+    return min(5.0 * chain.gap, max(0.2 * chain.gap, drawn))

@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 
 from metagraph.graph import requests as a
-from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.model import LAYERS, Layer, Mode, Project
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.near_life import LANES
 from metagraph.playback.life.track import Item, track_of
@@ -112,6 +112,13 @@ def plan_performance(
     if end > running.plan.end:
         running.extend(last, end)
     return join_plan(running.plan, pieces, named)
+
+
+def improvise(project: Project, end: float, seed: int | None = None, mode: Mode = "talking") -> Plan:
+    """Plan what the models do by themselves from 0 to `end` seconds, while the character talks, listens or
+    idles; nothing is said. The window, `render` and `check` show it talking, since gestures play only then.
+    """
+    return plan_performance(project, [a.Behave(id="improvised-mode", at=0.0, mode=mode)], end, seed)
 
 
 def _on(running: RunningPlan, last: float, now: float, end: float) -> None:

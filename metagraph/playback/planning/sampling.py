@@ -12,7 +12,7 @@ from metagraph.graph.model import Action, MetaGraph, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
 from metagraph.playback.planning.bounds import Bound, begins, bounds
-from metagraph.playback.planning.choice import pick
+from metagraph.playback.planning.choice import pick, uniform
 from metagraph.playback.planning.cue_shapes import (
     FITS,
     RETRACTION,
@@ -25,6 +25,17 @@ from metagraph.playback.planning.cue_shapes import (
     remaining,
     shape_of,
     slack_of,
+)
+from metagraph.playback.planning.director import (
+    APART,
+    GOES_HOME,
+    LEAVES_HOME,
+    LONG_REST,
+    SHORTER,
+    STANDS_OUT,
+    freshness,
+    interval,
+    posture,
 )
 from metagraph.playback.planning.hashing import Bits
 from metagraph.playback.planning.mood import (
@@ -39,6 +50,7 @@ from metagraph.playback.planning.mood import (
     mood_at,
     tempo,
 )
+from metagraph.playback.planning.prominence import prominence
 from metagraph.playback.planning.remembering import node, remember, rested
 from metagraph.playback.planning.vigour import vigour
 from metagraph.playback.timing.phase_times import LEAST_BLEND
@@ -62,7 +74,7 @@ class Performer:
     uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
     ended. begun: keys of meta actions whose chain of transitions plays already. served: keys of those that
     another's action serves, too. moods: what it is in the mood for, and when. candidates: the actions of each
-    `node` that may be drawn, as far as they were asked for.
+    `node` that may be drawn, as far as they were asked for. acted: when the last action ended.
     """
 
     project: Project
@@ -71,6 +83,7 @@ class Performer:
     stance: str
     moods: Moods
     free: float = 0.0
+    acted: float = 0.0
     uses: dict[str, int] = field(default_factory=dict)
     recent: dict[str, tuple[str, ...]] = field(default_factory=dict)
     ended: dict[str, float] = field(default_factory=dict)
@@ -84,7 +97,7 @@ class Performer:
     def note(self, cue: Cue, then: str) -> None:
         """Take a cue as played."""
         self.cues.append(cue)
-        self.free, self.stance = cue.end, then
+        self.free, self.acted, self.stance = cue.end, cue.end, then
         remember(cue, self.uses, self.recent, self.ended)
 
     @property
@@ -129,7 +142,7 @@ class Performer:
     def _realise(self, bound: Bound, now: float) -> None:
         meta = bound.meta
         limit = bound.limit
-        steps = self._steps(meta)
+        steps = self._steps(meta, now)
         if steps is None:
             return
         cues: list[Cue] = []
@@ -303,9 +316,9 @@ class Performer:
             return self.ended[action.id] + action.cooldown
         return float("-inf")
 
-    def _steps(self, meta: MetaAction) -> list[SamplingStep] | None:
+    def _steps(self, meta: MetaAction, now: float) -> list[SamplingStep] | None:
         """Return each action in turn: the transitions to get there, then the action itself; None if
-        impossible or needless.
+        impossible or needless, or where the model wrote it and nothing is rested enough.
         """
         request = meta.request
         graph = self.graph
@@ -346,7 +359,16 @@ class Performer:
         exact = found
         if request.limb is not None:
             exact = [a for a in found if a.limb == request.limb]
-        if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
+        directed = meta.written and self.project.settings.variety > 0
+        if directed:  # the model's limb and tags are wishes, not orders
+            every = self._fresh(meta, every, now)
+            found = [a for a in found if a in every]
+            exact = [a for a in exact if a in every]
+            if len(every) == 0:
+                return None
+            if len(exact) == 0:
+                exact = found if len(found) > 0 else every
+        elif meta.written:  # nor worth playing the same again
             again = self.recent.get(here, ())[-1:]
             if not any(a.id not in again for a in exact):
                 exact = found if any(a.id not in again for a in found) else every
@@ -462,8 +484,8 @@ class Performer:
         )
 
     def _draw(self, candidates: list[Action], key: str, now: float, mood: Mood) -> Action:
-        """Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too
-        recently as long as any others are left.
+        """Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out
+        those used too recently as long as any others are left.
         """
         left = self._spaced(candidates)
         if len(left) == 1:
@@ -472,11 +494,66 @@ class Performer:
         weights: dict[str, float] = {}
         for a in left:
             favoured = 1.0 if neutral else favour(mood, a.tags, vigour(self.project, a))
-            weights[a.id] = a.likelihood / max(self._count(a.id, now), 1.0) * favoured
+            weight = a.likelihood / max(self._count(a.id, now), 1.0) * favoured
+            weights[a.id] = weight * self._variety(a, now)
         if not any(w > 0 for w in weights.values()):
             return left[0]
         chosen = pick(self.seed, key, "action", weights)
         return next(a for a in left if a.id == chosen)
+
+    def _variety(self, action: Action, now: float) -> float:
+        """Return how much likelier variety makes an action."""
+        variety = self.project.settings.variety
+        if variety <= 0 or action.kind == "transition" or action.id not in self.ended:
+            return 1.0
+        needed = interval(action.kind, prominence(self.project, action)) * variety
+        return freshness(now - self.ended[action.id], needed)
+
+    def _fresh(self, meta: MetaAction, candidates: Sequence[Action], now: float) -> list[Action]:
+        """Return those that may be done of one's own accord; see `director`."""
+        variety = self.project.settings.variety
+        layer = self.graph.layer
+        if meta.request.kind == "transition":
+            if now < self._moved() + posture(layer) * variety:
+                return []
+            if layer != "head":
+                return list(candidates)
+            if self.stance == self.graph.start:
+                leaves = uniform(self.seed, meta.key, "leaves") < LEAVES_HOME
+                return list(candidates) if leaves else []
+            home = [a for a in candidates if a.end_stance == self.graph.start]
+            returns = len(home) > 0 and uniform(self.seed, meta.key, "home") < GOES_HOME
+            return home if returns else list(candidates)
+        share = variety if now < self.acted + LONG_REST * variety else variety * SHORTER
+        reminded = self._shown(now - APART * variety)
+        out: list[Action] = []
+        for action in candidates:
+            shows = prominence(self.project, action)
+            if reminded and shows >= STANDS_OUT:
+                continue
+            needed = interval(action.kind, shows) * share
+            if action.id not in self.ended or now >= self.ended[action.id] + needed:
+                out.append(action)
+        return out
+
+    def _moved(self) -> float:
+        """Return when the stance was last changed; minus infinity for never."""
+        latest = float("-inf")
+        for ident, end in self.ended.items():
+            action = self.graph.actions.get(ident)
+            if action is not None and action.kind == "transition":
+                latest = max(latest, end)
+        return latest
+
+    def _shown(self, since: float) -> bool:
+        """Return whether something that stands out was done since a time."""
+        for ident, end in self.ended.items():
+            action = self.graph.actions.get(ident)
+            if action is None or action.kind == "transition" or end < since:
+                continue
+            if prominence(self.project, action) >= STANDS_OUT:
+                return True
+        return False
 
     def _spaced(self, candidates: list[Action]) -> list[Action]:
         """Leave out what needs more other actions before it plays again; where that leaves nothing, all need
@@ -607,8 +684,9 @@ def performer_after(
     """Return the performer that stands where cues have been played after a past."""
     stance = past.stance if past.stance in graph.stances else begin
     out = Performer(
-        project, graph, seed, stance, moods, past.free, dict(past.uses), dict(past.recent), dict(past.ended)
-    )
+        project, graph, seed, stance, moods, past.free, past.free,
+        dict(past.uses), dict(past.recent), dict(past.ended),
+    )  # fmt: skip
     for cue in cues:
         out.note(cue, cue.then if cue.then in graph.stances else begin)
     return out

@@ -18,6 +18,7 @@ from metagraph.playback.planning.extend_performance import answer_ask, hear_asks
 from metagraph.playback.planning.running_plan import plan_performance
 from tests import thorough
 from tests.posing import pose_at
+from tests.projects import as_in_the_paper
 
 END = 30.0
 _SAMPLE: list[Project] = []
@@ -299,8 +300,9 @@ def _left(plan: Plan, layer: Layer) -> list[Cue]:
 
 
 def test_the_models_leave_a_stance_that_is_to_be_kept_alone(sample: Project) -> None:
-    free = plan_performance(sample, [a.Go(id="g", stance="arms crossed", at=1.0)], 120)
-    kept = plan_performance(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 120)
+    project = as_in_the_paper(sample)
+    free = plan_performance(project, [a.Go(id="g", stance="arms crossed", at=1.0)], 120)
+    kept = plan_performance(project, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 120)
     assert len(_left(free, "arms")) > 2
     assert [c.then for c in _left(kept, "arms") if c.start >= 1.0] == ["s159"]
     assert len(kept.layers["arms"].cues) > 10  # gestures and fidgets go on

@@ -20,6 +20,7 @@ from metagraph.playback.planner import Revision, extend_plan, make_plan
 from metagraph.playback.planning import plan_head, strand
 from metagraph.playback.planning.strand import Strand
 from tests.posing import pose_at
+from tests.projects import as_in_the_paper
 
 PROJECT = Project()
 
@@ -27,7 +28,7 @@ PROJECT = Project()
 @pytest.fixture(autouse=True, scope="module")
 def _project(toy: Any) -> None:
     global PROJECT
-    PROJECT = toy.project()
+    PROJECT = as_in_the_paper(toy.project())
     for clip in ("rest scratch", "rest cough"):  # a stance with several loops
         of = PROJECT.action(toy.id(PROJECT, clip)).clip
         PROJECT = edits.place_clips(PROJECT, [of], "arms", "stance", toy.id(PROJECT, "rest"))

@@ -110,7 +110,7 @@ def test_the_chance_is_likelihood_over_uses(
     project: Project, toy: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     project = edits.update_actions(project, [toy.id(project, "rest long")], likelihood=2.5)
-    project = edits.set_settings(project, never_twice=False)
+    project = edits.set_settings(project, never_twice=False, variety=0.0)
     drawn: list[tuple[Mapping[str, float], str]] = []
     choose = pick_module.pick
 
@@ -134,7 +134,7 @@ def test_the_chance_is_likelihood_over_uses(
 
 @pytest.mark.parametrize(("alpha", "spread"), [(0.0, None), (4.0, 6)])
 def test_counting_uses_evens_them_out(project: Project, alpha: float, spread: int | None) -> None:
-    project = edits.set_settings(project, alpha=alpha, never_twice=False)
+    project = edits.set_settings(project, alpha=alpha, never_twice=False, variety=0.0)
     counts = Counter(names(arms(project, *(ask(f"r{n}", n * 3.0) for n in range(100)), end=400)[0]))
     assert sum(counts.values()) == 100
     if spread is not None:

@@ -19,6 +19,7 @@ from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.running_plan import improvise
 from metagraph.playback.posing.follow_through import (
     KNOTS,
     NUMBERS,
@@ -42,7 +43,7 @@ def sample() -> Project:
 
 @lru_cache(maxsize=1)
 def plan() -> Plan:
-    return make_plan(sample(), 60.0, [], seed=3, idle=True)
+    return improvise(sample(), 60.0, seed=3)
 
 
 def with_dials(project: Project, **dials: float) -> Project:
@@ -114,7 +115,7 @@ def test_each_pose_depends_on_plan_and_time_alone() -> None:
     shuffled = pose_at(plan(), sample(), TIMES[order])
     assert_allclose(shuffled.rotations, posed(True).rotations[order], atol=2e-7)
     for n in (40, 13, 300, 299):  # to and fro, with nothing remembered of another plan's object
-        fresh = make_plan(sample(), 60.0, [], seed=3, idle=True)
+        fresh = improvise(sample(), 60.0, seed=3)
         one = pose_at(fresh, sample(), float(TIMES[n]))
         assert_allclose(one.rotations, posed(True).rotations[n], atol=2e-7)
         assert_allclose(one.translations, posed(True).translations[n], atol=2e-7)

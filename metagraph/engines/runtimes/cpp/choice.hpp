@@ -18,6 +18,7 @@ inline std::uint32_t key32(std::uint32_t seed, const List<std::string>& words);
 inline std::uint32_t keyed(std::uint32_t seed, const List<std::string>& words);
 inline double uniform(std::uint32_t seed, const List<std::string>& words);
 inline double chance_of(std::uint32_t key, const std::string& purpose);
+inline double log_normal(double mean, double deviation, double u, double v);
 inline std::string pick(
     std::uint32_t seed,
     const std::string& key,
@@ -55,6 +56,15 @@ inline double uniform(std::uint32_t seed, const List<std::string>& words) {
 /// Return what `uniform` does with one word more than a key has.
 inline double chance_of(std::uint32_t key, const std::string& purpose) {
     return (hashing::mix(hashing::absorb(key, purpose)) + 0.5) / choice::ALL;
+}
+
+/// Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a =
+/// ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+inline double log_normal(double mean, double deviation, double u, double v) {
+    double share = deviation / mean;
+    double spread = std::log1p(share * share);
+    double z = std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * lang::PI * v);
+    return mean * std::exp(std::sqrt(spread) * z - spread / 2.0);
 }
 
 /// Return one of the ids, as `picked` does.

@@ -23,8 +23,8 @@ struct Life {
     double follow_through = 1.0, shoulder_lift = 1.0, planted_feet = 1.0;
     List<Ref<Manner>> manners = {
         lang::made<Manner>(Manner{1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0}),
-        lang::made<Manner>(Manner{1.0, 1.0, 0.6, 0.46, 0.8, 0.9, 1.0, 1.0}),
-        lang::made<Manner>(Manner{1.15, 1.1, 1.25, 1.0, 1.0, 1.0, 1.0, 1.0}),
+        lang::made<Manner>(Manner{1.0, 1.0, 0.85, 1.5, 0.8, 0.9, 1.0, 1.45}),
+        lang::made<Manner>(Manner{1.15, 1.1, 1.05, 2.1, 1.0, 1.0, 1.0, 1.3}),
     };
 };
 

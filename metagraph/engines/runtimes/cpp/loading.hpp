@@ -60,7 +60,7 @@ inline Ref<Settings> read_settings(Graph& out, const Node& json) {
     return lang::made<Settings>(
         json["alpha"].within(0, 1e15), static_cast<int>(out.seed), json["never_twice"].flag(), json["shortest"].within(0, 1e9),
         json["wait"].within(0, 1e9), json.maybe("memory").within_or(0, 600, 0), json.maybe("rest").within_or(0, 600, 0),
-        json.maybe("lookahead").within_or(0, 10, 0.1)
+        json.maybe("lookahead").within_or(0, 10, 0.1), json.maybe("variety").within_or(0, 4, 0)
     );
 }
 
@@ -132,7 +132,8 @@ inline std::pair<Ref<PlacedAction>, Ref<Phases>> read_action(const std::string& 
         json["limb"].one_of(graph::LIMBS), json["joints"].texts(), json["tags"].texts(), json["likelihood"].within(0, 1e15),
         json.maybe("cooldown").within_or(0, 1e9, 0),
         spacing.empty() ? std::nullopt : std::optional<int>(spacing.count(0, 1000)),
-        touching.empty() ? List<Ref<ContactSpan>>{} : contacts::read(touching), read_joint_weights(json.maybe("joint_weights"))
+        touching.empty() ? List<Ref<ContactSpan>>{} : contacts::read(touching), read_joint_weights(json.maybe("joint_weights")),
+        "", "", json.maybe("prominence").within_or(0, 1, 0)
     );
     // Where none are told, all of them are at the stroke, and that is halfway unless it was set.
     const double told = std::clamp(stroke.value_or((start + end) / 2), start, end);

@@ -21,6 +21,7 @@ namespace markov {
 
 inline const List<std::string> KINDS = List<std::string>{"gesture", "fidget", "transition"}; // as in `Markov.modes`
 inline const Ref<Cursor> BEGIN = lang::made<Cursor>();
+inline constexpr double RESTS = 0.9; // standard deviation of rests, times their mean
 inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
     const Ref<Markov>& chain,
     std::uint32_t seed,
@@ -33,9 +34,10 @@ inline bool performs(
     const Ref<Markov>& chain,
     std::uint32_t seed,
     const Ref<MetaAction>& meta,
-    const std::optional<std::string>& mode
+    const std::string& mode
 );
 inline double length(const Ref<Markov>& chain, int state, std::uint32_t key);
+inline double rest_length(const Ref<Markov>& chain, std::uint32_t key);
 
 }  // namespace markov
 
@@ -44,8 +46,9 @@ namespace markov {
 /// Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one
 /// left out.
 ///
-/// Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has;
-/// states of other kinds are passed over, so that half-filled graphs perform too.
+/// Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are. Windows are as
+/// `length` says. kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform
+/// too.
 ///
 /// Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives
 /// bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
@@ -76,7 +79,7 @@ inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
     while (able) {
         std::string ident = lang::text("auto/", chain->layer, "/", number);
         int key = choice::keyed(seed, List<std::string>{ident});
-        double start = time + chain->gap * (0.35 + 1.3 * choice::chance_of(key, "gap"));
+        double start = time + markov::rest_length(chain, key);
         if (!(start < until)) { // nor when it is no number
             break;
         }
@@ -153,30 +156,35 @@ inline bool performs(
     const Ref<Markov>& chain,
     std::uint32_t seed,
     const Ref<MetaAction>& meta,
-    const std::optional<std::string>& mode
+    const std::string& mode
 ) {
-    if (lang::len(chain->modes) == 0 || !mode.has_value() || !lang::contains(markov::KINDS, meta->request->kind)) {
+    if (lang::len(chain->modes) == 0 || !lang::contains(markov::KINDS, meta->request->kind)) {
         return true;
     }
-    double share = lang::at(lang::at(chain->modes, lang::index(words::MODES, *mode)), lang::index(markov::KINDS, meta->request->kind));
+    double share = lang::at(lang::at(chain->modes, lang::index(words::MODES, mode)), lang::index(markov::KINDS, meta->request->kind));
     return share >= 1 || choice::uniform(seed, List<std::string>{meta->request->id, "mode"}) < share;
 }
 
-/// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
-///
-/// Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and
-/// Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z
-/// - a / 2)`.
+/// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths; else
+/// log-normal with the state's mean and standard deviation.
 inline double length(const Ref<Markov>& chain, int state, std::uint32_t key) {
-    double u = choice::chance_of(key, "length");
     if (lang::len(chain->lengths) == 0) {
-        return 1.0 + 2.0 * u;
+        return 1.0 + 2.0 * choice::chance_of(key, "length");
     }
     auto [mean, deviation] = lang::at(chain->lengths, state);
-    double share = deviation / mean;
-    double spread = std::log1p(share * share);
-    double z = std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * lang::PI * choice::chance_of(key, "length2"));
-    return mean * std::exp(std::sqrt(spread) * z - spread / 2.0);
+    return choice::log_normal(mean, deviation, choice::chance_of(key, "length"), choice::chance_of(key, "length2"));
+}
+
+/// Return how many seconds of rest come before a meta action of a key: log-normal with the mean `chain.gap`, between a
+/// fifth and five times of it.
+inline double rest_length(const Ref<Markov>& chain, std::uint32_t key) {
+    double drawn = choice::log_normal(
+        chain->gap,
+        markov::RESTS * chain->gap,
+        choice::chance_of(key, "gap"),
+        choice::chance_of(key, "gap2")
+    );
+    return std::min(5.0 * chain->gap, std::max(0.2 * chain->gap, drawn));
 }
 
 }  // namespace markov

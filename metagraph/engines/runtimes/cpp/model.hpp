@@ -72,9 +72,9 @@ struct Timing {
 /// moves in part; the rest of their motion is the stance's. `tags` are free words, "positive" and "negative" among
 /// them. `likelihood` is relative, above 0. `cooldown` is the number of seconds after its end in which it is not drawn
 /// again. `spacing` is the number of other actions of its kind and stance that are drawn before it may be drawn again;
-/// None follows the setting `never_twice`. `contacts` are the times when its hands stay on the body. `clip_name` and
-/// `clip_sha256` say which clip it was made of if that is not the clip it has now, else "" (see
-/// `formats.clip_identity`).
+/// None follows the setting `never_twice`. `prominence` says how much it stands out, 0..1; None for as its motion and
+/// name say. `contacts` are the times when its hands stay on the body. `clip_name` and `clip_sha256` say which clip it
+/// was made of if that is not the clip it has now, else "" (see `formats.clip_identity`).
 struct Action {
     std::string id;
     std::string clip;
@@ -94,6 +94,7 @@ struct Action {
     List<std::tuple<std::string, double>> joint_weights;
     std::string clip_name;
     std::string clip_sha256;
+    std::optional<double> prominence;
 
     Action(
         std::string id_,
@@ -113,7 +114,8 @@ struct Action {
         List<Ref<ContactSpan>> contacts_ = List<Ref<ContactSpan>>{},
         List<std::tuple<std::string, double>> joint_weights_ = List<std::tuple<std::string, double>>{},
         std::string clip_name_ = "",
-        std::string clip_sha256_ = ""
+        std::string clip_sha256_ = "",
+        std::optional<double> prominence_ = std::nullopt
     )
         : id(std::move(id_)),
             clip(std::move(clip_)),
@@ -132,7 +134,8 @@ struct Action {
             contacts(std::move(contacts_)),
             joint_weights(std::move(joint_weights_)),
             clip_name(std::move(clip_name_)),
-            clip_sha256(std::move(clip_sha256_)) {}
+            clip_sha256(std::move(clip_sha256_)),
+            prominence(prominence_) {}
 };
 
 struct Stance {
@@ -195,6 +198,8 @@ struct Markov {
 /// remainder of a cut meta action is kept. `wait` is how many seconds late a request may start. `memory` is the number
 /// of seconds after which a use no longer counts, 0 for never (as in the paper). `rest` is the least number of seconds
 /// in the stance between two actions of a layer. A running plan is not changed for the next `lookahead` seconds.
+/// `variety`, 0..4, multiplies the times of `planning.director`, so how seldom actions repeat and stances change; 0 for
+/// as often as in the paper.
 struct Settings {
     double alpha;
     int seed;
@@ -204,6 +209,7 @@ struct Settings {
     double memory;
     double rest;
     double lookahead;
+    double variety;
 
     explicit Settings(
         double alpha_ = 4.0,
@@ -213,7 +219,8 @@ struct Settings {
         double wait_ = 4.0,
         double memory_ = 0.0,
         double rest_ = 0.0,
-        double lookahead_ = 0.1
+        double lookahead_ = 0.1,
+        double variety_ = 1.0
     )
         : alpha(alpha_),
             seed(seed_),
@@ -222,7 +229,8 @@ struct Settings {
             wait(wait_),
             memory(memory_),
             rest(rest_),
-            lookahead(lookahead_) {}
+            lookahead(lookahead_),
+            variety(variety_) {}
 };
 
 inline std::string Markov::tag(int state) const {

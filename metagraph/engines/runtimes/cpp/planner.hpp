@@ -15,7 +15,7 @@ namespace planner {
 inline bool performed(const LayerGraph& layer, const Plan& plan, const Ref<MetaAction>& meta, const Ref<Moods>& moods) {
     if (!mood::stirs(mood::mood_at(moods, meta->start), plan.seed, meta->request->id)) return false;
     const bool leaves = meta->request->kind == "transition" && plan.track->stays_at(meta->request->layer, meta->start);
-    return !leaves && markov::performs(layer.markov, plan.seed, meta, plan.track->told_mode(meta->start));
+    return !leaves && markov::performs(layer.markov, plan.seed, meta, wanted::mode_at(plan.track, meta->start));
 }
 
 /// Return the plan with new requests worked in, others withdrawn, and the horizon moved to `end`.

@@ -9,7 +9,9 @@
 #include "bounds.hpp"
 #include "choice.hpp"
 #include "cue_shapes.hpp"
+#include "director.hpp"
 #include "mood.hpp"
+#include "prominence.hpp"
 #include "remembering.hpp"
 #include "vigour.hpp"
 #include "phase_times.hpp"
@@ -52,7 +54,7 @@ struct SamplingStep {
 /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
 /// keys of meta actions whose chain of transitions plays already. served: keys of those that another's action serves,
 /// too. moods: what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far
-/// as they were asked for.
+/// as they were asked for. acted: when the last action ended.
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
@@ -60,6 +62,7 @@ struct Performer {
     std::string stance;
     Ref<Moods> moods;
     double free;
+    double acted;
     Map<std::string, int> uses;
     Map<std::string, List<std::string>> recent;
     Map<std::string, double> ended;
@@ -77,6 +80,7 @@ struct Performer {
         std::string stance_,
         Ref<Moods> moods_,
         double free_ = 0.0,
+        double acted_ = 0.0,
         Map<std::string, int> uses_ = Map<std::string, int>{},
         Map<std::string, List<std::string>> recent_ = Map<std::string, List<std::string>>{},
         Map<std::string, double> ended_ = Map<std::string, double>{},
@@ -93,6 +97,7 @@ struct Performer {
             stance(std::move(stance_)),
             moods(std::move(moods_)),
             free(free_),
+            acted(acted_),
             uses(std::move(uses_)),
             recent(std::move(recent_)),
             ended(std::move(ended_)),
@@ -143,8 +148,8 @@ struct Performer {
     double _cooled(const Ref<Action>& action);
 
     /// Return each action in turn: the transitions to get there, then the action itself; None if impossible or
-    /// needless.
-    std::optional<List<Ref<SamplingStep>>> _steps(const Ref<MetaAction>& meta);
+    /// needless, or where the model wrote it and nothing is rested enough.
+    std::optional<List<Ref<SamplingStep>>> _steps(const Ref<MetaAction>& meta, double now);
 
     std::string _elsewhere(const Ref<MetaRequest>& request);
 
@@ -173,9 +178,21 @@ struct Performer {
     /// made for the mood are played as they were made.
     double _extent(const Ref<Action>& action, const Ref<Mood>& mood);
 
-    /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as
-    /// long as any others are left.
+    /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too
+    /// recently as long as any others are left.
     Ref<Action> _draw(const List<Ref<Action>>& candidates, const std::string& key, double now, const Ref<Mood>& mood);
+
+    /// Return how much likelier variety makes an action.
+    double _variety(const Ref<Action>& action, double now);
+
+    /// Return those that may be done of one's own accord; see `director`.
+    List<Ref<Action>> _fresh(const Ref<MetaAction>& meta, const List<Ref<Action>>& candidates, double now);
+
+    /// Return when the stance was last changed; minus infinity for never.
+    double _moved();
+
+    /// Return whether something that stands out was done since a time.
+    bool _shown(double since);
 
     /// Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and
     /// so on.
@@ -215,6 +232,7 @@ struct Performer {
 inline void Performer::note(const Ref<Cue>& cue, const std::string& then) {
     this->cues.push_back(cue);
     this->free = cue->end;
+    this->acted = cue->end;
     this->stance = then;
     remembering::remember(cue, this->uses, this->recent, this->ended);
 }
@@ -270,7 +288,7 @@ inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
 inline void Performer::_realise(const Ref<Bound>& bound, double now) {
     Ref<MetaAction> meta = bound->meta;
     double limit = bound->limit;
-    std::optional<List<Ref<SamplingStep>>> steps = this->_steps(meta);
+    std::optional<List<Ref<SamplingStep>>> steps = this->_steps(meta, now);
     if (!steps.has_value()) {
         return;
     }
@@ -576,7 +594,7 @@ inline double Performer::_cooled(const Ref<Action>& action) {
     return -INFINITY;
 }
 
-inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAction>& meta) {
+inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAction>& meta, double now) {
     Ref<MetaRequest> request = meta->request;
     Ref<MetaGraph> graph = this->graph;
     if (request->action.has_value()) {
@@ -665,7 +683,30 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
         }
         exact = found5;
     }
-    if (meta->written) { // the model's limb and tags are wishes, not orders, nor worth playing the same again
+    bool directed = meta->written && this->project->settings->variety > 0;
+    if (directed) { // the model's limb and tags are wishes, not orders
+        every = this->_fresh(meta, every, now);
+        List<Ref<Action>> found6;
+        for (const auto& a : found) {
+            if (lang::contains(every, a)) {
+                found6.push_back(a);
+            }
+        }
+        found = found6;
+        List<Ref<Action>> found7;
+        for (const auto& a : exact) {
+            if (lang::contains(every, a)) {
+                found7.push_back(a);
+            }
+        }
+        exact = found7;
+        if (lang::len(every) == 0) {
+            return std::nullopt;
+        }
+        if (lang::len(exact) == 0) {
+            exact = lang::len(found) > 0 ? found : every;
+        }
+    } else if (meta->written) { // nor worth playing the same again
         List<std::string> again = lang::part(lang::get_or(this->recent, here, List<std::string>{}), -1);
         bool is_any = false;
         for (const auto& a : exact) {
@@ -852,7 +893,8 @@ inline Ref<Action> Performer::_draw(
     Map<std::string, double> weights;
     for (const auto& a : left) {
         double favoured = neutral ? 1.0 : mood::favour(mood, a->tags, vigour::vigour(this->project, a));
-        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0) * favoured;
+        double weight = a->likelihood / std::max(this->_count(a->id, now), 1.0) * favoured;
+        weights[a->id] = weight * this->_variety(a, now);
     }
     bool is_any = false;
     for (const auto& w : lang::values(weights)) {
@@ -873,6 +915,83 @@ inline Ref<Action> Performer::_draw(
         }
     }
     return first;
+}
+
+inline double Performer::_variety(const Ref<Action>& action, double now) {
+    double variety = this->project->settings->variety;
+    if (variety <= 0 || action->kind == "transition" || !lang::contains(this->ended, action->id)) {
+        return 1.0;
+    }
+    double needed = director::interval(action->kind, prominence::prominence(this->project, action)) * variety;
+    return director::freshness(now - this->ended.at(action->id), needed);
+}
+
+inline List<Ref<Action>> Performer::_fresh(
+    const Ref<MetaAction>& meta,
+    const List<Ref<Action>>& candidates,
+    double now
+) {
+    double variety = this->project->settings->variety;
+    std::string layer = this->graph->layer;
+    if (meta->request->kind == "transition") {
+        if (now < this->_moved() + director::posture(layer) * variety) {
+            return List<Ref<Action>>{};
+        }
+        if (layer != "head") {
+            return candidates;
+        }
+        if (this->stance == this->graph->start) {
+            bool leaves = choice::uniform(this->seed, List<std::string>{meta->key(), "leaves"}) < director::LEAVES_HOME;
+            return leaves ? candidates : List<Ref<Action>>{};
+        }
+        List<Ref<Action>> home;
+        for (const auto& a : candidates) {
+            if (a->end_stance == this->graph->start) {
+                home.push_back(a);
+            }
+        }
+        bool returns = lang::len(home) > 0
+            && choice::uniform(this->seed, List<std::string>{meta->key(), "home"}) < director::GOES_HOME;
+        return returns ? home : candidates;
+    }
+    double share = now < this->acted + director::LONG_REST * variety ? variety : variety * director::SHORTER;
+    bool reminded = this->_shown(now - director::APART * variety);
+    List<Ref<Action>> out;
+    for (const auto& action : candidates) {
+        double shows = prominence::prominence(this->project, action);
+        if (reminded && shows >= director::STANDS_OUT) {
+            continue;
+        }
+        double needed = director::interval(action->kind, shows) * share;
+        if (!lang::contains(this->ended, action->id) || now >= this->ended.at(action->id) + needed) {
+            out.push_back(action);
+        }
+    }
+    return out;
+}
+
+inline double Performer::_moved() {
+    double latest = -INFINITY;
+    for (const auto& [ident, end] : this->ended) {
+        Ref<Action> action = lang::get(this->graph->actions, ident);
+        if (action != nullptr && action->kind == "transition") {
+            latest = std::max(latest, end);
+        }
+    }
+    return latest;
+}
+
+inline bool Performer::_shown(double since) {
+    for (const auto& [ident, end] : this->ended) {
+        Ref<Action> action = lang::get(this->graph->actions, ident);
+        if (action == nullptr || action->kind == "transition" || end < since) {
+            continue;
+        }
+        if (prominence::prominence(this->project, action) >= director::STANDS_OUT) {
+            return true;
+        }
+    }
+    return false;
 }
 
 inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates) {
@@ -1096,6 +1215,7 @@ inline Ref<Performer> performer_after(
         seed,
         stance,
         moods,
+        past->free,
         past->free,
         past->uses,
         past->recent,

@@ -30,11 +30,12 @@ namespace schedule {
 inline constexpr double BLOCK = 8.0; // seconds drawn at a time, so that a running plan need not draw at every tick
 // seconds of looks kept when the past is forgotten: longer than any turn of the head takes
 inline constexpr double RECALL = 4.0;
-// Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
-// themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+// Blinks: on stressed syllables at least so many seconds after the last (Yang et al., section 7.3); of
+// themselves after gaps that spread as people's do, log-normal, a few of them doubles.
 inline constexpr double AFTER_BLINK = 1.0;
-inline constexpr double BLINK_GAP = 0.57; // the shortest gap
-inline constexpr double BLINK_CHANCE = 0.845; // and what chance adds to it
+inline constexpr double BLINK_SPREAD = 0.7; // standard deviation of the gaps, times their mean
+inline constexpr double DOUBLES = 0.06; // share of blinks that follow the one before at once
+inline constexpr double DOUBLE = 0.4; // seconds after which they do
 // Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 // with what they look at.
 inline constexpr double FIXATION = 0.2;
@@ -479,7 +480,15 @@ inline Ref<Lane> LifeDraw::blinks(const Ref<Lane>& lane) {
         double own = INFINITY;
         if (mean < INFINITY) {
             int key = this->key("blink", number);
-            double need = mean * (schedule::BLINK_GAP + schedule::BLINK_CHANCE * choice::chance_of(key, "gap"));
+            double drawn = choice::log_normal(
+                mean,
+                schedule::BLINK_SPREAD * mean,
+                choice::chance_of(key, "gap"),
+                choice::chance_of(key, "gap2")
+            );
+            double need = choice::chance_of(key, "double") < schedule::DOUBLES
+                ? schedule::DOUBLE
+                : std::max(schedule::DOUBLE, drawn);
             own = std::max(this->cut, this->after(last, need, rates));
         }
         // A stressed syllable may bring a blink: the first of a speech always, the others some time after

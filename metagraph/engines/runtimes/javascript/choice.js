@@ -58,6 +58,22 @@ export function chanceOf(key, purpose) {
 }
 
 /**
+ * Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a = ln(1 +
+ * (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+ * @param {number} mean
+ * @param {number} deviation
+ * @param {number} u
+ * @param {number} v
+ * @returns {number}
+ */
+export function logNormal(mean, deviation, u, v) {
+  const share = deviation / mean;
+  const spread = Math.log1p(share * share);
+  const z = Math.sqrt(-2 * Math.log(u)) * Math.cos(2 * Math.PI * v);
+  return mean * Math.exp(Math.sqrt(spread) * z - spread / 2);
+}
+
+/**
  * Return one of the ids, as `picked` does.
  * @param {number} seed
  * @param {string} key

@@ -84,7 +84,7 @@ export class Graph {
     this.problems = [];
     this.settings = new Settings(
       constant("alpha", 4), constant("seed", 1, 0, 0xffffffff), p.never_twice ?? true, constant("shortest", 0.4), constant("wait", 4),
-      constant("memory", 0), constant("rest", 0), constant("lookahead", 0.1),
+      constant("memory", 0), constant("rest", 0), constant("lookahead", 0.1), constant("variety", 0, 0, 4),
     );
     this.joints = data.joints.map((joint) => joint.name);
     this.parts = data.joints.map((joint) => joint.part);
@@ -206,6 +206,7 @@ export class LayerGraph {
       ),
       phases: new Phases(start, ready, stroke, strokeEnd, relax, end), cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
       vigour: inRange(data.vigour ?? 0, -1, 1, `action ${id}'s vigour`),
+      prominence: inRange(data.prominence ?? 0, 0, 1, `action ${id}'s prominence`),
       /** Made when they are first needed; null where the clip is missing. */
       get offsets() {
         return held && (held.found ?? held.value);

@@ -11,18 +11,19 @@
 
 import { MODES } from "./words.js";
 import { Cursor, MetaAction, MetaRequest, WRITTEN } from "./meta_plan.js";
-import { chanceOf, keyed, picked, uniform } from "./choice.js";
+import { chanceOf, keyed, logNormal, picked, uniform } from "./choice.js";
 import { splitWords, zip } from "./basics.js";
 
 export const KINDS = ["gesture", "fidget", "transition"]; // as in `Markov.modes`
 export const BEGIN = new Cursor();
+export const RESTS = 0.9; // standard deviation of rests, times their mean
 
 /**
  * Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left
  * out.
  *
- * Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has; states of
- * other kinds are passed over, so that half-filled graphs perform too.
+ * Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are. Windows are as
+ * `length` says. kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
  *
  * Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit
  * for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
@@ -44,7 +45,7 @@ export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
   while (able) {
     const ident = `auto/${chain.layer}/${number}`;
     const key = keyed(seed, ident);
-    const start = time + chain.gap * (0.35 + 1.3 * chanceOf(key, "gap"));
+    const start = time + restLength(chain, key);
     if (!(start < until)) { // nor when it is no number
       break;
     }
@@ -96,11 +97,11 @@ function _row(chain, state, openTo) {
  * @param {Markov} chain
  * @param {number} seed
  * @param {MetaAction} meta
- * @param {?string} mode
+ * @param {string} mode
  * @returns {boolean}
  */
 export function performs(chain, seed, meta, mode) {
-  if (chain.modes.length === 0 || mode === null || !KINDS.includes(meta.request.kind)) {
+  if (chain.modes.length === 0 || !KINDS.includes(meta.request.kind)) {
     return true;
   }
   const share = chain.modes[MODES.indexOf(mode)][KINDS.indexOf(meta.request.kind)];
@@ -108,23 +109,29 @@ export function performs(chain, seed, meta, mode) {
 }
 
 /**
- * Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
- *
- * Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller,
- * which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+ * Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths; else log-normal with
+ * the state's mean and standard deviation.
  * @param {Markov} chain
  * @param {number} state
  * @param {number} key
  * @returns {number}
  */
 export function length(chain, state, key) {
-  const u = chanceOf(key, "length");
   if (chain.lengths.length === 0) {
-    return 1 + 2 * u;
+    return 1 + 2 * chanceOf(key, "length");
   }
   const [mean, deviation] = chain.lengths[state];
-  const share = deviation / mean;
-  const spread = Math.log1p(share * share);
-  const z = Math.sqrt(-2 * Math.log(u)) * Math.cos(2 * Math.PI * chanceOf(key, "length2"));
-  return mean * Math.exp(Math.sqrt(spread) * z - spread / 2);
+  return logNormal(mean, deviation, chanceOf(key, "length"), chanceOf(key, "length2"));
+}
+
+/**
+ * Return how many seconds of rest come before a meta action of a key: log-normal with the mean `chain.gap`, between a fifth
+ * and five times of it.
+ * @param {Markov} chain
+ * @param {number} key
+ * @returns {number}
+ */
+export function restLength(chain, key) {
+  const drawn = logNormal(chain.gap, RESTS * chain.gap, chanceOf(key, "gap"), chanceOf(key, "gap2"));
+  return Math.min(5 * chain.gap, Math.max(0.2 * chain.gap, drawn));
 }

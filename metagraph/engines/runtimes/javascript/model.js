@@ -100,13 +100,24 @@ export class Markov {
  * action is not played twice in a row if there is another. `shortest` is the least number of seconds for which the remainder
  * of a cut meta action is kept. `wait` is how many seconds late a request may start. `memory` is the number of seconds after
  * which a use no longer counts, 0 for never (as in the paper). `rest` is the least number of seconds in the stance between
- * two actions of a layer. A running plan is not changed for the next `lookahead` seconds.
+ * two actions of a layer. A running plan is not changed for the next `lookahead` seconds. `variety`, 0..4, multiplies the
+ * times of `planning.director`, so how seldom actions repeat and stances change; 0 for as often as in the paper.
  *
  * alpha: number; seed: number; neverTwice: boolean; shortest: number; wait: number; memory: number; rest: number; lookahead:
- * number.
+ * number; variety: number.
  */
 export class Settings {
-  constructor(alpha = 4, seed = 1, neverTwice = true, shortest = 0.4, wait = 4, memory = 0, rest = 0, lookahead = 0.1) {
+  constructor(
+    alpha = 4,
+    seed = 1,
+    neverTwice = true,
+    shortest = 0.4,
+    wait = 4,
+    memory = 0,
+    rest = 0,
+    lookahead = 0.1,
+    variety = 1,
+  ) {
     this.alpha = alpha;
     this.seed = seed;
     this.neverTwice = neverTwice;
@@ -115,5 +126,6 @@ export class Settings {
     this.memory = memory;
     this.rest = rest;
     this.lookahead = lookahead;
+    this.variety = variety;
   }
 }

@@ -9,7 +9,7 @@ import { draft } from "./layer_planning.js";
 import { performs } from "./markov.js";
 import { moodAt, stirs } from "./mood.js";
 import { schedule } from "./schedule.js";
-import { moodsOf } from "./wanted.js";
+import { modeAt, moodsOf } from "./wanted.js";
 import { LAYERS } from "./words.js";
 
 /**
@@ -44,7 +44,7 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
     // What a model wrote is not performed where it would leave a stance that was asked for, to stay in, and as often as its mode and mood say.
     const leaves = (m) => m.request.kind === "transition" && plan.track.staysAt(layer, m.start);
     const moved = (m) => stirs(moodAt(moods, m.start), plan.seed, m.request.id);
-    const performed = (m) => moved(m) && !leaves(m) && performs(of.markov, plan.seed, m, plan.track.toldMode(m.start));
+    const performed = (m) => moved(m) && !leaves(m) && performs(of.markov, plan.seed, m, modeAt(plan.track, m.start));
     layers[layer] = drafted.performed(drafted.placed.filter((m) => !m.written || performed(m)), end);
     reports.push(...drafted.reports);
   }

@@ -7,7 +7,7 @@
 import { cycleOf } from "./repeating.js";
 import { Cue, Report, Rest } from "./meta_plan.js";
 import { begins, bounds } from "./bounds.js";
-import { pick } from "./choice.js";
+import { pick, uniform } from "./choice.js";
 import { 
   CueShape,
   FITS,
@@ -21,7 +21,9 @@ import {
   shapeOf,
   slackOf,
 } from "./cue_shapes.js";
+import { APART, GOES_HOME, LEAVES_HOME, LONG_REST, SHORTER, STANDS_OUT, freshness, interval, posture } from "./director.js";
 import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./mood.js";
+import { prominence } from "./prominence.js";
 import { node, remember, rested } from "./remembering.js";
 import { vigour } from "./vigour.js";
 import { LEAST_BLEND } from "./phase_times.js";
@@ -48,11 +50,11 @@ export class SamplingStep {
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
  * meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
  * what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked
- * for.
+ * for. acted: when the last action ended.
  *
- * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; free: number; uses: Map<string, number>;
- * recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports: Report[]; begun:
- * Set<string>; served: Set<string>; candidates: Map<string, Action[]>.
+ * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; free: number; acted: number; uses:
+ * Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports:
+ * Report[]; begun: Set<string>; served: Set<string>; candidates: Map<string, Action[]>.
  */
 export class Performer {
   constructor(
@@ -62,6 +64,7 @@ export class Performer {
     stance,
     moods,
     free = 0,
+    acted = 0,
     uses = new Map(),
     recent = new Map(),
     ended = new Map(),
@@ -78,6 +81,7 @@ export class Performer {
     this.stance = stance;
     this.moods = moods;
     this.free = free;
+    this.acted = acted;
     this.uses = uses;
     this.recent = recent;
     this.ended = ended;
@@ -93,6 +97,7 @@ export class Performer {
   note(cue, then) {
     this.cues.push(cue);
     this.free = cue.end;
+    this.acted = cue.end;
     this.stance = then;
     remember(cue, this.uses, this.recent, this.ended);
   }
@@ -147,7 +152,7 @@ export class Performer {
   realise(bound, now) {
     const meta = bound.meta;
     const limit = bound.limit;
-    const steps = this.steps(meta);
+    const steps = this.steps(meta, now);
     if (steps === null) {
       return;
     }
@@ -366,8 +371,11 @@ export class Performer {
     return -Infinity;
   }
 
-  /** Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless. */
-  steps(meta) {
+  /**
+   * Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless, or
+   * where the model wrote it and nothing is rested enough.
+   */
+  steps(meta, now) {
     const request = meta.request;
     const graph = this.graph;
     if (request.action !== null) {
@@ -412,7 +420,18 @@ export class Performer {
     if (request.limb !== null) {
       exact = found.filter((a) => a.limb === request.limb);
     }
-    if (meta.written) { // the model's limb and tags are wishes, not orders, nor worth playing the same again
+    const directed = meta.written && this.project.settings.variety > 0;
+    if (directed) { // the model's limb and tags are wishes, not orders
+      every = this.fresh(meta, every, now);
+      found = found.filter((a) => every.includes(a));
+      exact = exact.filter((a) => every.includes(a));
+      if (every.length === 0) {
+        return null;
+      }
+      if (exact.length === 0) {
+        exact = found.length > 0 ? found : every;
+      }
+    } else if (meta.written) { // nor worth playing the same again
       const again = (this.recent.get(here) ?? []).slice(-1);
       if (!exact.some((a) => !again.includes(a.id))) {
         exact = found.some((a) => !again.includes(a.id)) ? found : every;
@@ -552,8 +571,8 @@ export class Performer {
   }
 
   /**
-   * Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as long as
-   * any others are left.
+   * Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too recently
+   * as long as any others are left.
    */
   draw(candidates, key, now, mood) {
     const left = this.spaced(candidates);
@@ -564,13 +583,85 @@ export class Performer {
     const weights = new Map();
     for (const a of left) {
       const favoured = neutral ? 1 : favour(mood, a.tags, vigour(this.project, a));
-      weights.set(a.id, a.likelihood / Math.max(this.count(a.id, now), 1) * favoured);
+      const weight = a.likelihood / Math.max(this.count(a.id, now), 1) * favoured;
+      weights.set(a.id, weight * this.variety(a, now));
     }
     if (![...weights.values()].some((w) => w > 0)) {
       return left[0];
     }
     const chosen = pick(this.seed, key, "action", weights);
     return left.find((a) => a.id === chosen);
+  }
+
+  /** Return how much likelier variety makes an action. */
+  variety(action, now) {
+    const variety = this.project.settings.variety;
+    if (variety <= 0 || action.kind === "transition" || !this.ended.has(action.id)) {
+      return 1;
+    }
+    const needed = interval(action.kind, prominence(this.project, action)) * variety;
+    return freshness(now - this.ended.get(action.id), needed);
+  }
+
+  /** Return those that may be done of one's own accord; see `director`. */
+  fresh(meta, candidates, now) {
+    const variety = this.project.settings.variety;
+    const layer = this.graph.layer;
+    if (meta.request.kind === "transition") {
+      if (now < this.moved() + posture(layer) * variety) {
+        return [];
+      }
+      if (layer !== "head") {
+        return [...candidates];
+      }
+      if (this.stance === this.graph.start) {
+        const leaves = uniform(this.seed, meta.key, "leaves") < LEAVES_HOME;
+        return leaves ? [...candidates] : [];
+      }
+      const home = candidates.filter((a) => a.endStance === this.graph.start);
+      const returns = home.length > 0 && uniform(this.seed, meta.key, "home") < GOES_HOME;
+      return returns ? home : [...candidates];
+    }
+    const share = now < this.acted + LONG_REST * variety ? variety : variety * SHORTER;
+    const reminded = this.shown(now - APART * variety);
+    const out = [];
+    for (const action of candidates) {
+      const shows = prominence(this.project, action);
+      if (reminded && shows >= STANDS_OUT) {
+        continue;
+      }
+      const needed = interval(action.kind, shows) * share;
+      if (!this.ended.has(action.id) || now >= this.ended.get(action.id) + needed) {
+        out.push(action);
+      }
+    }
+    return out;
+  }
+
+  /** Return when the stance was last changed; minus infinity for never. */
+  moved() {
+    let latest = -Infinity;
+    for (const [ident, end] of this.ended) {
+      const action = this.graph.actions.get(ident) ?? null;
+      if (action !== null && action.kind === "transition") {
+        latest = Math.max(latest, end);
+      }
+    }
+    return latest;
+  }
+
+  /** Return whether something that stands out was done since a time. */
+  shown(since) {
+    for (const [ident, end] of this.ended) {
+      const action = this.graph.actions.get(ident) ?? null;
+      if (action === null || action.kind === "transition" || end < since) {
+        continue;
+      }
+      if (prominence(this.project, action) >= STANDS_OUT) {
+        return true;
+      }
+    }
+    return false;
   }
 
   /** Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on. */
@@ -741,6 +832,7 @@ export function performerAfter(project, graph, seed, begin, past, cues, moods) {
     seed,
     stance,
     moods,
+    past.free,
     past.free,
     new Map(past.uses),
     new Map(past.recent),

@@ -13,17 +13,18 @@ import { emphasesOn, swellsOn } from "./expressions.js";
 import { Lane } from "./lane.js";
 import { sameVoices, stressed } from "./voice.js";
 import { modesBetween, moodsBetween, moodsOf, targetsBetween, waysIn } from "./wanted.js";
-import { chanceOf, keyed, uniform } from "./choice.js";
+import { chanceOf, keyed, logNormal, uniform } from "./choice.js";
 import { Mood } from "./mood.js";
 import { bisectLeft, bisectRight, but, minOf, sorted, zip } from "./basics.js";
 
 export const BLOCK = 8; // seconds drawn at a time, so that a running plan need not draw at every tick
 export const RECALL = 4; // seconds of looks kept when the past is forgotten: longer than any turn of the head takes
-// Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
-// themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+// Blinks: on stressed syllables at least so many seconds after the last (Yang et al., section 7.3); of
+// themselves after gaps that spread as people's do, log-normal, a few of them doubles.
 export const AFTER_BLINK = 1;
-export const BLINK_GAP = 0.57; // the shortest gap
-export const BLINK_CHANCE = 0.845; // and what chance adds to it
+export const BLINK_SPREAD = 0.7; // standard deviation of the gaps, times their mean
+export const DOUBLES = 0.06; // share of blinks that follow the one before at once
+export const DOUBLE = 0.4; // seconds after which they do
 // Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 // with what they look at.
 export const FIXATION = 0.2;
@@ -402,7 +403,8 @@ export class LifeDraw {
       let own = Infinity;
       if (mean < Infinity) {
         const key = this.key("blink", number);
-        const need = mean * (BLINK_GAP + BLINK_CHANCE * chanceOf(key, "gap"));
+        const drawn = logNormal(mean, BLINK_SPREAD * mean, chanceOf(key, "gap"), chanceOf(key, "gap2"));
+        const need = chanceOf(key, "double") < DOUBLES ? DOUBLE : Math.max(DOUBLE, drawn);
         own = Math.max(this.cut, this.after(last, need, rates));
       }
       // A stressed syllable may bring a blink: the first of a speech always, the others some time after

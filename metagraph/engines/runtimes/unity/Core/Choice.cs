@@ -48,6 +48,18 @@ namespace Metagraph
             return (HashingRules.Mix(HashingRules.Absorb(key, purpose)) + 0.5) / All;
         }
 
+        /// <summary>
+        /// Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a =
+        /// ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+        /// </summary>
+        public static double LogNormal(double mean, double deviation, double u, double v)
+        {
+            var share = deviation / mean;
+            var spread = PlainNumbers.Log1P(share * share);
+            var z = Math.Sqrt(-2.0 * Math.Log(u)) * Math.Cos(2.0 * Math.PI * v);
+            return mean * Math.Exp(Math.Sqrt(spread) * z - spread / 2.0);
+        }
+
         /// <summary>Return one of the ids, as `picked` does.</summary>
         public static string Pick(uint seed, string key, string purpose, Dictionary<string, double> weights)
         {

@@ -28,7 +28,7 @@ namespace Metagraph
     {
         public string Id, Name, Kind, Layer, Stance, EndStance, Limb;
         public ClipEntry Clip;
-        public double Start, End, Likelihood, Cooldown, Vigour;
+        public double Start, End, Likelihood, Cooldown, Vigour, Prominence;
         public Timing Timing;
         public int? Spacing;
         public List<string> Joints = new List<string>(), Tags = new List<string>();
@@ -124,7 +124,7 @@ namespace Metagraph
     public sealed class PlannerSettings
     {
         public uint Seed;
-        public double Alpha, Shortest, Wait, Memory, Rest, Lookahead = 0.1;
+        public double Alpha, Shortest, Wait, Memory, Rest, Lookahead = 0.1, Variety;
         public bool NeverTwice;
     }
 

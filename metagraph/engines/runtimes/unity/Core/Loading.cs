@@ -155,6 +155,7 @@ namespace Metagraph
             Settings.Memory = json.Maybe("memory", out found) ? found.Within(0, 600) : Settings.Memory;
             Settings.Rest = json.Maybe("rest", out found) ? found.Within(0, 600) : Settings.Rest;
             Settings.Lookahead = json.Maybe("lookahead", out found) ? found.Within(0, 10) : Settings.Lookahead;
+            Settings.Variety = json.Maybe("variety", out found) ? found.Within(0, 4) : Settings.Variety;
         }
 
         private LayerGraph ReadLayer(string layer, Node json)
@@ -213,6 +214,7 @@ namespace Metagraph
             }
             action.Cooldown = json.Maybe("cooldown", out found) ? found.Within(0, 1e9) : 0.0;
             action.Vigour = json.Maybe("vigour", out found) ? found.Within(-1, 1) : 0.0;
+            action.Prominence = json.Maybe("prominence", out found) ? found.Within(0, 1) : 0.0;
             action.Spacing = json.Maybe("spacing", out found) && !found.IsNull ? (int)found.Within(0, 1000) : (int?)null;
             action.Contacts = json.Maybe("contacts", out found) && !found.IsNull ? Contacts.Read(found) : action.Contacts;
             double[] phases = json.Maybe("phases", out found) ? found.Numbers(-1) : new double[0];

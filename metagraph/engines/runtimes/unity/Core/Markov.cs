@@ -18,13 +18,15 @@ namespace Metagraph
         // as in `Markov.modes`
         public static readonly List<string> Kinds = new List<string> { "gesture", "fidget", "transition" };
         public static readonly Cursor Begin = new Cursor();
+        public const double Rests = 0.9; // standard deviation of rests, times their mean
 
         /// <summary>
         /// Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one
         /// left out.
         ///
-        /// Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has; states
-        /// of other kinds are passed over, so that half-filled graphs perform too.
+        /// Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are. Windows are as
+        /// `length` says. kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform
+        /// too.
         ///
         /// Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives
         /// bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
@@ -49,7 +51,7 @@ namespace Metagraph
             {
                 var ident = "auto/" + chain.Layer + "/" + PlainText.Of(number);
                 var key = ChoiceRules.Keyed(seed, ident);
-                var start = time + chain.Gap * (0.35 + 1.3 * ChoiceRules.ChanceOf(key, "gap"));
+                var start = time + RestLength(chain, key);
                 if (!(start < until)) // nor when it is no number
                 {
                     break;
@@ -122,7 +124,7 @@ namespace Metagraph
         /// </summary>
         public static bool Performs(Markov chain, uint seed, MetaAction meta, string mode)
         {
-            if (chain.Modes.Count == 0 || mode == null || !Kinds.Contains(meta.Request.Kind))
+            if (chain.Modes.Count == 0 || !Kinds.Contains(meta.Request.Kind))
             {
                 return true;
             }
@@ -131,26 +133,39 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
-        ///
-        /// Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and
-        /// Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z -
-        /// a / 2)`.
+        /// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths; else log-normal
+        /// with the state's mean and standard deviation.
         /// </summary>
         public static double Length(Markov chain, int state, uint key)
         {
-            var u = ChoiceRules.ChanceOf(key, "length");
             if (chain.Lengths.Count == 0)
             {
-                return 1.0 + 2.0 * u;
+                return 1.0 + 2.0 * ChoiceRules.ChanceOf(key, "length");
             }
             var found = chain.Lengths[state];
             double mean = found.Item1;
             double deviation = found.Item2;
-            var share = deviation / mean;
-            var spread = PlainNumbers.Log1P(share * share);
-            var z = Math.Sqrt(-2.0 * Math.Log(u)) * Math.Cos(2.0 * Math.PI * ChoiceRules.ChanceOf(key, "length2"));
-            return mean * Math.Exp(Math.Sqrt(spread) * z - spread / 2.0);
+            return ChoiceRules.LogNormal(
+                mean,
+                deviation,
+                ChoiceRules.ChanceOf(key, "length"),
+                ChoiceRules.ChanceOf(key, "length2")
+            );
+        }
+
+        /// <summary>
+        /// Return how many seconds of rest come before a meta action of a key: log-normal with the mean `chain.gap`, between a
+        /// fifth and five times of it.
+        /// </summary>
+        public static double RestLength(Markov chain, uint key)
+        {
+            var drawn = ChoiceRules.LogNormal(
+                chain.Gap,
+                Rests * chain.Gap,
+                ChoiceRules.ChanceOf(key, "gap"),
+                ChoiceRules.ChanceOf(key, "gap2")
+            );
+            return Math.Min(5.0 * chain.Gap, Math.Max(0.2 * chain.Gap, drawn));
         }
     }
 }

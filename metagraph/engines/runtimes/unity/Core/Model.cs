@@ -131,7 +131,8 @@ namespace Metagraph
     /// action is not played twice in a row if there is another. `shortest` is the least number of seconds for which the remainder
     /// of a cut meta action is kept. `wait` is how many seconds late a request may start. `memory` is the number of seconds after
     /// which a use no longer counts, 0 for never (as in the paper). `rest` is the least number of seconds in the stance between
-    /// two actions of a layer. A running plan is not changed for the next `lookahead` seconds.
+    /// two actions of a layer. A running plan is not changed for the next `lookahead` seconds. `variety`, 0..4, multiplies the
+    /// times of `planning.director`, so how seldom actions repeat and stances change; 0 for as often as in the paper.
     /// </summary>
     public sealed class Settings
     {
@@ -143,6 +144,7 @@ namespace Metagraph
         public readonly double Memory;
         public readonly double Rest;
         public readonly double Lookahead;
+        public readonly double Variety;
 
         public Settings(
             double alpha = 4.0,
@@ -152,7 +154,8 @@ namespace Metagraph
             double wait = 4.0,
             double memory = 0.0,
             double rest = 0.0,
-            double lookahead = 0.1
+            double lookahead = 0.1,
+            double variety = 1.0
         )
         {
             Alpha = alpha;
@@ -163,6 +166,7 @@ namespace Metagraph
             Memory = memory;
             Rest = rest;
             Lookahead = lookahead;
+            Variety = variety;
         }
     }
 }

@@ -73,7 +73,7 @@ namespace Metagraph
                 return false;
             }
             bool leaves = meta.Request.Kind == "transition" && plan.Track.StaysAt(meta.Request.Layer, meta.Start);
-            return !leaves && MarkovRules.Performs(model, plan.Seed, meta, plan.Track.ToldMode(meta.Start));
+            return !leaves && MarkovRules.Performs(model, plan.Seed, meta, WantedRules.ModeAt(plan.Track, meta.Start));
         }
     }
 }

@@ -24,7 +24,7 @@ namespace Metagraph
     /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
     /// meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
     /// what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked
-    /// for.
+    /// for. acted: when the last action ended.
     /// </summary>
     public sealed class Performer
     {
@@ -34,6 +34,7 @@ namespace Metagraph
         public string Stance;
         public Moods Moods;
         public double Free;
+        public double Acted;
         public Dictionary<string, int> Uses;
         public Dictionary<string, List<string>> Recent;
         public Dictionary<string, double> Ended;
@@ -51,6 +52,7 @@ namespace Metagraph
             string stance,
             Moods moods,
             double free = 0.0,
+            double acted = 0.0,
             Dictionary<string, int> uses = null,
             Dictionary<string, List<string>> recent = null,
             Dictionary<string, double> ended = null,
@@ -68,6 +70,7 @@ namespace Metagraph
             Stance = stance;
             Moods = moods;
             Free = free;
+            Acted = acted;
             Uses = uses ?? new Dictionary<string, int>();
             Recent = recent ?? new Dictionary<string, List<string>>();
             Ended = ended ?? new Dictionary<string, double>();
@@ -84,6 +87,7 @@ namespace Metagraph
         {
             Cues.Add(cue);
             Free = cue.End;
+            Acted = cue.End;
             Stance = then;
             RememberingRules.Remember(cue, Uses, Recent, Ended);
         }
@@ -157,7 +161,7 @@ namespace Metagraph
         {
             var meta = bound.Meta;
             var limit = bound.Limit;
-            var steps = Steps(meta);
+            var steps = Steps(meta, now);
             if (steps == null)
             {
                 return;
@@ -454,9 +458,10 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless.
+        /// Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless, or
+        /// where the model wrote it and nothing is rested enough.
         /// </summary>
-        public List<SamplingStep> Steps(MetaAction meta)
+        public List<SamplingStep> Steps(MetaAction meta, double now)
         {
             var request = meta.Request;
             var graph = Graph;
@@ -515,7 +520,22 @@ namespace Metagraph
             {
                 exact = found.Where(a => a.Limb == request.Limb).ToList();
             }
-            if (meta.Written) // the model's limb and tags are wishes, not orders, nor worth playing the same again
+            var directed = meta.Written && Project.Settings.Variety > 0;
+            if (directed) // the model's limb and tags are wishes, not orders
+            {
+                every = Fresh(meta, every, now);
+                found = found.Where(a => every.Contains(a)).ToList();
+                exact = exact.Where(a => every.Contains(a)).ToList();
+                if (every.Count == 0)
+                {
+                    return null;
+                }
+                if (exact.Count == 0)
+                {
+                    exact = found.Count > 0 ? found : every;
+                }
+            }
+            else if (meta.Written) // nor worth playing the same again
             {
                 var again = PlainLists.Part(PlainMaps.GetOr(Recent, here, new List<string>()), -1);
                 if (!exact.Any(a => !again.Contains(a.Id)))
@@ -686,8 +706,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as long
-        /// as any others are left.
+        /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too
+        /// recently as long as any others are left.
         /// </summary>
         public GraphAction Draw(List<GraphAction> candidates, string key, double now, Mood mood)
         {
@@ -701,7 +721,8 @@ namespace Metagraph
             foreach (GraphAction a in left)
             {
                 var favoured = neutral ? 1.0 : MoodRules.Favour(mood, a.Tags, VigourRules.Vigour(Project, a));
-                weights[a.Id] = a.Likelihood / Math.Max(Count(a.Id, now), 1.0) * favoured;
+                var weight = a.Likelihood / Math.Max(Count(a.Id, now), 1.0) * favoured;
+                weights[a.Id] = weight * Variety(a, now);
             }
             if (!weights.Values.ToList().Any(w => w > 0))
             {
@@ -709,6 +730,98 @@ namespace Metagraph
             }
             var chosen = ChoiceRules.Pick(Seed, key, "action", weights);
             return left.Where(a => a.Id == chosen).First();
+        }
+
+        /// <summary>Return how much likelier variety makes an action.</summary>
+        public double Variety(GraphAction action, double now)
+        {
+            var variety = Project.Settings.Variety;
+            if (variety <= 0 || action.Kind == "transition" || !Ended.ContainsKey(action.Id))
+            {
+                return 1.0;
+            }
+            var needed = DirectorRules.Interval(action.Kind, ProminenceRules.Prominence(Project, action)) * variety;
+            return DirectorRules.Freshness(now - Ended[action.Id], needed);
+        }
+
+        /// <summary>Return those that may be done of one's own accord; see `director`.</summary>
+        public List<GraphAction> Fresh(MetaAction meta, List<GraphAction> candidates, double now)
+        {
+            var variety = Project.Settings.Variety;
+            var layer = Graph.Layer;
+            if (meta.Request.Kind == "transition")
+            {
+                if (now < Moved() + DirectorRules.Posture(layer) * variety)
+                {
+                    return new List<GraphAction>();
+                }
+                if (layer != "head")
+                {
+                    return candidates.ToList();
+                }
+                if (Stance == Graph.Start)
+                {
+                    var leaves = ChoiceRules.Uniform(Seed, meta.Key, "leaves") < DirectorRules.LeavesHome;
+                    return leaves ? candidates.ToList() : new List<GraphAction>();
+                }
+                var home = candidates.Where(a => a.EndStance == Graph.Start).ToList();
+                var returns = home.Count > 0 && ChoiceRules.Uniform(Seed, meta.Key, "home") < DirectorRules.GoesHome;
+                return returns ? home : candidates.ToList();
+            }
+            var share = now < Acted + DirectorRules.LongRest * variety ? variety : variety * DirectorRules.Shorter;
+            var reminded = Shown(now - DirectorRules.Apart * variety);
+            var out_ = new List<GraphAction>();
+            foreach (GraphAction action in candidates)
+            {
+                var shows = ProminenceRules.Prominence(Project, action);
+                if (reminded && shows >= DirectorRules.StandsOut)
+                {
+                    continue;
+                }
+                var needed = DirectorRules.Interval(action.Kind, shows) * share;
+                if (!Ended.ContainsKey(action.Id) || now >= Ended[action.Id] + needed)
+                {
+                    out_.Add(action);
+                }
+            }
+            return out_;
+        }
+
+        /// <summary>Return when the stance was last changed; minus infinity for never.</summary>
+        public double Moved()
+        {
+            var latest = double.NegativeInfinity;
+            foreach (var one in Ended)
+            {
+                var ident = one.Key;
+                var end = one.Value;
+                var action = PlainMaps.Get(Graph.Actions, ident);
+                if (action != null && action.Kind == "transition")
+                {
+                    latest = Math.Max(latest, end);
+                }
+            }
+            return latest;
+        }
+
+        /// <summary>Return whether something that stands out was done since a time.</summary>
+        public bool Shown(double since)
+        {
+            foreach (var one in Ended)
+            {
+                var ident = one.Key;
+                var end = one.Value;
+                var action = PlainMaps.Get(Graph.Actions, ident);
+                if (action == null || action.Kind == "transition" || end < since)
+                {
+                    continue;
+                }
+                if (ProminenceRules.Prominence(Project, action) >= DirectorRules.StandsOut)
+                {
+                    return true;
+                }
+            }
+            return false;
         }
 
         /// <summary>
@@ -921,6 +1034,7 @@ namespace Metagraph
                 seed,
                 stance,
                 moods,
+                past.Free,
                 past.Free,
                 new Dictionary<string, int>(past.Uses),
                 new Dictionary<string, List<string>>(past.Recent),

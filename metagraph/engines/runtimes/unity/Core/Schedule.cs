@@ -399,7 +399,15 @@ namespace Metagraph
                 if (mean < double.PositiveInfinity)
                 {
                     var key = Key("blink", number);
-                    var need = mean * (ScheduleRules.BlinkGap + ScheduleRules.BlinkChance * ChoiceRules.ChanceOf(key, "gap"));
+                    var drawn = ChoiceRules.LogNormal(
+                        mean,
+                        ScheduleRules.BlinkSpread * mean,
+                        ChoiceRules.ChanceOf(key, "gap"),
+                        ChoiceRules.ChanceOf(key, "gap2")
+                    );
+                    var need = ChoiceRules.ChanceOf(key, "double") < ScheduleRules.Doubles
+                        ? ScheduleRules.Double
+                        : Math.Max(ScheduleRules.Double, drawn);
                     own = Math.Max(Cut, After(last, need, rates));
                 }
                 // A stressed syllable may bring a blink: the first of a speech always, the others some time after
@@ -468,11 +476,12 @@ namespace Metagraph
         public const double Block = 8.0; // seconds drawn at a time, so that a running plan need not draw at every tick
         // seconds of looks kept when the past is forgotten: longer than any turn of the head takes
         public const double Recall = 4.0;
-        // Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
-        // themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+        // Blinks: on stressed syllables at least so many seconds after the last (Yang et al., section 7.3); of
+        // themselves after gaps that spread as people's do, log-normal, a few of them doubles.
         public const double AfterBlink = 1.0;
-        public const double BlinkGap = 0.57; // the shortest gap
-        public const double BlinkChance = 0.845; // and what chance adds to it
+        public const double BlinkSpread = 0.7; // standard deviation of the gaps, times their mean
+        public const double Doubles = 0.06; // share of blinks that follow the one before at once
+        public const double Double = 0.4; // seconds after which they do
         // Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
         // with what they look at.
         public const double Fixation = 0.2;

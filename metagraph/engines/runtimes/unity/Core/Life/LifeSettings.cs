@@ -80,8 +80,8 @@ namespace Metagraph
         private readonly Dictionary<string, Manner> modes = new Dictionary<string, Manner>
         {
             { "idle", new Manner { AversionRate = 1.1, AversionLength = 2.4, AversionAngle = 1.4, SaccadeRate = 0.85 } },
-            { "listening", new Manner { AversionRate = 0.6, AversionLength = 0.46, AversionAngle = 0.8, Saccades = 0.9 } },
-            { "talking", new Manner { Breathing = 1.15, BreathRate = 1.1, AversionRate = 1.25 } },
+            { "listening", new Manner { AversionRate = 0.85, AversionLength = 1.5, AversionAngle = 0.8, Saccades = 0.9, Blinks = 1.45 } },
+            { "talking", new Manner { Breathing = 1.15, BreathRate = 1.1, AversionRate = 1.05, AversionLength = 2.1, Blinks = 1.3 } },
         };
 
         public Manner Manner(string mode)

@@ -16,7 +16,7 @@ const STANCE = {id = "text", name = "text"}
 const ACTION = {
 	id = "text", name = "text", clip = "text", kind = "text", stance = "text", end_stance = "text?", start = "number", end = "number",
 	blend_in = "number", blend_out = "number", earliest_exit = "number?", stroke = "number?", limb = "text", joints = "list", tags = "list",
-	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?", contacts = "list?", vigour = "number?",
+	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?", contacts = "list?", vigour = "number?", prominence = "number?", own_prominence = "number?",
 	joint_weights = "record?", repeat = "number?"
 }
 const MARKOV = {

@@ -5,6 +5,7 @@
 # Translated from metagraph/playback/planning/choice.py; change that, and translate anew.
 
 const Hashing = preload("hashing.gd")
+const Util = preload("util.gd")
 const ALL = 4294967296.0  # numbers of 32 bits
 
 
@@ -31,6 +32,15 @@ static func uniform(seed_, words):
 # Return what `uniform` does with one word more than a key has.
 static func chance_of(key, purpose):
 	return (Hashing.mix(Hashing.absorb(key, purpose)) + 0.5) / ALL
+
+
+# Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a = ln(1 + (s /
+# m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+static func log_normal(mean, deviation, u, v):
+	var share = deviation / mean
+	var spread = Util.log1p(share * share)
+	var z = sqrt(-2.0 * log(u)) * cos(2.0 * PI * v)
+	return mean * exp(sqrt(spread) * z - spread / 2.0)
 
 
 # Return one of the ids, as `picked` does.

@@ -15,7 +15,7 @@ const Weight = preload("weight.gd")
 const Alphabet = preload("alphabet.gd")
 const FORMAT = 1  # the newest version of exports that is understood
 const CORE = "res://addons/metagraph/core/"
-const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1}
+const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1, variety = 0.0}
 
 var error = ""
 var problems = []
@@ -143,6 +143,7 @@ func _read_layer(layer, data):
 		action.phases = PhaseTimes.Phases.new(each.start, told[0], told[1], told[2], told[3], each.end)
 		action.cooldown = 0.0 if each.cooldown == null else each.cooldown
 		action.vigour = 0.0 if each.vigour == null else each.vigour
+		action.prominence = 0.0 if each.prominence == null else each.prominence
 		action.contacts = Contacts.read(each.contacts)
 		action.joint_weights = {} if each.joint_weights == null else each.joint_weights
 		action.partly = _partly(action)

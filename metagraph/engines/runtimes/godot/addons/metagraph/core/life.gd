@@ -12,8 +12,8 @@ const FACTORS = {
 }
 const MANNERS = {
 	idle = {aversion_rate = 1.1, aversion_length = 2.4, aversion_angle = 1.4, saccade_rate = 0.85},
-	listening = {aversion_rate = 0.6, aversion_length = 0.46, aversion_angle = 0.8, saccades = 0.9},
-	talking = {breathing = 1.15, breath_rate = 1.1, aversion_rate = 1.25}
+	listening = {aversion_rate = 0.85, aversion_length = 1.5, aversion_angle = 0.8, saccades = 0.9, blinks = 1.45},
+	talking = {breathing = 1.15, breath_rate = 1.1, aversion_rate = 1.05, aversion_length = 2.1, blinks = 1.3}
 }
 
 

@@ -16,12 +16,13 @@ const KINDS = ["gesture", "fidget", "transition"]  # as in `Markov.modes`
 
 static func BEGIN():
 	return MetaPlan.Cursor.new()
+const RESTS = 0.9  # standard deviation of rests, times their mean
 
 
 # Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left out.
 #
-# Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has; states of other
-# kinds are passed over, so that half-filled graphs perform too.
+# Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are. Windows are as `length`
+# says. kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
 #
 # Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit for bit
 # what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
@@ -46,7 +47,7 @@ static func write(chain, seed_, until, kinds = null, cursor = null):
 	while able:
 		var ident = "auto/%s/%d" % [chain.layer, number]
 		var key = Choice.keyed(seed_, [ident])
-		var start = time + chain.gap * (0.35 + 1.3 * Choice.chance_of(key, "gap"))
+		var start = time + rest_length(chain, key)
 		if not (start < until):  # nor when it is no number
 			break
 		if not rows.has(state):
@@ -99,24 +100,25 @@ static func _row(chain, state, open_to):
 # Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left out leaves
 # the rest as it was, so that it does not matter when a mode became known.
 static func performs(chain, seed_, meta, mode):
-	if chain.modes.size() == 0 or mode == null or not KINDS.has(meta.request.kind):
+	if chain.modes.size() == 0 or not KINDS.has(meta.request.kind):
 		return true
 	var share = chain.modes[Words.MODES.find(mode)][KINDS.find(meta.request.kind)]
 	return share >= 1 or Choice.uniform(seed_, [meta.request.id, "mode"]) < share
 
 
-# Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
-#
-# Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller, which
-# any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+# Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths; else log-normal with the
+# state's mean and standard deviation.
 static func length(chain, state, key):
-	var u = Choice.chance_of(key, "length")
 	if chain.lengths.size() == 0:
-		return 1.0 + 2.0 * u
+		return 1.0 + 2.0 * Choice.chance_of(key, "length")
 	var both = chain.lengths[state]
 	var mean = both[0]
 	var deviation = both[1]
-	var share = deviation / mean
-	var spread = Util.log1p(share * share)
-	var z = sqrt(-2.0 * log(u)) * cos(2.0 * PI * Choice.chance_of(key, "length2"))
-	return mean * exp(sqrt(spread) * z - spread / 2.0)
+	return Choice.log_normal(mean, deviation, Choice.chance_of(key, "length"), Choice.chance_of(key, "length2"))
+
+
+# Return how many seconds of rest come before a meta action of a key: log-normal with the mean `chain.gap`, between a fifth and
+# five times of it.
+static func rest_length(chain, key):
+	var drawn = Choice.log_normal(chain.gap, RESTS * chain.gap, Choice.chance_of(key, "gap"), Choice.chance_of(key, "gap2"))
+	return Util.least(5.0 * chain.gap, Util.most(0.2 * chain.gap, drawn))

@@ -115,7 +115,8 @@ class Markov:
 # not played twice in a row if there is another. `shortest` is the least number of seconds for which the remainder of a cut meta
 # action is kept. `wait` is how many seconds late a request may start. `memory` is the number of seconds after which a use no
 # longer counts, 0 for never (as in the paper). `rest` is the least number of seconds in the stance between two actions of a
-# layer. A running plan is not changed for the next `lookahead` seconds.
+# layer. A running plan is not changed for the next `lookahead` seconds. `variety`, 0..4, multiplies the times of
+# `planning.director`, so how seldom actions repeat and stances change; 0 for as often as in the paper.
 class Settings:
 	var alpha
 	var seed_
@@ -125,6 +126,7 @@ class Settings:
 	var memory
 	var rest
 	var lookahead
+	var variety
 
 	func _init(
 		alpha_ = 4.0,
@@ -134,7 +136,8 @@ class Settings:
 		wait_ = 4.0,
 		memory_ = 0.0,
 		rest_ = 0.0,
-		lookahead_ = 0.1
+		lookahead_ = 0.1,
+		variety_ = 1.0
 	):
 		self.alpha = alpha_
 		self.seed_ = seed_
@@ -144,3 +147,4 @@ class Settings:
 		self.memory = memory_
 		self.rest = rest_
 		self.lookahead = lookahead_
+		self.variety = variety_

@@ -70,7 +70,7 @@ static func _performed(graph, plan, layer, metas, moods):
 	for meta in metas:
 		var stirs = Mood.stirs(Mood.mood_at(moods, meta.start), plan.seed32, meta.request.id)
 		var leaves = meta.request.kind == "transition" and plan.track.stays_at(layer, meta.start)
-		var mode = plan.track.told_mode(meta.start)
+		var mode = Wanted.mode_at(plan.track, meta.start)
 		if not meta.written or (stirs and not leaves and Markov.performs(graph.layers[layer].markov, plan.seed32, meta, mode)):
 			out.append(meta)
 	return out

@@ -7,7 +7,9 @@ const MetaPlan = preload("meta_plan.gd")
 const Bounds = preload("bounds.gd")
 const Choice = preload("choice.gd")
 const CueShapes = preload("cue_shapes.gd")
+const Director = preload("director.gd")
 const Mood = preload("mood.gd")
+const Prominence = preload("prominence.gd")
 const Remembering = preload("remembering.gd")
 const Vigour = preload("vigour.gd")
 const PhaseTimes = preload("phase_times.gd")
@@ -30,7 +32,8 @@ class SamplingStep:
 #
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
 # actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods: what it is in
-# the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked for.
+# the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked for. acted: when the
+# last action ended.
 class Performer:
 	var project
 	var graph
@@ -38,6 +41,7 @@ class Performer:
 	var stance
 	var moods
 	var free_
+	var acted
 	var uses
 	var recent
 	var ended
@@ -55,6 +59,7 @@ class Performer:
 		stance_,
 		moods_,
 		free_ = 0.0,
+		acted_ = 0.0,
 		uses_ = null,
 		recent_ = null,
 		ended_ = null,
@@ -71,6 +76,7 @@ class Performer:
 		self.stance = stance_
 		self.moods = moods_
 		self.free_ = free_
+		self.acted = acted_
 		self.uses = uses_ if uses_ != null else {}
 		self.recent = recent_ if recent_ != null else {}
 		self.ended = ended_ if ended_ != null else {}
@@ -85,6 +91,7 @@ class Performer:
 	func note(cue, then):
 		self.cues.append(cue)
 		self.free_ = cue.end
+		self.acted = cue.end
 		self.stance = then
 		Remembering.remember(cue, self.uses, self.recent, self.ended)
 
@@ -127,7 +134,7 @@ class Performer:
 	func _realise(bound, now):
 		var meta = bound.meta
 		var limit = bound.limit
-		var steps = self._steps(meta)
+		var steps = self._steps(meta, now)
 		if steps == null:
 			return
 		var cues = []
@@ -339,8 +346,9 @@ class Performer:
 			return self.ended[action.id] + action.cooldown
 		return -INF
 
-	# Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless.
-	func _steps(meta):
+	# Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless, or where
+	# the model wrote it and nothing is rested enough.
+	func _steps(meta, now):
 		var request = meta.request
 		var graph = self.graph
 		if request.action != null:
@@ -395,7 +403,24 @@ class Performer:
 				if a.limb == request.limb:
 					found5.append(a)
 			exact = found5
-		if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
+		var directed = meta.written and self.project.settings.variety > 0
+		if directed:  # the model's limb and tags are wishes, not orders
+			every = self._fresh(meta, every, now)
+			var found6 = []
+			for a in found:
+				if every.has(a):
+					found6.append(a)
+			found = found6
+			var found7 = []
+			for a in exact:
+				if every.has(a):
+					found7.append(a)
+			exact = found7
+			if every.size() == 0:
+				return null
+			if exact.size() == 0:
+				exact = found if found.size() > 0 else every
+		elif meta.written:  # nor worth playing the same again
 			var again = Util.part(self.recent.get(here, []), -1, self.recent.get(here, []).size())
 			var is_any = false
 			for a in exact:
@@ -523,8 +548,8 @@ class Performer:
 			mood
 		)
 
-	# Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as long as any
-	# others are left.
+	# Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too recently as
+	# long as any others are left.
 	func _draw(candidates, key, now, mood):
 		var left = self._spaced(candidates)
 		if left.size() == 1:
@@ -533,7 +558,8 @@ class Performer:
 		var weights = {}
 		for a in left:
 			var favoured = 1.0 if neutral else Mood.favour(mood, a.tags, Vigour.vigour(self.project, a))
-			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0) * favoured
+			var weight = a.likelihood / Util.most(self._count(a.id, now), 1.0) * favoured
+			weights[a.id] = weight * self._variety(a, now)
 		var is_any = false
 		for w in weights.values():
 			if w > 0:
@@ -548,6 +574,65 @@ class Performer:
 				first = a2
 				break
 		return first
+
+	# Return how much likelier variety makes an action.
+	func _variety(action, now):
+		var variety = self.project.settings.variety
+		if variety <= 0 or action.kind == "transition" or not self.ended.has(action.id):
+			return 1.0
+		var needed = Director.interval(action.kind, Prominence.prominence(self.project, action)) * variety
+		return Director.freshness(now - self.ended[action.id], needed)
+
+	# Return those that may be done of one's own accord; see `director`.
+	func _fresh(meta, candidates, now):
+		var variety = self.project.settings.variety
+		var layer = self.graph.layer
+		if meta.request.kind == "transition":
+			if now < self._moved() + Director.posture(layer) * variety:
+				return []
+			if layer != "head":
+				return Util.list(candidates)
+			if self.stance == self.graph.start:
+				var leaves = Choice.uniform(self.seed_, [meta.key, "leaves"]) < Director.LEAVES_HOME
+				return Util.list(candidates) if leaves else []
+			var home = []
+			for a in candidates:
+				if a.end_stance == self.graph.start:
+					home.append(a)
+			var returns = home.size() > 0 and Choice.uniform(self.seed_, [meta.key, "home"]) < Director.GOES_HOME
+			return home if returns else Util.list(candidates)
+		var share = variety if now < self.acted + Director.LONG_REST * variety else variety * Director.SHORTER
+		var reminded = self._shown(now - Director.APART * variety)
+		var out = []
+		for action in candidates:
+			var shows = Prominence.prominence(self.project, action)
+			if reminded and shows >= Director.STANDS_OUT:
+				continue
+			var needed = Director.interval(action.kind, shows) * share
+			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
+				out.append(action)
+		return out
+
+	# Return when the stance was last changed; minus infinity for never.
+	func _moved():
+		var latest = -INF
+		for ident in self.ended:
+			var end = self.ended[ident]
+			var action = self.graph.actions.get(ident)
+			if action != null and action.kind == "transition":
+				latest = Util.most(latest, end)
+		return latest
+
+	# Return whether something that stands out was done since a time.
+	func _shown(since):
+		for ident in self.ended:
+			var end = self.ended[ident]
+			var action = self.graph.actions.get(ident)
+			if action == null or action.kind == "transition" or end < since:
+				continue
+			if Prominence.prominence(self.project, action) >= Director.STANDS_OUT:
+				return true
+		return false
 
 	# Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on.
 	func _spaced(candidates):
@@ -711,6 +796,7 @@ static func performer_after(project, graph, seed_, begin, past, cues, moods):
 		seed_,
 		stance,
 		moods,
+		past.free_,
 		past.free_,
 		past.uses.duplicate(),
 		past.recent.duplicate(),

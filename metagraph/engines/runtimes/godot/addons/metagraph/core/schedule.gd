@@ -16,11 +16,12 @@ const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 const BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 const RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes
-# Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
-# themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+# Blinks: on stressed syllables at least so many seconds after the last (Yang et al., section 7.3); of
+# themselves after gaps that spread as people's do, log-normal, a few of them doubles.
 const AFTER_BLINK = 1.0
-const BLINK_GAP = 0.57  # the shortest gap
-const BLINK_CHANCE = 0.845  # and what chance adds to it
+const BLINK_SPREAD = 0.7  # standard deviation of the gaps, times their mean
+const DOUBLES = 0.06  # share of blinks that follow the one before at once
+const DOUBLE = 0.4  # seconds after which they do
 # Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 # with what they look at.
 const FIXATION = 0.2
@@ -441,7 +442,13 @@ class LifeDraw:
 			var own = INF
 			if mean < INF:
 				var key = self.key("blink", number)
-				var need = mean * (BLINK_GAP + BLINK_CHANCE * Choice.chance_of(key, "gap"))
+				var drawn = Choice.log_normal(
+					mean,
+					BLINK_SPREAD * mean,
+					Choice.chance_of(key, "gap"),
+					Choice.chance_of(key, "gap2")
+				)
+				var need = DOUBLE if Choice.chance_of(key, "double") < DOUBLES else Util.most(DOUBLE, drawn)
 				own = Util.most(self.cut, self.after(last, need, rates))
 			# A stressed syllable may bring a blink: the first of a speech always, the others some time after
 			# the last blink.

@@ -1,0 +1,179 @@
+"""What the character does by itself in an hour of talking, listening or idling, next to what people do."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QDialog,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.look.theme import theme
+from app.project.document import Document
+from app.project.jobs import Jobs, WindowJob
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr, tr_error, tr_phrase
+from app.widgets.choice_row import ChoiceRow
+from app.widgets.quiet_fields import ComboBox
+from metagraph.graph.model import MODES, Project
+from metagraph.graph.temperaments import TEMPERAMENTS, find_temperament, set_temperament
+from metagraph.playback.behaviour import Behaviour, describe_lack, measure_behaviour
+from metagraph.playback.planning.markov import DEFAULTS
+
+OWN = "own"
+SETTLED = 400  # milliseconds without an edit after which is counted again
+TITLES = lazy_texts(
+    lambda: {"talking": tr("Talking"), "listening": tr("Listening"), "idle": tr("Idle")},
+)
+
+
+class BehaviourDialog(QDialog):
+    """Stays open beside the window, and counts again after each edit."""
+
+    def __init__(
+        self, document: Document, session: StageSession, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs = document, session, jobs
+        self.found: dict[str, Behaviour] = {}
+        self._counted: Project | None = None
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle(tr("Behaviour"))
+        self.resize(760, 620)
+        self._soon = QTimer(self, singleShot=True, interval=SETTLED)
+        self._soon.timeout.connect(self._count)
+        box = QVBoxLayout(self)
+        box.setContentsMargins(16, 14, 16, 12)
+        box.setSpacing(10)
+        self._add_choices(box)
+        self._add_table(box)
+        self.lacks = QLabel(self, wordWrap=True)
+        self.lacks.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        box.addWidget(self.lacks)
+        self._add_foot(box)
+        document.changed.connect(self._edited)
+        document.loaded.connect(self._edited)
+        session.look.changed.connect(self._show)
+        self._edited()
+        self._count()
+
+    def _add_choices(self, box: QVBoxLayout) -> None:
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        ways = (tr("What it does while it talks"), tr("What it does while it listens"), tr("At rest"))
+        order = ("talking", "listening", "idle")
+        self.modes = ChoiceRow(self, tuple(zip((TITLES[m] for m in order), ways, strict=True)))
+        self.modes.show_choice(0)
+        self.modes.chosen.connect(lambda n: self._choose(order[n]))
+        self.mode = "talking"
+        row.addWidget(self.modes)
+        row.addStretch(1)
+        row.addWidget(QLabel(tr("Temperament"), self))
+        self.temperament = ComboBox(self)
+        self.temperament.setAccessibleName(tr("Temperament"))
+        for name, of in TEMPERAMENTS.items():
+            self.temperament.addItem(tr_phrase(of.title), name)
+            self.temperament.setItemData(
+                self.temperament.count() - 1, tr_phrase(of.tip), Qt.ItemDataRole.ToolTipRole
+            )
+        self.temperament.addItem(tr("Custom"), OWN)
+        self.temperament.activated.connect(self._set_temperament)
+        row.addWidget(self.temperament)
+        box.addLayout(row)
+
+    def _add_table(self, box: QVBoxLayout) -> None:
+        self.table = QTableWidget(0, 3, self)
+        self.table.setHorizontalHeaderLabels([tr("What"), tr("The character"), tr("People, or aim")])
+        self.table.setAccessibleName(tr("Behaviour over an hour"))
+        self.table.verticalHeader().hide()
+        self.table.setShowGrid(False)
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.table.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        header = self.table.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        for column in (0, 1):
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(2, QHeaderView.ResizeMode.Stretch)
+        box.addWidget(self.table, 1)
+
+    def _add_foot(self, box: QVBoxLayout) -> None:
+        foot = QHBoxLayout()
+        self.state = QLabel(self)
+        self.state.setProperty("quiet", True)
+        foot.addWidget(self.state, 1)
+        close = QPushButton(tr("Close"), self)
+        close.setAutoDefault(False)
+        close.clicked.connect(self.close)
+        foot.addWidget(close)
+        box.addLayout(foot)
+
+    def _choose(self, mode: str) -> None:
+        self.mode = mode
+        self.session.onstage.improvise(mode)  # type: ignore[arg-type]
+        self._show()
+
+    def _set_temperament(self, _: int) -> None:
+        name = self.temperament.currentData()
+        if name != OWN:
+            self.document.edit(tr("Change the temperament"), lambda p: set_temperament(p, name, DEFAULTS))
+
+    def _edited(self, *_: object) -> None:
+        found = find_temperament(self.document.project, DEFAULTS) or OWN
+        self.temperament.setCurrentIndex(self.temperament.findData(found))
+        self._soon.start()
+
+    def _count(self) -> None:
+        project = self.document.project
+        if project is self._counted:
+            return
+        self._counted = project
+        self.state.setText(tr("Counting…"))
+
+        def work(job: WindowJob) -> tuple[Project, dict[str, Behaviour]]:
+            return project, {m: measure_behaviour(project, m) for m in MODES if not job.cancelled}
+
+        self.jobs.start("behaviour", work, self._done, self._failed, quick=True)
+
+    def _done(self, found: tuple[Project, dict[str, Behaviour]]) -> None:
+        if found[0] is self._counted:
+            self.found = found[1]
+            self._show()
+
+    def _failed(self, error: Exception) -> None:
+        self.state.setText(tr_error(error))
+
+    def _show(self) -> None:
+        found = self.found.get(self.mode)
+        if found is None:
+            return
+        colors = theme(self.session.look.name)
+        self.table.setRowCount(len(found.rows))
+        for n, row in enumerate(found.rows):
+            off = row.usual is False
+            for column, text in enumerate((row.name, row.amount, row.compared)):
+                item = QTableWidgetItem(tr_phrase(text))
+                if column == 2 and row.source is not None:
+                    item.setToolTip(tr_phrase(row.source))
+                elif off:
+                    item.setToolTip(tr("Outside what people do, or what is aimed at"))
+                if column == 1 and row.usual is not None:
+                    item.setForeground(QColor(colors.warning if off else colors.text))
+                if column == 2:
+                    item.setForeground(QColor(colors.dim))
+                self.table.setItem(n, column, item)
+        lines = [tr_phrase(describe_lack(self.document.project, x)) for x in found.lacks[:4]]
+        self.lacks.setText("\n".join(lines))
+        self.lacks.setVisible(bool(lines))
+        self.state.setText(
+            tr("Counted over an hour in which nothing is said; with words, gestures follow them.")
+        )

@@ -1,0 +1,41 @@
+# What keeps a performance from repeating itself and from fussing: how soon something is done again, how long a posture is kept,
+# how far apart acts are that stand out.
+#
+# Only what the Markov model writes is held back. What is asked for plays; of the actions that fit it, those that rested long
+# enough are likelier. `Settings.variety` multiplies every time here; 0 turns all of it off, as in Borer et al. The times are
+# ours, chosen by what an hour of the sample then does (`docs/researchers/behaviour.md`).
+#
+# Translated from metagraph/playback/planning/director.py; change that, and translate anew.
+
+const Util = preload("util.gd")
+const STANDS_OUT = 0.65  # prominence from which on an act is one that a viewer remembers
+const APART = 30.0  # seconds between two of those on one layer
+const LONG_REST = 30.0  # seconds of rest after which actions need to have rested only `SHORTER` as long
+const SHORTER = 0.3
+const STALE = 0.05  # least factor of the likelihood of what has just been played
+const LEAVES_HOME = 0.2  # share of the written tilts of the head that leave the stance it begins in
+const GOES_HOME = 0.7  # share of the written moves of a tilted head that go back there
+
+
+# Return after how many seconds an action may be done again.
+#
+# A beat that hardly shows takes 18 s, a gesture that stands out six minutes; fidgets, which nothing but time calls for, 4 to 10
+# minutes. prominence: 0..1.
+static func interval(kind, prominence):
+	if kind == "gesture":
+		return 18.0 * exp(log(20.0) * prominence)
+	return 240.0 * exp(log(2.5) * prominence)
+
+
+# Return how many seconds a stance is kept at least before the model changes it.
+static func posture(layer):
+	if layer == "body":
+		return 15.0
+	return 10.0 if layer == "arms" else 8.0
+
+
+# Return the factor of an action's likelihood. since: seconds since it ended; needed: its interval.
+static func freshness(since, needed):
+	if since >= needed:
+		return 1.0
+	return Util.most(STALE, since / needed)

@@ -1,0 +1,85 @@
+"""What a character does by itself in an hour, counted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from metagraph.graph import edits
+from metagraph.graph.model import MODES, Project
+from metagraph.playback.behaviour import (
+    LATER,
+    Behaviour,
+    describe_lack,
+    measure_behaviour,
+    repeated_share,
+)
+from metagraph.playback.planning.running_plan import improvise
+from tests.projects import as_in_the_paper
+
+SECONDS = 1200.0
+
+
+def value(of: Behaviour, name: str) -> float:
+    return next(row.value for row in of.rows if row.name.startswith(name))
+
+
+@pytest.fixture(scope="module")
+def counted(sample: Project) -> dict[str, Behaviour]:
+    return {mode: measure_behaviour(sample, mode, SECONDS) for mode in MODES}
+
+
+def test_nobody_gestures_or_nods_to_nobody(counted: dict[str, Behaviour]) -> None:
+    assert value(counted["idle"], "Gestures") == value(counted["idle"], "Nods") == 0
+    assert value(counted["idle"], "Fidgets") > 2 and value(counted["idle"], "Changes of stance") > 1
+    assert value(counted["talking"], "Gestures") > 3 and value(counted["listening"], "Nods") > 3
+    assert value(counted["listening"], "Gestures") < 0.2 * value(counted["talking"], "Gestures")
+
+
+def test_acts_of_the_arms_seldom_come_again_at_once(counted: dict[str, Behaviour]) -> None:
+    for mode, most in (("idle", 0.4), ("listening", 0.4), ("talking", 0.5)):
+        assert value(counted[mode], "The same act of the arms again within 30 s") <= 0.07
+        assert value(counted[mode], "The same act of the arms again within 5 minutes") <= most
+
+
+def test_stances_are_kept_rests_spread_and_the_head_is_mostly_straight(counted: dict[str, Behaviour]) -> None:
+    for mode in MODES:
+        assert value(counted[mode], "Changes of stance undone") == 0
+        assert value(counted[mode], "Head tilted") < 0.45
+        assert value(counted[mode], "Spread of the time between acts") > 0.6
+    assert 5 < value(counted["idle"], "Rests of the arms, half") < 30
+
+
+def test_eyes_do_as_peoples_do(counted: dict[str, Behaviour]) -> None:
+    for mode in MODES:
+        compared = [row for row in counted[mode].rows if row.source is not None]
+        assert compared and all(row.usual for row in compared), [(r.name, r.value) for r in compared]
+
+
+def test_without_variety_all_of_it_is_as_in_the_paper(sample: Project) -> None:
+    found = measure_behaviour(as_in_the_paper(sample), "idle", SECONDS)
+    assert value(found, "Gestures") > 3
+    assert value(found, "The same act of the arms again within 5 minutes") > 0.5
+
+
+def test_a_repetition_is_counted_within_its_time_alone(sample: Project) -> None:
+    cue = improvise(sample, 120.0).layers["arms"].cues[0]
+    at = [replace(cue, start=t) for t in (0.0, 20.0, 60.0, 400.0)]
+    assert repeated_share(at, 30.0) == 0.25 and repeated_share(at, 50.0) == 0.5
+    assert repeated_share([], LATER) == 0.0
+
+
+def test_a_stance_lacks_as_many_actions_as_would_end_the_repetition(sample: Project) -> None:
+    """Of a stance's gestures all but one are taken away; what is missed then names it."""
+    arms = sample.graphs["arms"]
+    gestures = [a.id for a in arms.of(arms.start or "", "gesture")]
+    poor = edits.remove_actions(sample, gestures[1:])
+    found = [x for x in measure_behaviour(poor, "talking", SECONDS).lacks if x.stance == arms.start]
+    assert found and found[0].have == 1 and found[0].more >= 1
+    assert "'hands at sides' would end the repetition; it has 1" in describe_lack(poor, found[0])
+
+
+def test_an_empty_project_does_nothing() -> None:
+    found = measure_behaviour(Project(), "idle", 60.0)
+    assert value(found, "Fidgets") == 0 and found.lacks == ()
