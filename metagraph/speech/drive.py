@@ -36,6 +36,7 @@ from metagraph.speech.addressing import TURN, speaking_spans
 from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import looks_of
 from metagraph.speech.peak_blinks import peak_blinks
+from metagraph.speech.turn_cues import LISTEN, look_at_turns, nod_to_clauses
 
 PARTNER = "partner"  # named point of the other's head; if there are several, with a number from 1
 TOLERANCE = 0.1  # seconds by which a stroke may miss its peak (section 7.2)
@@ -94,6 +95,12 @@ def drive_side(
         elif s.kind != "clause" and nods:
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
+    if nods:
+        head = project.graphs["head"]
+        small = any(LISTEN in a.tags for a in head.of(head.start or "", "gesture"))
+        listened = list(nod_to_clauses(conversation, side, small))
+        out += listened
+        busy += [(nod.at or 0.0, (nod.at or 0.0) + 1.0) for nod in listened]
     if "transition" in kinds["body"]:
         own = speaking_spans(conversation.sides[side].segments)
         for n, (start, end) in enumerate(own):
@@ -117,6 +124,7 @@ def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Ite
     if len(others) == 1:
         yield Place(id=PARTNER, at=0.0, name=PARTNER, point=heads[0])
         yield Look(id="look", at=0.0, to=PARTNER)
+        yield from look_at_turns(conversation, side, PARTNER, heads[0])
         return
     for n, other in enumerate(others):
         name = f"{PARTNER} {other + 1}"
