@@ -104,7 +104,7 @@ def test_of_looks_at_faces_as_many_as_were_observed_are_at_the_speaker_and_the_o
 
 def test_who_speaks_looks_away_more_than_who_listens(shares: dict[str, GazeShare]) -> None:
     away = {n: 1 - s.main - s.others for n, s in shares.items()}
-    assert away["speaking"] > 2 * away["addressed"] > 0.04
+    assert away["speaking"] > 1.3 * away["addressed"] > 0.1
 
 
 def test_who_speaks_to_all_looks_at_each(sample: Project) -> None:
