@@ -76,6 +76,11 @@ class RequestEdits:
             return idents
         return performance_edits.following(self.kept, idents, self.still())
 
+    def _begun(self) -> KeptPerformance:
+        """Return a performance without requests that does what was improvised."""
+        mode = self.session.onstage.improvised
+        return KeptPerformance(name=str(tr("Performance")), length=self._length(), mode=mode)
+
     def ask(self, ask: AnyRequest, text: str = "") -> None:
         """Add a request to the performance on stage or a new one; without a time, as soon as possible."""
         if self.live.stage is not None:
@@ -91,7 +96,7 @@ class RequestEdits:
         def edit(project: Project) -> Project:
             nonlocal made
             if made is None or made not in project.performances:
-                kept = KeptPerformance(name=str(tr("Performance")), length=self._length())
+                kept = self._begun()
                 project, made = performance_edits.add_performance(project, kept)
             return performance_edits.add_request(project, made, ask)
 
@@ -177,7 +182,7 @@ class RequestEdits:
         def edit(project: Project) -> Project:
             nonlocal done, stage
             if stage is None or stage not in project.performances:
-                kept = KeptPerformance(name=str(tr("Performance")), length=self._length())
+                kept = self._begun()
                 project, stage = performance_edits.add_performance(project, kept)
             done = paste_requests(project, stage, text, at)
             return done.project

@@ -252,8 +252,9 @@ class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
 class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """A kept performance: its requests and the seed it was played with. seed: null for the project's. length:
-    seconds. idle: whether the models fill the time without requests. stances: layer -> the stance it begins
-    in. mood, intensity: for all of it, null for the character's own.
+    seconds. idle: whether the models fill the time without requests. mode: what the character does while
+    they do, until a request says otherwise. stances: layer -> the stance it begins in. mood, intensity: for
+    all of it, null for the character's own.
     """
 
     name: Annotated[str, Meta(max_length=LONGEST_NAME)]
@@ -261,6 +262,7 @@ class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] | None = None
     length: Annotated[float, Meta(gt=0, le=LONGEST_PERFORMANCE)] = 60.0
     idle: bool = True
+    mode: Mode = "talking"
     stances: dict[Layer, str] = {}
     mood: MoodPoint = None
     intensity: Intensity = None

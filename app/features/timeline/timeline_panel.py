@@ -252,6 +252,12 @@ class TimelinePanel(QWidget):
         )
         fill.setCheckable(True)
         fill.setChecked(kept.idle)
+        gaps = menu.addMenu(tr("In the gaps"))
+        gaps.setEnabled(kept.idle)
+        for mode, words in IMPROVISED.items():
+            choice = gaps.addAction(words, partial(self._change, tr("Change how gaps are filled"), mode=mode))
+            choice.setCheckable(True)
+            choice.setChecked(kept.mode == mode)
         self._fill_moods(menu.addMenu(tr("Mood")), kept)
         own = menu.addAction(tr("Use its own seed"), self._own_seed)
         own.setCheckable(True)
@@ -294,7 +300,10 @@ class TimelinePanel(QWidget):
         self.session.transport.show_plan()
 
     def new(self) -> None:
-        self._keep(tr("New performance"), KeptPerformance(name=str(tr("Performance"))))
+        self._keep(
+            tr("New performance"),
+            KeptPerformance(name=str(tr("Performance")), mode=self.session.onstage.improvised),
+        )
 
     def duplicate(self) -> None:
         if self.performance.requests.kept is not None:

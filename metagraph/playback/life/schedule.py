@@ -386,7 +386,7 @@ class LifeDraw:
                 at = speech.start + peak
                 if at < start or at >= end:
                     continue
-                if uniform(self.seed, speech.id, "accent", str(n)) < self.life.accent_blinks:
+                if n == 0 or uniform(self.seed, speech.id, "accent", str(n)) < self.life.accent_blinks:
                     out.append((at, n == 0))
         return out
 

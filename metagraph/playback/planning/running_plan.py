@@ -132,10 +132,15 @@ def _on(running: RunningPlan, last: float, now: float, end: float) -> None:
 
 
 def list_kept_asks(kept: a.Performance) -> tuple[a.AnyRequest, ...]:
-    """Return what a kept performance asks for, its own mood first, which lasts under all others."""
-    if kept.mood is None and kept.intensity is None:
-        return kept.asks
-    return a.Feel(id="performance-mood", at=0.0, mood=kept.mood, intensity=kept.intensity), *kept.asks
+    """Return what a kept performance asks for: first its mood, which lasts under all others, and its mode,
+    where the models fill the gaps and no request sets one from the beginning.
+    """
+    own: list[a.AnyRequest] = []
+    if kept.mood is not None or kept.intensity is not None:
+        own.append(a.Feel(id="performance-mood", at=0.0, mood=kept.mood, intensity=kept.intensity))
+    if kept.idle and not any(isinstance(ask, a.Behave) and (ask.at or 0.0) <= 0.0 for ask in kept.asks):
+        own.append(a.Behave(id="performance-mode", at=0.0, mode=kept.mode))
+    return (*own, *kept.asks)
 
 
 @dataclass(frozen=True, slots=True)

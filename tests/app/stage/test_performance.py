@@ -234,7 +234,7 @@ def test_a_plan_that_cannot_be_made_is_told_and_the_next_edit_plans_again(stage,
         raise RuntimeError("out of ideas")
 
     with monkeypatch.context() as patch:
-        patch.setattr("app.stage.performance.make_plan", broken)
+        patch.setattr("app.stage.performance.improvise", broken)
         stage.replan()
         qtbot.waitUntil(lambda: bool(told))
     assert "out of ideas" in told[0]

@@ -12,7 +12,15 @@ from hypothesis import strategies as st
 from metagraph.graph.life import DIALS, Life, Manner, with_life
 from metagraph.graph.words import MODES
 from metagraph.playback.life.lane import Lane
-from metagraph.playback.life.schedule import AFTER_BLINK, BLOCK, Schedule, schedule, share
+from metagraph.playback.life.schedule import (
+    AFTER_BLINK,
+    BLOCK,
+    DOUBLE,
+    DOUBLES,
+    Schedule,
+    schedule,
+    share,
+)
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, Track, track_of
 from metagraph.playback.life.voice import Voice, voice_from_text
 from metagraph.playback.life.wanted import PARTNER
@@ -242,16 +250,20 @@ def gaps(lane: Lane) -> np.ndarray[Any, Any]:
     return np.diff(lane.starts)
 
 
-def test_at_rest_somebody_blinks_in_any_five_seconds_and_about_17_times_a_minute() -> None:
+def test_at_rest_somebody_blinks_about_17_times_a_minute_at_times_that_spread_as_peoples_do() -> None:
     found = drawn(end=HOUR)
-    assert gaps(found.blinks).max() <= 5.0 and gaps(found.blinks).min() >= 2.0
+    between = gaps(found.blinks)
+    assert between.min() > DOUBLE - 1e-6 and 0.6 < between.std() / between.mean() < 0.85
+    assert np.mean(between < 0.5) == pytest.approx(DOUBLES, abs=0.03), "a few come in pairs"
     assert share(found.blinks, 0, HOUR) == pytest.approx(17, abs=1)
 
 
-@pytest.mark.parametrize("mode", ["idle", "listening"])
-def test_who_does_not_speak_blinks_less(mode: Any) -> None:
+@pytest.mark.parametrize(("mode", "rate"), [("idle", 17), ("listening", 26)])
+def test_who_listens_blinks_as_often_as_in_conversation_and_who_idles_as_at_rest(
+    mode: Any, rate: float
+) -> None:
     quiet = drawn(track_of([ModeFrom("m", 0, mode)]), HOUR)
-    assert 14 <= share(quiet.blinks, 0, HOUR) <= 18
+    assert share(quiet.blinks, 0, HOUR) == pytest.approx(rate, abs=1.5)
 
 
 @pytest.mark.parametrize("rate", [3.0, 4.0, 5.0, 6.0])
@@ -340,7 +352,7 @@ def away(found: Schedule, end: float = HOUR) -> tuple[float, float, float]:
 
 
 @pytest.mark.parametrize(
-    ("mode", "rate", "length"), [("talking", 15, 0.93), ("listening", 7.2, 0.43), ("idle", 13.2, 2.2)]
+    ("mode", "rate", "length"), [("talking", 12.6, 1.95), ("listening", 10.2, 1.4), ("idle", 13.2, 2.2)]
 )
 def test_the_gaze_is_averted_as_often_and_as_long_as_documented(
     mode: Any, rate: float, length: float
@@ -353,7 +365,7 @@ def test_a_listener_looks_more_than_a_speaker_and_a_speaker_more_than_an_idler()
     shares = [
         away(drawn(track_of([ModeFrom("m", 0, mode)]), HOUR))[2] for mode in ("listening", "talking", "idle")
     ]
-    assert shares == sorted(shares) and shares[0] < 0.1 and 0.15 < shares[1] < 0.3 and 0.4 < shares[2] < 0.6
+    assert shares == sorted(shares) and 0.2 < shares[0] < 0.3 and 0.35 < shares[1] < 0.6 and shares[2] < 0.6
 
 
 def test_aversions_never_meet_and_never_begin_during_a_strict_look() -> None:

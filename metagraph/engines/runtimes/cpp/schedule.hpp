@@ -528,8 +528,9 @@ inline List<std::tuple<double, bool>> LifeDraw::accents(double start) {
             if (at < start || at >= end) {
                 continue;
             }
-            if (choice::uniform(this->seed, List<std::string>{speech->id, "accent", lang::text(n)})
-                < this->life->accent_blinks) {
+            if (n == 0
+                || choice::uniform(this->seed, List<std::string>{speech->id, "accent", lang::text(n)})
+                    < this->life->accent_blinks) {
                 out.push_back(std::tuple<double, bool>{at, n == 0});
             }
         }

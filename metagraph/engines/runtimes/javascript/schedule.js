@@ -444,7 +444,7 @@ export class LifeDraw {
         if (at < start || at >= end) {
           continue;
         }
-        if (uniform(this.seed, speech.id, "accent", String(n)) < this.life.accentBlinks) {
+        if (n === 0 || uniform(this.seed, speech.id, "accent", String(n)) < this.life.accentBlinks) {
           out.push([at, n === 0]);
         }
       }

@@ -461,7 +461,7 @@ namespace Metagraph
                     {
                         continue;
                     }
-                    if (ChoiceRules.Uniform(Seed, speech.Id, "accent", PlainText.Of(n)) < Life.AccentBlinks)
+                    if (n == 0 || ChoiceRules.Uniform(Seed, speech.Id, "accent", PlainText.Of(n)) < Life.AccentBlinks)
                     {
                         out_.Add((at, n == 0));
                     }

@@ -483,7 +483,7 @@ class LifeDraw:
 				var at = speech.start + peak
 				if at < start or at >= end:
 					continue
-				if Choice.uniform(self.seed_, [speech.id, "accent", str(n)]) < self.life.accent_blinks:
+				if n == 0 or Choice.uniform(self.seed_, [speech.id, "accent", str(n)]) < self.life.accent_blinks:
 					out.append([at, n == 0])
 		return out
 
