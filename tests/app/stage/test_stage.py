@@ -274,8 +274,13 @@ def test_performances_are_made_renamed_and_removed_from_the_panel(stage, monkeyp
     drive.wait(lambda: drive.performance.shown.length == 20.0)
     monkeypatch.setattr(QMessageBox, "question", lambda *args, **kwargs: QMessageBox.StandardButton.Yes)
     panel.remove()
-    assert panel.stage.currentText() == "Improvised"
-    assert [panel.stage.itemText(n) for n in range(panel.stage.count())] == ["Improvised", "greeting"]
+    assert panel.stage.currentText() == "Improvised, talking"
+    assert [panel.stage.itemText(n) for n in range(panel.stage.count())] == [
+        "Improvised, talking",
+        "Improvised, listening",
+        "Improvised, idle",
+        "greeting",
+    ]
     panel.stage.activated.emit(1)
     panel.stage.setCurrentIndex(1)
     assert drive.document.project.performances
