@@ -251,6 +251,7 @@ def reset_panels(window: Any) -> None:
     canvas.focus = None
     if not preview.session.transport.loop:
         preview.toggle_loop()
+    preview.looking._stepped_back = False  # else the camera is put back when the next clip plays
     if preview.bones:
         preview.toggle_bones()
     preview.frame_all()

@@ -4,6 +4,7 @@ says which of its parts runs.
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
 import shutil
@@ -38,6 +39,8 @@ SELDOM = ("--param", "ggc-min-heapsize=600000", "--param", "ggc-min-expand=200")
 PLAIN = ("-O0", "-fno-asynchronous-unwind-tables", "-fno-pic", "-no-pie")
 STRICT = ("-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti")
 FLAGS = (*SELDOM, *PLAIN, *STRICT)
+# The program is kept for as long as nothing of it changes: to compile it takes half a minute.
+KEPT = ROOT / ".pytest_cache" / "cpp"
 
 
 def compiled(source: Path, program: Path, *more: str | Path, standard: str = "c++17") -> Path:
@@ -259,7 +262,28 @@ def make_probe(folder: Path, parts: dict[str, str]) -> None:
             "CHOICES", "\n    ".join(choices), 1
         )
     )
-    compiled(source, folder / "probe", "-I", core, *made_of_unreal(folder, core))
+    places = ["-I", core, *made_of_unreal(folder, core)]
+    kept = KEPT / compiled_from(folder)
+    if not kept.is_file():
+        compiled(source, folder / "probe", *places)
+        shutil.rmtree(KEPT, ignore_errors=True)  # those of other sources are not needed any more
+        KEPT.mkdir(parents=True)
+        shutil.copy(folder / "probe", KEPT / "being copied")
+        (KEPT / "being copied").rename(kept)
+    shutil.copy(kept, folder / "probe")
+
+
+def compiled_from(folder: Path) -> str:
+    """Return a digest of what a program is compiled from and by: the files in a folder, what stands in for
+    Unreal, the options and the compiler.
+    """
+    version = subprocess.run(["g++", "--version"], capture_output=True, timeout=60, check=True).stdout
+    digest = hashlib.sha256(version + repr(FLAGS).encode())
+    for place in (folder, STAND_IN):
+        for path in sorted(path for path in place.rglob("*") if path.is_file()):
+            content = path.read_bytes()
+            digest.update(f"\n{path.relative_to(place)} {len(content)}\n".encode() + content)
+    return digest.hexdigest()
 
 
 def every_part(sample: Project) -> dict[str, str]:

@@ -19,6 +19,7 @@ from app.stage.conversation_plans import ConversationPlans, keep_conversation
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side
+from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture, Look, Place
 from preview.figure import SkinnedFigure
 
@@ -49,17 +50,25 @@ def conversation(folder: Path) -> Conversation:
     return Conversation(name="Greeting", length=8.0, sides=every)
 
 
-@pytest.fixture
-def talking(tmp_path: Path) -> Path:
-    """A project file with a conversation of id v9000."""
-    whole = absolute(
-        open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips"
-    )
-    path = tmp_path / "talk.metagraph.yaml"
+@pytest.fixture(scope="module")
+def saved(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a project file, talk.metagraph.yaml, and its conversation of id v9000; tests change
+    copies.
+    """
+    folder = tmp_path_factory.mktemp("talk")
+    talks = {"v9000": conversation(folder)}
+    whole = absolute(sample, ROOT / "sample_clips")
     save_project(
-        replace(whole, conversations={"v9000": conversation(tmp_path)}, lines={}, performances={}), path
+        replace(whole, conversations=talks, lines={}, performances={}), folder / "talk.metagraph.yaml"
     )
-    return path
+    return folder
+
+
+@pytest.fixture
+def talking(saved: Path, tmp_path: Path) -> Path:
+    """The project file with the conversation."""
+    shutil.copytree(saved, tmp_path, dirs_exist_ok=True)
+    return tmp_path / "talk.metagraph.yaml"
 
 
 @pytest.fixture

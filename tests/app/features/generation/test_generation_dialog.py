@@ -44,11 +44,9 @@ def model(tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def shown(drive, tmp_path, model, monkeypatch):
+def shown(drive, sample, tmp_path, model, monkeypatch):
     """The dialog on a saved project with two stances, a conversation of 20 s, and a model beside it."""
-    whole = absolute(
-        open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips"
-    )
+    whole = absolute(sample, ROOT / "sample_clips")
     talk = conversation(20.0)
     sides = tuple(
         msgspec.structs.replace(s, name=("Ada", "Ben")[n], audio="talk.wav", channel=n)
