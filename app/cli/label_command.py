@@ -173,8 +173,8 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         print(f"no bridge: {line}", file=sys.stderr)
     for why, clips in reasons(found.aside):
         print(f"aside: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
-    for clip, why in taken.left.items():
-        print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
+    for why, clips in reasons(taken.left):
+        print(f"left: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for message in errors:
         print(f"problem: {message}", file=sys.stderr)
     for problem in seen:
