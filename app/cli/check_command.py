@@ -8,9 +8,11 @@ from collections import Counter
 
 from app.cli.command_output import LONGEST, open_for_command
 from app.cli.journal_note import warn_of_journals
+from app.cli.showing_command import name_showing_command
 from metagraph.formats.project.verified import count_in_words
 from metagraph.graph.check import check_project as find_problems
 from metagraph.graph.check import grave
+from metagraph.graph.problem_groups import group_problems
 
 PLAYED = 600.0  # seconds
 
@@ -47,13 +49,22 @@ def run(options: Namespace) -> int:
         if not 0 < options.play <= LONGEST:
             raise ValueError(f"--play takes more than 0 and at most {LONGEST} seconds")
         problems += rehearse(project, options.play)
+        order = ("error", "warning", "hint")
+        problems.sort(key=lambda p: order.index(p.severity))
     warn_of_journals(options.project)
     counts = Counter(p.severity for p in problems)
     if options.json:
         fields = ("severity", "code", "message", "remedy", "layer", "stance", "action", "clip", "moment")
         print(json.dumps({"problems": [{f: getattr(p, f) for f in fields} for p in problems]}))
     else:
-        for p in problems:
-            print(f"{p.severity:8}{f'{p.layer}: ' if p.layer else ''}{p.message}\n        {p.remedy}")
+        for group in group_problems(project, problems):
+            first = group.problems[0]
+            where = f"{first.layer}: " if first.layer else ""
+            print(f"{first.severity:8}{where}{group.words}\n        {first.remedy}")
+            for p in group.problems if len(group.problems) > 1 else ():
+                print(f"          {p.message}")
+            for p in group.problems[:1]:
+                if command := name_showing_command(project, p, options.project):
+                    print(f"        See it: {command}")
         print(", ".join(count_in_words(counts[one], one) for one in ("error", "warning", "hint")))
     return 3 if grave(problems, options.strict) else 0

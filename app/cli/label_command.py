@@ -111,6 +111,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from app.cli.command_output import say
     from app.cli.label_pictures import draw_label_pictures
     from app.cli.label_report import format_label_report
+    from app.cli.showing_command import name_showing_command
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import count_alike
     from metagraph.graph.check import check_project, grave
@@ -173,12 +174,13 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         print(f"no bridge: {line}", file=sys.stderr)
     for why, clips in reasons(found.aside):
         print(f"aside: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
-    for clip, why in taken.left.items():
-        print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
+    for why, clips in reasons(taken.left):
+        print(f"left: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for message in errors:
         print(f"problem: {message}", file=sys.stderr)
     for problem in seen:
-        print(f"seen: {problem.message}", file=sys.stderr)
+        command = name_showing_command(taken.project, problem, path)
+        print(f"seen: {problem.message}{f'  [{command}]' if command else ''}", file=sys.stderr)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
         f"{len(look)} need a look" + (f"\n{place}" if changed else "")

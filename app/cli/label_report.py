@@ -5,9 +5,6 @@ all the rest by stance.
 from __future__ import annotations
 
 import base64
-import os
-import shlex
-import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
@@ -15,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.label_page import SCRIPT, STYLE
+from app.cli.showing_command import name_window_command, quote_command
 from app.look.plural import count_clips
 from app.translation import tr_plural
 from metagraph.common.xml_text import escape
@@ -159,11 +157,7 @@ def _cards(
 
 def open_command(project: Project, clip: str, path: Path) -> str:
     """Return what to type in a terminal to see a clip in the window."""
-    name = project.clips[clip].name
-    if name.startswith("-") or sum(entry.name == name for entry in project.clips.values()) > 1:
-        name = clip
-    words = ["metagraph", "window", str(path.resolve()), "--clip", name]
-    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
+    return quote_command(name_window_command(project, clip, path.resolve()))
 
 
 def _data_of(project: Project, found: Proposals, p: Proposal, taken: AcceptedProposals) -> str:

@@ -15,6 +15,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.fixes import Fix
+from app.stage.remedies import end_in, fix_gap, move_to
 from app.translation import tr, tr_plural
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Action, Layer, Project
@@ -146,7 +147,7 @@ def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | No
         )
     if fits is not None and action.kind == "transition" and jump.edge == "ends" and fits.id != action.stance:
         return tr("It looks like '{name}' there. End it in that stance.", name=fits.name), Fix(
-            tr("End in '{name}'", name=fits.name), action.id, end=fits.id
+            tr("End in '{name}'", name=fits.name), action.id, does=end_in, args=(action.id, fits.id)
         )
     if jump.change:
         seconds = next(iter(jump.change.values()))
@@ -154,8 +155,10 @@ def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | No
             tr("Blend {seconds:.2f} s", seconds=seconds), action.id, {"timing": dict(jump.change)}
         )
     if fits is not None:
-        return tr("It looks like '{name}' there. Move it to that stance.", name=fits.name), None
-    return tr("Trim it, lengthen its blend, or move it to a stance that it fits."), None
+        words = tr("It looks like '{name}' there. Move it to that stance.", name=fits.name)
+        return words, move_to(action, fits.id, fits.name)
+    words = tr("Trim it, lengthen its blend, or move it to a stance that it fits.")
+    return words, None if jump.edge == "loops" else fix_gap(project, action, jump.edge)
 
 
 def merge_problems(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Problem, ...]:

@@ -12,7 +12,8 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.compatibility_state import Compatibility, merge_problems
-from app.stage.fixes import Fix, fix_clips, fix_unreachable
+from app.stage.fixes import Fix, fix_unreachable
+from app.stage.remedies import fix_clips
 from app.stage.session import StageSession
 from app.translation import tr, tr_phrase
 from metagraph.graph.check import check_project

@@ -13,6 +13,7 @@ from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
 from metagraph.playback.timing.phases import phases
+from metagraph.suggest.flags import is_unlikely
 from metagraph.suggest.jumps.soft_blends import soften_blends
 from metagraph.suggest.proposal import Proposal, Proposals, RestMoment, StancePlace, plain_stance_name
 from metagraph.suggest.whole_body import CARRIER
@@ -37,7 +38,8 @@ def accept(
 ) -> AcceptedProposals:
     """Return the project with all proposals placed that have at least the confidence `above`, of some clips
     or all. Stances are made of the clips that rest in them, else held in a still moment of another clip.
-    Clips of a stance that nothing shows are left out, with the reason.
+    Clips of a stance that nothing shows are left out, with the reason; so are, where `clips` does not name
+    them, those whose stance is unlikely.
     """
     wanted = [
         p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips
@@ -45,6 +47,8 @@ def accept(
     left: dict[str, str] = {
         p.clip: phrase("only {sure:.0%} certain", sure=p.confidence) for p in wanted if p.confidence < above
     }
+    if clips is None:
+        left |= {p.clip: _why_unlikely(p) for p in wanted if is_unlikely(p) and p.clip not in left}
     wanted = [p for p in wanted if p.clip not in left]
     keys = {
         key: key for key, place in found.places.items() if place.there and project.stance(key) is not None
@@ -71,6 +75,15 @@ def accept(
             left[p.clip] = describe_error(error)
     project = soften_blends(_begun(before, project), {action.id for action in before.actions()})
     return AcceptedProposals(project, tuple(placed), left, held)
+
+
+def _why_unlikely(p: Proposal) -> str:
+    """Return why nobody but a person can say where a clip belongs."""
+    ends = [b for b in (p.stance, p.end_stance if p.kind.value == "transition" else None) if b is not None]
+    if not ends:
+        return phrase("nothing says which stance it belongs to")
+    least = min(ends, key=lambda b: b.confidence)
+    return phrase("no stance is likely: {reason}", reason=least.reason)
 
 
 def _begun(before: Project, project: Project) -> Project:

@@ -27,8 +27,10 @@ STROKES: Mapping[Layer, float] = {"arms": 0.15, "head": 0.08}  # heights a secon
 HANGING = 0.1  # heights that hands go while nothing is done with them
 SHIFTS = 0.05  # heights that the hips go to a side: farther is a weight that is shifted, no rest
 SHRUGS = 0.0065  # heights that shoulders rise: no breath lifts them so far
-LOOKS = 0.06  # heights that the head goes: farther is a look round
+LOOKS = 0.035  # heights that the head goes: farther is a look round, or a lean
 STRIDE = 0.05  # heights by which each foot passes the other in a walk, at least
+IDLE_HANDS = 0.2  # heights a second: the hands of no idle go faster at their fastest
+STEADY = 0.6  # of `LayerTraits.steady`, above which a movement goes on all the time
 BREATHES = 0.008  # heights a second that arms on a breathing chest move while the head moves
 SEVERAL = 8  # clips from which on the movement of the calmest belongs to the recording
 CALMEST = 0.05  # share of the clips of a set that move only as it trembles
@@ -90,9 +92,17 @@ def resting(traits: Traits) -> float:
         - 1.5 * log(fastest / 0.05)
         + 3.0 * x.steady
         - 6.0 * max(0.0, apart - 0.3)
+        - _busy_hands(traits)
         - (_busy_idle(traits) if traits.layers["arms"].extent < HANGING else 0.0)
         + flows * (max(0.0, -long) + small)
     )
+
+
+def _busy_hands(traits: Traits) -> float:
+    """Return what speaks against a rest in hands that go fast all the time, as in clapping."""
+    arms = traits.layers["arms"]
+    always = min(1.0, max(0.0, (arms.steady - STEADY) / (1 - STEADY)))
+    return 3.0 * always * max(0.0, log(max(arms.peak, 1e-3) / IDLE_HANDS))
 
 
 def _busy_idle(traits: Traits) -> float:
@@ -102,7 +112,7 @@ def _busy_idle(traits: Traits) -> float:
     return (
         min(4.0, 40.0 * max(0.0, traits.sway - SHIFTS))
         + min(3.0, 300.0 * max(0.0, traits.shrug - SHRUGS))
-        + min(2.0, 20.0 * max(0.0, traits.layers["head"].extent - LOOKS))
+        + min(6.0, 120.0 * max(0.0, traits.layers["head"].extent - LOOKS))
     )
 
 

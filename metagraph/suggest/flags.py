@@ -23,6 +23,7 @@ ALIKE = 0.3  # share of a check's gain that each other clip with the same words 
 LOOK = 0.2  # probability of being wrong; from this on a check is worth its time
 PLACED = 0.6  # confidence of a stance; below it a clip may be on the wrong one, whatever else is certain
 LOST = 0.5  # confidence below which a stance is almost unknown
+UNLIKELY = 0.4  # confidence of a stance; below it a clip is not placed unless somebody says so
 WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
 
 
@@ -60,13 +61,24 @@ def needs_look(p: Proposal, left: Container[str] = ()) -> bool:
     return p.clip in left or chance_wrong(p) > LOOK
 
 
+def is_unlikely(p: Proposal) -> bool:
+    """Return whether the stance of a proposal, or the one that a transition ends in, is so unlikely that only
+    a person can place its clip. A resting clip is itself what its stance looks like.
+    """
+    return p.kind.value != "stance" and _least_certain_stance(p) < UNLIKELY
+
+
+def _least_certain_stance(p: Proposal) -> float:
+    where = [p.stance, p.end_stance] if p.kind.value == "transition" else [p.stance]
+    return min(belief.confidence if belief is not None else 0.0 for belief in where)
+
+
 def chance_wrong(p: Proposal) -> float:
     """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong where
     nobody can be sure of its stance, or of the one that a transition ends in: a clip that begins 40 cm from
     its stance belongs elsewhere, whatever its name says.
     """
-    where = [p.stance, p.end_stance] if p.kind.value == "transition" else [p.stance]
-    sure = min(belief.confidence if belief is not None else 0.0 for belief in where)
+    sure = _least_certain_stance(p)
     return max(_fitted_chance(p), 1 - sure if sure < PLACED else 0.0)
 
 

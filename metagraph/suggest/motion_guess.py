@@ -13,6 +13,7 @@ from math import exp, log
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
 from metagraph.suggest.clip_measures import (
+    HANGING,
     SUREST,
     TYPICAL,
     energy,
@@ -31,8 +32,11 @@ STRAIGHT = 0.65
 ELSEWHERE = 0.1  # heights from the body's usual pose; resting clips beyond it are of the body: sitting, lying
 LIFE = 0.11  # share of hips and legs in the movement of a resting clip; above it the whole body breathes
 SMALL = 0.12  # heights the hands go, below which they say little
+RETURNS = 4.0  # logit that the way of a clip counts for where its ends do not tell stances apart
 ONLY = 0.85  # the least confidence of the stance if there is only one
 CLEAREST = 0.99  # the confidence of the stance for a pose that is in it
+NODS = 2.5  # seconds up to which a longer movement of the head is likelier a gesture
+LOOKS_ROUND = 3.5  # seconds from which on it is the likelier a look round, the longer it lasts
 ALONE = 0.5  # of the arms' energy, more on one side than on the other, from which on it is one-armed
 
 
@@ -82,7 +86,7 @@ def guess(
         rank_stances(shapes, posed.names, posed.last),
     )
     begins, leaves = likely(shapes, posed.names, posed.first), likely(shapes, posed.names, posed.last)
-    moved = _passing(begins, leaves, _sigmoid(_moving(posed, layer.value, starts, ends)))
+    moved = _passing(begins, leaves, _moving(posed, layer.value, starts, ends))
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
     walking = is_walk(traits)
     rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
@@ -221,12 +225,17 @@ def _beside(
 
 
 def _passing(begins: Likely, ends: Likely, otherwise: float) -> float:
-    """Return the probability that a clip passes from one stance to another. `otherwise` is the probability if
-    it is unknown whether its ends are of stances.
+    """Return the probability that a clip passes from one stance to another. `otherwise` is the logit if it is
+    unknown whether its ends are of stances. It also counts, by up to RETURNS, where stances are so close that
+    the ends hardly say which they are of: a clip that goes far and comes back is none that passes.
     """
     same = sum(p * q for p, shape in begins for q, other in ends if shape is other)
     known = sum(p for p, _ in begins) * sum(p for p, _ in ends)
-    return known - same + (1 - known) * otherwise
+    unlike = min(1.0, max(0.0, (known - same) / known)) if known > 0 else 0.0
+    doubt = 4 * unlike * (1 - unlike)
+    if 0 < unlike < 1:
+        unlike = _sigmoid(log(unlike / (1 - unlike)) + doubt * min(0.0, max(-RETURNS, otherwise)))
+    return known * unlike + (1 - known) * _sigmoid(otherwise)
 
 
 def _cm(length: float) -> str:
@@ -404,12 +413,14 @@ def _rest_telling(traits: Traits, layer: Layer) -> float:
     bouts = max((arms, head, body), key=lambda y: y.peak).bouts
     nods, leans = _log(head.peak, 0.12), _log(body.peak, 0.1)
     if layer == "head":
+        hang = 1 / (1 + (arms.extent / HANGING) ** 8)
         rolls = _spread(head, "crown", 0) if bouts > 2 else 0.0  # a neck that is stretched from side to side
         return (
             1.6 * nods
             - 3.0 * _clipped((rolls - 0.03) / 0.02, 0, 1)
             + (2.7 if bouts == 1 else 0.0)
-            + 2.7 * log(traits.duration + 0.1)
+            + 2.7 * log(traits.duration - hang * max(0.0, traits.duration - NODS) + 0.1)
+            - hang * min(3.0, 1.5 * max(0.0, traits.duration - LOOKS_ROUND))
             - 0.3 * _log(head.extent, 0.03)
             - 2.0
         )

@@ -7,7 +7,6 @@ to the stance in which the clips with that word begin. Then each clip is assigne
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
@@ -42,6 +41,7 @@ from metagraph.suggest.stances.known import (
     settle_stances,
     split_stances,
 )
+from metagraph.suggest.stances.most_used import assign_most_used
 from metagraph.suggest.stances.places import ClipEvidence, StancePlaces
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.vote_fusion import Agreed, combine
@@ -191,6 +191,7 @@ def propose(
         each.beside = each.motion
         if each.traits is not None and each.motion is not None and each.motion.layer.value != each.layer:
             each.beside = guess(each.traits, shapes, each.layer, each.posture, each.cycle)
+        each.away = _away_from(shapes, each)
         taught = each.learned.get("kind")
         if why and (taught is None or taught.confidence < TAUGHT):
             aside[c] = why
@@ -222,7 +223,23 @@ def _placed(
     """Return the stances there are, and what is proposed for each clip."""
     places = StancePlaces(project, heard, shapes)
     out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
-    return places, _somewhere(out, places.by_key)
+    return places, assign_most_used(out, places.by_key, _astray(heard))
+
+
+def _away_from(shapes: Mapping[Layer, Sequence[Shape]], each: ClipEvidence) -> float:
+    """Return how far a clip that does not rest begins from the nearest stance of its layer, heights; 0 where
+    that is not known.
+    """
+    kind = each.agreed("kind", len(KINDS))
+    if each.traits is None or each.beside is None or kind is None or kind.belief.value == "stance":
+        return 0.0
+    posed = each.posture or each.traits.layers[each.layer]
+    return next((away for away, _ in rank_stances(shapes.get(each.layer, ()), posed.names, posed.first)), 0.0)
+
+
+def _astray(heard: Iterable[ClipEvidence]) -> dict[str, float]:
+    """Return how many metres from the nearest stance those clips begin that begin in none."""
+    return {x.clip: x.away * x.traits.height for x in heard if x.traits is not None and x.is_astray}
 
 
 def _going_away(out: Mapping[str, Proposal], traits: Mapping[str, Traits]) -> dict[str, str]:
@@ -349,40 +366,14 @@ def _layer_of(each: ClipEvidence) -> Agreed[Layer] | None:
     return each.agreed("layer", len(LAYERS))
 
 
-def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, StancePlace]) -> dict[str, Proposal]:
-    """Return proposals. Those without a stance get the stance that most clips of their layer are in; one is
-    made if there is none.
-    """
-    used = Counter(p.stance.value for p in proposals.values() if p.stance is not None)
-    out = {}
-    for clip, p in proposals.items():
-        if p.stance is None:
-            layer = p.layer.value
-            mine = [key for key, place in places.items() if place.layer == layer]
-            key = max(mine, key=lambda k: used[k]) if mine else f"new {layer} rest"
-            places.setdefault(key, StancePlace(key, layer, "rest"))
-            p = replace(
-                p,
-                stance=Belief(
-                    key,
-                    0.3,
-                    phrase("no stance is named; most clips are in this one")
-                    if mine
-                    else phrase("no stance is named, and there is no other"),
-                ),
-            )
-        out[clip] = p
-    return out
-
-
 def _spare(
-    proposals: Mapping[str, Proposal], others: Iterable[ClipEvidence], places: StancePlaces
+    proposals: Mapping[str, Proposal], others: Collection[ClipEvidence], places: StancePlaces
 ) -> dict[str, Spare]:
     """Return what skipped clips would be. They do not define stances."""
     by_key = dict(places.by_key)
     mine = {each.clip: _proposal(each, places, True) for each in others}
     known = {clip: p for clip, p in mine.items() if p is not None}
-    found = _somewhere({**proposals, **known}, by_key)
+    found = assign_most_used({**proposals, **known}, by_key, _astray(others))
     out = {}
     for clip in known:
         p = found[clip]

@@ -344,7 +344,7 @@ def test_a_gesture_that_is_almost_all_blends_is_hardly_seen(
 
 
 def test_a_gesture_that_is_hardly_seen_repeats_by_its_button_and_is_seen(toy: Any) -> None:
-    from app.stage.fixes import fix_clips
+    from app.stage.remedies import fix_clips
 
     project = toy.project()
     wave = toy.id(project, "rest beat lf")  # 0.9 s
@@ -382,7 +382,7 @@ def test_what_repeats_may_blend_for_longer_than_its_part(toy: Any) -> None:
 def test_what_travels_is_reported_and_keeping_it_in_place_helps(
     toy: Any, name: str, metres: float, words: str
 ) -> None:
-    from app.stage.fixes import fix_clips
+    from app.stage.remedies import fix_clips
     from tests.motion.test_in_place import going
 
     project = toy.project("body")
@@ -427,7 +427,7 @@ def test_travel_counts_on_layers_that_move_the_legs_and_by_the_figure_s_height(t
 def test_a_file_that_is_longer_or_shorter_since_is_reported_and_times_can_be_scaled_or_kept(
     toy: Any, seconds: float, reported: bool
 ) -> None:
-    from app.stage.fixes import fix_clips
+    from app.stage.remedies import fix_clips
 
     project = toy.project()
     wave = toy.id(project, "rest wave rt")  # 1.2 s
@@ -467,7 +467,7 @@ def test_base_pose_and_contacts_are_scaled_too_and_a_speed_keeps_what_was_timed(
 
 
 def test_a_stroke_that_does_not_play_is_an_error_and_can_be_cleared(toy: Any) -> None:
-    from app.stage.fixes import fix_clips
+    from app.stage.remedies import fix_clips
 
     project = toy.project()
     wave = toy.id(project, "rest wave rt")

@@ -16,9 +16,9 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.suggest.clip_measures import is_walk
-from metagraph.suggest.motion_guess import guess
+from metagraph.suggest.motion_guess import _passing, guess
 from metagraph.suggest.propose import accept, propose
-from metagraph.suggest.stances.known import list_known_stances
+from metagraph.suggest.stances.known import Shape, list_known_stances
 from metagraph.suggest.traits import list_known_traits, traits_of
 
 RATE = 30.0
@@ -153,3 +153,37 @@ def test_what_was_looked_at_before_is_known_at_once(sample: Project) -> None:
     assert list_known_traits(replace(sample, clips=fresh)) == {}
     traits_of(sample)
     assert set(list_known_traits(sample)) == set(sample.clips)
+
+
+def test_where_stances_are_close_a_clip_that_comes_back_passes_to_none() -> None:
+    one, two = (Shape("", n, "arms", (), np.zeros((1, 0, 3)), (), n, 0.0, 1.0) for n in "ab")
+    begins, ends = [(0.65, one), (0.35, two)], [(0.6, one), (0.4, two)]
+    unknown, back, on = (_passing(begins, ends, z) for z in (0.0, -20.0, 20.0))
+    assert back < 0.05 < unknown == pytest.approx(on) and 0.4 < unknown < 0.6
+    surely = _passing([(1.0, one)], [(1.0, two)], -20.0)
+    assert surely == pytest.approx(1.0), "what ends in another stance passes, however it got there"
+
+
+@pytest.mark.parametrize("seconds", [4.0, 6.0])
+@pytest.mark.parametrize(
+    "turns",
+    [{"Neck": (0, 20, 0), "Head": (0, 20, 0)}, {"Chest": (0, 0, 8), "Spine": (0, 0, 8)}],
+    ids=["a look round", "a lean"],
+)
+def test_an_idle_that_looks_round_or_leans_is_a_fidget_and_no_stance(seconds: float, turns: Any) -> None:
+    from tests.suggest.test_cycles import added, labelled, moved, proposal
+
+    clip = moved("var", seconds, lambda x: added({}, turns, np.sin(np.pi * x) ** 2))
+    project, found = labelled(clip, named=False)
+    assert proposal(project, found, "var").kind.value == "fidget"
+
+
+def test_claps_that_go_on_for_seconds_are_a_gesture_and_no_stance() -> None:
+    from tests.suggest.test_cycles import AHEAD, added, labelled, moved, proposal
+
+    swing = {"LeftUpperArm": (0, 20, 0), "RightUpperArm": (0, -20, 0)}
+    for seconds, claps in ((1.5, 3), (3.0, 6)):
+        clip = moved("var", seconds, lambda x, n=claps: added(AHEAD, swing, np.sin(2 * np.pi * n * x)))
+        project, found = labelled(clip, named=False)
+        p = proposal(project, found, "var")
+        assert p.kind.value == "gesture" and p.kind.confidence > 0.6

@@ -43,6 +43,7 @@ from app.stage.fixes import Fix
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop, tr_phrase, tr_plural
 from metagraph.graph.problem import Problem
+from metagraph.graph.problem_groups import ProblemGroup, group_problems
 
 MOST = 500  # rows; a project with more has one cause, seen long before
 FIX = 3  # the column of buttons
@@ -217,20 +218,21 @@ class ProblemsPanel(QWidget):
         self.tree.clear()
         colors = {"error": look.error, "warning": look.warning, "hint": look.dim}
         project = self.session.document.project
-        for problem in self.problems[:MOST]:
-            stance = project.stance(problem.stance)
-            drawn = project.state(problem.state)
-            inside = stance.name if stance else drawn.name if drawn else ""
-            place = ", ".join(x for x in (tr(problem.layer or ""), inside) if x) or tr("project")
-            fix = fixes.get(problem)
-            message, remedy = tr_phrase(problem.message), tr_phrase(problem.remedy)
-            item = QTreeWidgetItem([message, place, remedy, fix.words if fix is not None else ""])
-            item.setIcon(0, icons.icon("warning", colors[problem.severity]))
-            item.setForeground(0, QColor(look.text if problem.severity != "hint" else look.dim))
-            item.setToolTip(0, f"{tr(problem.severity)}: {message}. {remedy}")
-            if fix is not None:
-                item.setToolTip(FIX, fix.tip)
-            item.setData(0, ROLE, problem)
+        groups = group_problems(project, self.problems[:MOST])
+        self.tree.setRootIsDecorated(any(len(group.problems) > 1 for group in groups))
+        for group in groups:
+            if len(group.problems) == 1:
+                self.tree.addTopLevelItem(self._row(group.problems[0], colors, look.text))
+                continue
+            item = self._row(group.problems[0], colors, look.text)
+            fixes_of = self._together(group)
+            words = tr_plural("Fix {count:,} problem", "Fix {count:,} problems", len(fixes_of))
+            item.setText(0, tr_phrase(group.words))
+            item.setText(FIX, words if fixes_of else "")
+            item.setToolTip(0, tr("Open the line to see each of them."))
+            item.setToolTip(FIX, self.all.toolTip() if fixes_of else "")
+            item.setData(0, ROLE, group)
+            item.addChildren([self._row(problem, colors, look.text) for problem in group.problems])
             self.tree.addTopLevelItem(item)
         self._share_out()
         if fresh:
@@ -244,6 +246,28 @@ class ProblemsPanel(QWidget):
         count = len(self.fixable())
         self.all.setVisible(count > 1)
         self.all.setText(tr_plural("Fix {count:,} problem", "Fix {count:,} problems", count))
+
+    def _row(self, problem: Problem, colors: Mapping[str, str], text: str) -> QTreeWidgetItem:
+        """Return the row of a problem. colors: of the icons, by severity."""
+        project = self.session.document.project
+        stance, drawn = project.stance(problem.stance), project.state(problem.state)
+        inside = stance.name if stance else drawn.name if drawn else ""
+        place = ", ".join(x for x in (tr(problem.layer or ""), inside) if x) or tr("project")
+        fix = self.fixes.get(problem)
+        message, remedy = tr_phrase(problem.message), tr_phrase(problem.remedy)
+        item = QTreeWidgetItem([message, place, remedy, fix.words if fix is not None else ""])
+        item.setIcon(0, icons.icon("warning", colors[problem.severity]))
+        item.setForeground(0, QColor(text if problem.severity != "hint" else colors["hint"]))
+        item.setToolTip(0, f"{tr(problem.severity)}: {message}. {remedy}")
+        if fix is not None:
+            item.setToolTip(FIX, fix.tip)
+        item.setData(0, ROLE, problem)
+        return item
+
+    def _together(self, group: ProblemGroup) -> list[Fix]:
+        """Return the fixes of a group that can be done together."""
+        found = (self.fixes.get(p) for p in group.problems)
+        return [fix for fix in found if fix is not None and not fix.alone]
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and watched is self.tree.viewport():
@@ -266,12 +290,16 @@ class ProblemsPanel(QWidget):
         self.play.setText(tr("Playing…") if playing else tr("Play and check"))
 
     def fixable(self) -> list[Fix]:
-        """Return everything that can be mended with a press."""
-        return [fix for p in self.problems if (fix := self.fixes.get(p)) is not None]
+        """Return what can be mended together, with one press, without taking anything away."""
+        found = (self.fixes.get(p) for p in self.problems)
+        return [fix for fix in found if fix is not None and not fix.alone]
 
     def mend(self, item: QTreeWidgetItem) -> None:
         """Mend the problem of a row, if that can be done with a press."""
         problem = item.data(0, ROLE)
+        if isinstance(problem, ProblemGroup):
+            self.mend_wanted.emit(self._together(problem))
+            return
         fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
         if fix is not None:
             self.session.jump(problem.layer, problem.stance, fix.action or problem.action)
@@ -284,8 +312,11 @@ class ProblemsPanel(QWidget):
         """Return what can be done about a row."""
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction(tr("Go to the place"), lambda: self._go(item))
         problem = item.data(0, ROLE)
+        if isinstance(problem, ProblemGroup):
+            menu.addAction(tr("Open"), lambda: item.setExpanded(True))
+        else:
+            menu.addAction(tr("Go to the place"), lambda: self._go(item))
         fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
         if fix is not None:
             menu.addAction(fix.words, lambda: self.mend(item))
@@ -303,6 +334,8 @@ class ProblemsPanel(QWidget):
 
     def _go(self, item: QTreeWidgetItem, column: int = 0) -> None:
         problem = item.data(0, ROLE)
+        if isinstance(problem, ProblemGroup) and column != FIX:
+            item.setExpanded(not item.isExpanded())
         if isinstance(problem, Problem) and column != FIX:
             self.session.jump(
                 problem.layer, problem.stance, problem.action or problem.state or problem.link, problem.clip

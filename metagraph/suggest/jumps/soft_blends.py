@@ -8,7 +8,7 @@ from collections.abc import Collection
 from math import ceil, floor
 
 from metagraph.graph import edits
-from metagraph.graph.checks.end_gaps import TALL, UNHURRIED, find_end_gaps
+from metagraph.graph.checks.end_gaps import FAR, LONG, TALL, UNHURRIED, find_end_gaps
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.repeating import LEAST_CYCLE, cycle_of, usual_repeat
 
@@ -25,7 +25,7 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
     """
     if project.skeleton is None:
         return project
-    pace, near = (x * project.skeleton.height / TALL for x in (UNHURRIED, NEAR))
+    pace, near, shows = (x * project.skeleton.height / TALL for x in (UNHURRIED, NEAR, FAR))
     changes = {}
     for layer in LAYERS:
         for action in project.graphs[layer].actions.values():
@@ -41,7 +41,9 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
                 repeat = max(repeat, round(cycle * min(ceil(needed / cycle), floor(LONGEST / cycle)), 3))
                 most = SHARE_REPEATED * repeat
             into, out = (
-                min(most, gap / own) if (gap := far.get(edge, 0.0)) > near else 0.0
+                min(most, max(gap / own, LONG if gap > shows else 0.0))
+                if (gap := far.get(edge, 0.0)) > near
+                else 0.0
                 for edge in ("begins", "ends")
             )
             longer = {

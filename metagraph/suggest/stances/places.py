@@ -37,12 +37,14 @@ ONE_STANCE = 0.12  # heights within which poses that are called alike are one st
 LEAST_VOTES = 0.5  # clips, below which a word says nothing about a pose
 MEANS = 0.6  # of a word's clips that lie in another's pose, from which on it means the same stance
 NEVER = 0.3  # of how sure a source is at least, so that its vote counts
+ASTRAY = 0.15  # heights from every stance, beyond which a first pose says nothing about where a clip belongs
 
 
 @dataclass
 class ClipEvidence:
     """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer
     that all agree on. posture: its poses as stances are told. cycle: whether it is one cycle of a gesture.
+    away: how far it begins from the nearest stance of its layer, heights; 0 where that is not known.
     """
 
     clip: str
@@ -55,6 +57,7 @@ class ClipEvidence:
     layer: Layer = "arms"
     learned: dict[str, Belief[str]] = field(default_factory=dict)
     cycle: bool = False
+    away: float = 0.0
 
     def votes(self, what: str) -> list[Belief[Any]]:
         """Return what is believed of a field, source by source."""
@@ -63,8 +66,15 @@ class ClipEvidence:
         return [b for b in found if b is not None and b.confidence >= NEVER]
 
     @property
+    def is_astray(self) -> bool:
+        """Return whether it begins so far from every stance that its pose does not say to which it belongs: a
+        wave that was cut while the hand is up.
+        """
+        return self.away > ASTRAY
+
+    @property
     def begins(self) -> Likely:
-        return self.beside.begins if self.beside is not None else ()
+        return self.beside.begins if self.beside is not None and not self.is_astray else ()
 
     @property
     def ends(self) -> Likely:
@@ -198,8 +208,10 @@ class StancePlaces:
         if said is not None and told is not None and (key := self._of_word.get(told)) is not None:
             out.append(Belief(key, said.confidence * self._trusted.get(told, 1.0), said.reason))
         seen: Belief[Shape] | None = getattr(each.beside, what, None)
+        astray = what == "stance" and each.is_astray
         if (
             seen is not None
+            and not astray
             and seen.value.layer == layer
             and (key := self._of_shape.get(id(seen.value))) is not None
         ):

@@ -7,6 +7,8 @@ from typing import Any
 import pytest
 
 from metagraph.graph import edits
+from metagraph.graph.check import check_project
+from metagraph.graph.checks.end_gaps import LONG
 from metagraph.graph.model import Project
 from metagraph.suggest.jumps.soft_blends import repeat_actions, soften_blends
 
@@ -46,3 +48,13 @@ def test_blends_of_other_actions_stay(project: Project, toy: Any) -> None:
     after = repeat_actions(project, [wave])
     assert [a for a in after.actions() if a.id != wave] == [a for a in project.actions() if a.id != wave]
     assert soften_blends(project, [wave]).action(wave) == project.action(wave)
+
+
+def test_a_gap_that_shows_is_blended_as_a_movement_of_its_own(project: Project, toy: Any) -> None:
+    wave = toy.id(project, "rest wave rt")
+    off = edits.update_actions(project, [wave], timing={"start": 0.25, "end": None})
+    codes = lambda p: {x.code for x in check_project(p) if x.action == wave}  # noqa: E731
+    assert "far-start" in codes(off)
+    after = soften_blends(off)
+    assert "far-start" not in codes(after)
+    assert after.action(wave).timing.blend_in == pytest.approx(LONG)  # type: ignore[union-attr]
