@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -14,6 +15,8 @@ from metagraph.motion.dense_keys import CLOSED, count_steps, fill_between_keys
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
+
+MEASURES = 4096  # of a clip that are remembered
 
 
 class ClipError(ValueError):
@@ -183,6 +186,19 @@ class Clip:
         low = np.minimum(at.astype(np.int64), max(0, self.frames - 2))
         high = np.minimum(low + 1, self.frames - 1)
         return low, high, (at - low).astype(np.float32)
+
+    def measured(self, what: Hashable, measure: Callable[[], float]) -> float:
+        """Return a number that `measure` finds of this clip, and that is remembered under `what`."""
+        known = self._measures
+        if what not in known:
+            if len(known) >= MEASURES:
+                known.clear()
+            known[what] = measure()
+        return known[what]
+
+    @cached_property
+    def _measures(self) -> dict[Hashable, float]:
+        return {}
 
     def trimmed(self, first: int, last: int | None = None) -> Clip:
         """Return the frames `first` to `last` (excluded). Raises ClipError if none are left."""
