@@ -198,6 +198,7 @@ def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
     clip = motion if motion is not None else loop
     if clip is None:
         raise ValueError(f"the file of clip '{project.clips[state.action.clip].name}' is missing")
+    clip = clip.dense
     start, end = project.span(playing)
     seconds = seconds_played(playing.kind, playing.timing, start, end)
     frames = max(2, round(seconds * clip.fps) + 1)
@@ -233,11 +234,13 @@ def _played(action: Action, clip: Clip, start: float, end: float, times: Array) 
 
 
 def clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
-    """Return a clip's motion; where its only action repeats a part of it, that part as often as it plays.
-    None if its file is missing.
+    """Return a clip's motion, with dense keys; where its only action repeats a part of it, that part as often
+    as it plays. None if its file is missing.
     """
-    motion, uses = entry.motion, project.uses.get(entry.id, ())
-    if motion is not None and len(uses) == 1:
+    if entry.motion is None:
+        return None
+    motion, uses = entry.motion.dense, project.uses.get(entry.id, ())
+    if len(uses) == 1:
         action = uses[0]
         start, end = project.span(action)
         if cycle_of(action.kind, action.timing, start, end) <= 0:
@@ -245,10 +248,7 @@ def clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
         seconds = seconds_played(action.kind, action.timing, start, end)
         times = np.arange(round(seconds * motion.fps) + 1) / motion.fps
         rotations, translations = _played(action, motion, start, end, times)
-        weights = motion.weights
-        if weights is not None:
-            low, high, part = motion.locate(start + np.mod(times, end - start))
-            weights = weights[low] + (weights[high] - weights[low]) * part[:, None]
+        weights = motion.weights_at(start + np.mod(times, end - start))
         moved = translations[:, list(motion.translated)]
         return replace(motion, rotations=rotations, translations=moved, weights=weights)
     return motion

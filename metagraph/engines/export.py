@@ -133,7 +133,7 @@ def write_project_files(
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
-    clips = list_exported_clips(project)
+    clips = [clip.dense for clip in list_exported_clips(project)]
     notes = _write_glb(glb, clips, project, character, compress)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)

@@ -12,6 +12,7 @@ from metagraph.engines.export_rig import export_rig, list_export_voices
 from metagraph.engines.export_weight import arms_of, feet_of, weight_rig_of
 from metagraph.graph import anatomy
 from metagraph.graph.model import KINDS, LAYERS, REACH, ClipEntry, MetaGraph, Project, Settings
+from metagraph.motion.dense_keys import count_steps
 from metagraph.playback.planning import choice, hashing, markov
 from metagraph.playback.planning.cue_shapes import HURRY
 from metagraph.playback.planning.layer_planning import WINDOW
@@ -51,15 +52,17 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         for i, name in enumerate(skeleton.names)
     ]
     pose = anatomy.base_pose(project)
-    base = c.Base(project.base.clip, project.base.frame, pose.rotations.tolist(), pose.translations.tolist())
+    steps = {e.id: _steps(e) for e in list_used_clips(project)}
+    frame = project.base.frame * steps.get(project.base.clip or "", 1)
+    base = c.Base(project.base.clip, frame, pose.rotations.tolist(), pose.translations.tolist())
     arms, feet = arms_of(project), feet_of(project)
     clips = [
         c.ExportedClip(
             e.id,
             name,
             n,
-            e.fps,
-            e.frames,
+            e.fps * steps[e.id],
+            (e.frames - 1) * steps[e.id] + 1 if e.frames else 0,
             e.duration,
             e.digest,
             e.made_by,
@@ -105,6 +108,12 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         weight_rig=weight_rig_of(project),
     )
     return out
+
+
+def _steps(entry: ClipEntry) -> int:
+    """Return the number of steps between dense keys that each step between a clip's keys becomes."""
+    motion = entry.motion
+    return round(motion.dense.fps / motion.fps) if motion is not None else count_steps(entry.fps)
 
 
 def _planner(s: Settings) -> c.Planner:

@@ -84,7 +84,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
     if "/" in document.glb or "\\" in document.glb:
         raise DataError("$.glb", "should be the name of a file beside this one")
     skeleton = _skeleton(document.joints)
-    clips = _clips(path, document, motions, skeleton)
+    clips = _clips(path, document, motions, skeleton, resolved)
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)
     rigs: dict[str, Any] = {}
@@ -129,8 +129,12 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
     )
 
 
-def _clips(path: Path, document: c.Export, motions: bool, skeleton: Skeleton) -> dict[str, ClipEntry]:
-    """Return the clips by id. motions: with what the GLB beside the JSON has of them. Raises DataError."""
+def _clips(
+    path: Path, document: c.Export, motions: bool, skeleton: Skeleton, resolved: bool
+) -> dict[str, ClipEntry]:
+    """Return the clips by id. motions: with what the GLB beside the JSON has of them. resolved: straight
+    lines join their keys, as in runtimes, even the few of an old export. Raises DataError.
+    """
     takes: list[Clip] = []
     if motions:
         from metagraph.formats.gltf.reader import read_gltf_clips
@@ -151,6 +155,8 @@ def _clips(path: Path, document: c.Export, motions: bool, skeleton: Skeleton) ->
         motion = takes[clip.animation] if motions else None
         if motion is not None and motion.skeleton.names == skeleton.names:
             motion = replace(motion, skeleton=skeleton)
+        if motion is not None and resolved:
+            motion = replace(motion, straight=True)
         clips[clip.id] = ClipEntry(
             clip.id,
             clip.name,

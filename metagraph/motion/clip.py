@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from metagraph.motion import rotation
+from metagraph.motion.dense_keys import CLOSED, count_steps, fill_between_keys
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
+
+MEASURES = 4096  # of a clip that are remembered
 
 
 class ClipError(ValueError):
@@ -42,6 +47,7 @@ class Clip:
     for `morphs`. `notes` tell the user what the reader changed or dropped. `repairs` are those of the changes
     that can be left out. `brought_from` is the fingerprint of the skeleton it was retargeted from, "" if it
     was not. `face_of` names the take of the same file that has this one as its face, "" if none has.
+    `straight` says that straight lines join the keys as they are, as in an export; otherwise curves do.
     """
 
     name: str
@@ -56,6 +62,7 @@ class Clip:
     repairs: tuple[Repair, ...] = ()
     brought_from: str = ""
     face_of: str = ""
+    straight: bool = False
 
     def __post_init__(self) -> None:
         r = np.ascontiguousarray(self.rotations, np.float32)
@@ -116,19 +123,41 @@ class Clip:
         full[:, list(self.translated)] = self.translations
         return Pose(self.rotations, full)
 
-    def pose_at(self, seconds: ArrayLike) -> Pose:
-        """Sample the clip at `seconds [...]`, clamped to its length: linear for translations, nlerp for
-        rotations.
+    @cached_property
+    def dense(self) -> Clip:
+        """Return the clip with at least 60 keys a second, which is what plays and what exports hold: the keys
+        between its own are on cubic curves. Itself if it has as many, or if its keys are `straight`.
         """
-        low, high, part = self.locate(seconds)
+        steps = 1 if self.straight or self.frames < 2 else count_steps(self.fps)
+        if steps == 1:
+            return self
+        apart = (self.rotations[-1] - self.rotations[0], self.translations[-1] - self.translations[0])
+        loop = all(float(np.abs(ends).max()) < CLOSED for ends in apart)
+        rotations = fill_between_keys(self.rotations, steps, loop)
+        rotations /= np.sqrt(np.maximum(np.einsum("...i,...i->...", rotations, rotations), 1e-20))[..., None]
+        weights = np.zeros((self.frames, 0), np.float32) if self.weights is None else self.weights
+        return replace(
+            self,
+            fps=self.fps * steps,
+            rotations=rotations,
+            translations=fill_between_keys(self.translations, steps, loop),
+            weights=fill_between_keys(weights[..., None], steps, loop)[..., 0],
+        )
+
+    def pose_at(self, seconds: ArrayLike) -> Pose:
+        """Sample the clip at `seconds [...]`, clamped to its length: between dense keys linear for
+        translations, nlerp for rotations.
+        """
+        dense = self.dense
+        low, high, part = dense.locate(seconds)
         rotations = rotation.nlerp(
-            self.rotations[low],
-            self.rotations[high],
+            dense.rotations[low],
+            dense.rotations[high],
             np.broadcast_to(part[..., None], (*low.shape, len(self.skeleton))),
         )
         moved = (
-            self.translations[low] * (1 - part[..., None, None])
-            + self.translations[high] * part[..., None, None]
+            dense.translations[low] * (1 - part[..., None, None])
+            + dense.translations[high] * part[..., None, None]
         )
         full = np.broadcast_to(
             self.skeleton.rest_translations.astype(np.float32), (*low.shape, len(self.skeleton), 3)
@@ -136,15 +165,18 @@ class Clip:
         full[..., list(self.translated), :] = moved
         return Pose(rotations, full)
 
+    def weights_at(self, seconds: ArrayLike) -> Array:
+        """Return the weights of `morphs` at `seconds [...]`, `[..., K]`, as `pose_at` samples poses."""
+        dense = self.dense
+        low, high, part = dense.locate(seconds)
+        assert dense.weights is not None  # `__post_init__` makes them
+        return np.asarray(dense.weights[low] * (1 - part[..., None]) + dense.weights[high] * part[..., None])
+
     def morphs_at(self, seconds: float) -> dict[str, float]:
-        """Return the morph target weights at one time, by name; linear between frames, clamped to
-        the clip.
-        """
-        if self.weights is None or not self.morphs:
+        """Return the morph target weights at one time, by name, clamped to the clip."""
+        if not self.morphs:
             return {}
-        low, high, part = self.locate(seconds)
-        values = self.weights[low] * (1 - part) + self.weights[high] * part
-        return dict(zip(self.morphs, map(float, values), strict=True))
+        return dict(zip(self.morphs, map(float, self.weights_at(seconds)), strict=True))
 
     def locate(self, seconds: ArrayLike) -> tuple[Array, Array, Array]:
         """Return the frames before and after `seconds [...]`, and how far between them it is
@@ -154,6 +186,19 @@ class Clip:
         low = np.minimum(at.astype(np.int64), max(0, self.frames - 2))
         high = np.minimum(low + 1, self.frames - 1)
         return low, high, (at - low).astype(np.float32)
+
+    def measured(self, what: Hashable, measure: Callable[[], float]) -> float:
+        """Return a number that `measure` finds of this clip, and that is remembered under `what`."""
+        known = self._measures
+        if what not in known:
+            if len(known) >= MEASURES:
+                known.clear()
+            known[what] = measure()
+        return known[what]
+
+    @cached_property
+    def _measures(self) -> dict[Hashable, float]:
+        return {}
 
     def trimmed(self, first: int, last: int | None = None) -> Clip:
         """Return the frames `first` to `last` (excluded). Raises ClipError if none are left."""

@@ -5,9 +5,7 @@ so that it ends where it began. What they do in between stays.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
-from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,16 +57,13 @@ def keep_in_place(clip: Clip) -> Clip:
 
 def travel_of(clip: Clip, hips: int, start: float, end: float) -> float:
     """Return how far the hips are over the ground from where they were, metres, between two seconds."""
-    return _travel(ref(clip), hips, start, end)
 
+    def measure() -> float:
+        _, places = clip.skeleton.globals(clip.pose_at(np.clip([start, end], 0.0, clip.duration)))
+        way = places[1, hips] - places[0, hips]
+        return float(np.hypot(way[0], way[2]))
 
-@lru_cache(4096)
-def _travel(of: ref[Clip], hips: int, start: float, end: float) -> float:
-    clip = of()
-    assert clip is not None
-    _, places = clip.skeleton.globals(clip.pose_at(np.clip([start, end], 0.0, clip.duration)))
-    way = places[1, hips] - places[0, hips]
-    return float(np.hypot(way[0], way[2]))
+    return clip.measured(("travel", hips, start, end), measure)
 
 
 def _heading(turn: Array) -> float:

@@ -169,15 +169,9 @@ def apply_retiming(clip: Clip, retime: Retime) -> Clip:
     course = Course(retime, clip.duration, clip.fps)
     moments = course.moments(np.arange(course.frames) / clip.fps)
     pose = clip.pose_at(moments)
-    weights = clip.weights
-    if weights is not None and clip.morphs:
-        low, high, part = clip.locate(moments)
-        weights = weights[low] * (1 - part[:, None]) + weights[high] * part[:, None]
-    elif weights is not None:
-        weights = np.zeros((course.frames, 0), np.float32)
     return replace(
         clip,
         rotations=pose.rotations,
         translations=pose.translations[:, list(clip.translated)],
-        weights=weights,
+        weights=clip.weights_at(moments),
     )

@@ -76,19 +76,20 @@ class Evaluator:
         shape = (*at.shape, len(self.rigs.composer.ground.skeleton))
         return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
-    def stages(self, times: Array) -> Iterator[tuple[str, Pose]]:
+    def stages(self, times: Array, overlay: Overlay | None = None) -> Iterator[tuple[str, Pose]]:
         """Yield the poses `[N, J]` at `times [N]` as each of STAGES leaves them; the last are those of `at`.
         A stage that adds nothing leaves the same pose.
         """
-        pose = self.layered(times)
+        pose = self._composed(times, overlay)
+        shown = None if overlay is None else 1 - overlay.weight * (1 - overlay.arms)
         yield BLENDS, pose
         if self._lives:
-            pose = self._weight.run(pose, times)
+            pose = self._weight.run(pose, times, shown)
         yield WEIGHT, pose
         if self._lives:
             pose = self._life.run(pose, times)
         yield LIFE, pose
-        yield CONTACTS, self._contacts.run(pose, times)
+        yield CONTACTS, self._contacts.run(pose, times, shown)
 
     def follow(self, plan: Plan, project: Project) -> Evaluator:
         """Return the evaluator of a plan: this one for the same plan and project, else a new one."""

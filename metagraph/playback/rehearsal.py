@@ -183,7 +183,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     for some in np.array_split(times, _chunks(seconds)):
         more = np.append(some[:1] - 1 / RATE, some)
         stages = list(evaluator.stages(more))
-        moves = law.added(plan, more, stages)
+        moves = law.added(stages)
         for name, rows in added.items():
             rows.append(moves[name].worst(law.joints))
         last = stages[-1][1]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.motion import rotation
-from metagraph.motion.clip import Clip, ClipError
+from metagraph.motion.clip import MEASURES, Clip, ClipError
 from metagraph.motion.skeleton import Skeleton
 
 TWO = Skeleton(
@@ -119,3 +121,11 @@ def test_trimming_keeps_fields_and_refuses_to_leave_nothing() -> None:
     assert part.renamed("b").name == "b"
     with pytest.raises(ClipError, match="no frames"):
         c.trimmed(4, 4)
+
+
+def test_a_clip_remembers_what_was_measured_of_it_and_of_no_other() -> None:
+    one = clip()
+    for n in range(MEASURES + 1):
+        assert one.measured(("n", n), partial(float, n)) == n
+    assert one.measured(("n", MEASURES), lambda: -1.0) == MEASURES
+    assert replace(one).measured(("n", MEASURES), lambda: -1.0) == -1.0

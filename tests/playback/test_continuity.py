@@ -5,6 +5,7 @@ second beyond what they do.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import product
 from math import cos, sin
 from typing import Any
@@ -26,8 +27,8 @@ from metagraph.playback.continuity import (
     blending,
     moved_joints,
 )
-from metagraph.playback.evaluator import BLENDS, CONTACTS, STAGES, Evaluator
-from metagraph.playback.plan import LayerPlan, Plan
+from metagraph.playback.evaluator import CONTACTS, STAGES, Evaluator
+from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.mood import MOODS
 from metagraph.playback.planning.running_plan import plan_performance
@@ -101,16 +102,57 @@ def test_blends_are_told_from_clips_that_play(sample: Project) -> None:
     empty: dict[Layer, LayerPlan] = {layer: LayerPlan(layer) for layer in LAYERS}
     plan = Plan(SEED, 20.0, {**empty, "arms": LayerPlan("arms", cues=(cue,))})
     times = np.array([cue.start + 0.01, (cue.start + cue.end) / 2, cue.end - 0.01])
-    assert blending(plan, times).tolist() == [True, False, True]
+    assert blending(sample, plan, times).tolist() == [True, False, True]
+
+
+def test_seams_of_loops_and_of_what_repeats_are_blends(toy: Any) -> None:
+    project = toy.project()
+    loop = next(a for a in project.actions() if a.kind == "stance")
+    project = edits.update_actions(project, [loop.id], timing={"start": 0.0, "end": 1.0, "blend_in": 0.2})
+    loop = project.action(loop.id)
+    rest = Rest(loop.stance, loop, 0.0, 0.0, 0.0)
+    empty: dict[Layer, LayerPlan] = {layer: LayerPlan(layer) for layer in LAYERS}
+    plan = Plan(SEED, 4.0, {**empty, loop.layer: LayerPlan(loop.layer, rests=(rest,))})
+    times = np.array([0.1, 0.5, 0.85, 0.95, 1.1, 1.7, 1.9])  # its second round begins at 0.8 s
+    assert blending(project, plan, times).tolist() == [False, False, True, True, False, True, False]
+    cue = Cue(loop, 0.0, 3.0, 0.0, 0.0, 0.0, "", "", "", cycle_from=0.0, cycle_to=1.0)
+    plan = Plan(SEED, 4.0, {**empty, loop.layer: LayerPlan(loop.layer, cues=(cue,))})
+    assert blending(project, plan, times + 0.5).tolist() == [False, True, True, False, False, True, True]
+
+
+def blended(project: Project, plan: Plan) -> float:
+    """Return by how much blends break the law at most."""
+    times = np.arange(round(plan.end * RATE)) / RATE
+    shown = Evaluator(plan, project).layered(times)
+    return float(ContinuityLaw(project).blended(plan, times, shown).breaks.max())
+
+
+def test_a_blend_that_throws_a_hand_breaks_the_law_and_a_fast_clip_does_not(sample: Project) -> None:
+    plan = make_plan(sample, 40.0, seed=SEED)
+    assert blended(sample, plan) < 1
+    arms = plan.layers["arms"]
+    hasty = tuple(replace(cue, entry=cue.entry + 0.6, blend_in=1 / 30) for cue in arms.cues)
+    thrown = replace(plan, layers={**plan.layers, "arms": replace(arms, cues=hasty)})
+    assert blended(sample, thrown) > 2
+    ids = [cue.action.clip for cue in arms.cues]
+    sped = {  # one of many: the clips' own 99th percentile stays where it is
+        ident: replace(entry, motion=replace(entry.motion, fps=3 * entry.motion.fps))
+        for ident, entry in sample.clips.items()
+        if ident == ids[0] and entry.motion is not None
+    }
+    fast = replace(sample, clips={**sample.clips, **sped})
+    cue = replace(arms.cues[0], tempo=1.0)
+    alone = replace(plan, layers={**plan.layers, "arms": replace(arms, cues=(cue,))})
+    assert blended(fast, alone) < 1
 
 
 def broken(law: ContinuityLaw, evaluator: Evaluator, start: float, end: float) -> Iterator[str]:
-    """Yield what breaks the law, in words; blends are left to what `check` says of them."""
+    """Yield what breaks the law, in words, of what is added to blends."""
     times = np.arange(round(start * RATE), round(end * RATE)) / RATE
-    for name, moves in law.added(evaluator.plan, times, evaluator.stages(times)).items():
+    for name, moves in law.added(evaluator.stages(times)).items():
         ways, turns, breaks, joints = moves.worst(law.joints)
         n = int(np.argmax(breaks))
-        if name != BLENDS and breaks[n] > NEARLY:
+        if breaks[n] > NEARLY:
             joint, far, turn = law.skeleton.names[int(joints[n])], 100 * ways[n], np.degrees(turns[n])
             yield f"{name}: {joint} {far:.1f} cm, {turn:.0f} degrees at {times[n + 1]:.2f} s"
 
@@ -179,5 +221,5 @@ def test_contacts_of_an_action_that_repeats_go_over_the_seam_with_its_pose(
     cue = next(c for c in plan.layers["arms"].cues if c.action.id == action.id)
     assert cue.repeats
     times = np.arange(round((cue.end - cue.start) * RATE)) / RATE + cue.start
-    added = law.added(plan, times, evaluator.stages(times))[CONTACTS]
+    added = law.added(evaluator.stages(times))[CONTACTS]
     assert added.breaks.max() <= 1.0

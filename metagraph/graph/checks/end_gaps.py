@@ -118,7 +118,7 @@ def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[En
         loop = next(iter(graph.of(stance, "stance")), None) if stance else None
         target = motion_of(project, loop)
         if stance is not None and loop is not None and target is not None:
-            metres = _gap(ref(motion), moment, ref(target), project.span(loop)[0], joints)
+            metres = _gap(motion, moment, target, project.span(loop)[0], joints)
             most = hidden(height, blend) * (BRISK if cycle_of(action.kind, t, start, end) > 0 else 1.0)
             out.append(EndGap(edge, stance, metres, most, blend))
     return out
@@ -132,7 +132,7 @@ def measure_seam(project: Project, graph: MetaGraph, loop: Action) -> EndGap | N
     if motion is None or project.skeleton is None:
         return None
     start, end = project.span(loop)
-    metres = _gap(ref(motion), start, ref(motion), end, reached_joints(project, graph, loop))
+    metres = _gap(motion, start, motion, end, reached_joints(project, graph, loop))
     return EndGap("ends", loop.stance, metres, OPEN_LOOP * project.skeleton.height / TALL, 0.0)
 
 
@@ -165,11 +165,11 @@ def _reached_by(
     return tuple(j for j, part in enumerate(parts) if part in weighty and j not in controls)
 
 
-@lru_cache(maxsize=65536)
-def _gap(a: ref[Clip], seconds_a: float, b: ref[Clip], seconds_b: float, joints: tuple[int, ...]) -> float:
-    """Return the largest distance of the joints in metres, without the root. Clips are compared by identity,
-    so other edits take no time, and held by `ref`, so that those of a closed project are freed.
+def _gap(one: Clip, seconds: float, other: Clip, there: float, joints: tuple[int, ...]) -> float:
+    """Return the largest distance of the joints in metres, without the root. The first clip remembers it, so
+    other edits take no time, and holds the other by `ref`, so that those of a closed project are freed.
     """
-    one, other = a(), b()
-    assert one is not None and other is not None
-    return float(pose_distance(one.skeleton, one.pose_at(seconds_a), other.pose_at(seconds_b), joints))
+    return one.measured(
+        ("gap", seconds, ref(other), there, joints),
+        lambda: float(pose_distance(one.skeleton, one.pose_at(seconds), other.pose_at(there), joints)),
+    )

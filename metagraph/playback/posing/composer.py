@@ -27,7 +27,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Offsets:
-    """A clip relative to the base pose, for the joints that a layer reaches.
+    """A clip's dense keys relative to the base pose, for the joints that a layer reaches.
 
     Rotations `[F, n, 4]`, with neighbouring frames on the same side; translations `[F, m, 3]` of the joints
     that `moved` `[m]` lists, as indices into the n joints; float32.
@@ -72,9 +72,10 @@ class Ground:
         found = known.get(reach.key)
         if found is None:
             joints = reach.joints
-            away = clip.poses().translations[:, joints] - self.base.translations[joints]
+            dense = clip.dense
+            away = dense.poses().translations[:, joints] - self.base.translations[joints]
             moved = np.flatnonzero(np.abs(away).max(axis=(0, 2), initial=0) > 1e-7)
-            turned = rotation.continuous(rotation.multiply(self._inverse[joints], clip.rotations[:, joints]))
+            turned = rotation.continuous(rotation.multiply(self._inverse[joints], dense.rotations[:, joints]))
             found = Offsets(turned, np.ascontiguousarray(away[:, moved]), moved)
             if keep:
                 known[reach.key] = found

@@ -261,7 +261,7 @@ def crossfade(a: Sample, b: Sample, weight: Array) -> Sample:
 def sample_offsets(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
     """Return a clip's offsets at clip seconds `[N]`. The arrays belong to the caller."""
     offsets = ground.offsets(clip, reach)
-    low, high, part = clip.locate(seconds)
+    low, high, part = clip.dense.locate(seconds)
     w = part[:, None, None]
     a = offsets.rotations[low]
     mixed = _unit(a + (offsets.rotations[high] - a) * w)  # neighbours are on the same side

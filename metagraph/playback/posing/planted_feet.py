@@ -28,6 +28,8 @@ LIFT = 0.25  # how high a foot is lifted for a short step, as a share of its way
 MOST_LIFT = 0.08  # metres: the limit that no foot reaches
 FAR = 0.25  # of the height: no foot steps that much farther
 TOO_FAR = 0.1
+QUICK = 0.65  # of the height, a second: above, feet step less and glide more
+TOO_QUICK = 0.2  # as much quicker, they only glide
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +77,12 @@ def foot_goals(
         before = _stance(project, tracks, height, plan, place, at)
         first = _stance(project, tracks, height, plan, place, cue.start)
         last = _row(track, cue_seconds(cue, came))
-        return _stepped(height, before, here, first, last, (time - cue.start) / (came - cue.start))
+        return _stepped(height, before, here, first, last, time - cue.start, came - cue.start)
     at = max(time, cue.end - cue.blend_out)
     after = _stance(project, tracks, height, plan, place, at)
     first = _row(track, cue_seconds(cue, goes))
     last = _stance(project, tracks, height, plan, place, cue.end)
-    return _stepped(height, here, after, first, last, (time - goes) / (cue.end - goes))
+    return _stepped(height, here, after, first, last, time - goes, cue.end - goes)
 
 
 def _entering(track: FootTrack, cue: Cue) -> float:
@@ -116,10 +118,11 @@ def _stepped(
     after: Sequence[FootGoal],
     first: Sequence[FootGoal],
     last: Sequence[FootGoal],
-    u: float,
+    passed: float,
+    seconds: float,
 ) -> list[FootGoal]:
-    """Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last`
-    say where they are when it begins and ends, which gives the order and size of the steps.
+    """Return both feet on their way, of which `passed` of its `seconds` have passed. `first` and `last` say
+    where they are when it begins and ends, which gives the order and size of the steps.
     """
     if len(before) == 0 or len(after) == 0 or len(first) == 0 or len(last) == 0:
         return []
@@ -133,9 +136,13 @@ def _stepped(
     longer = max(ways[0], ways[1])
     far = 1.0 - ease((longer / height - FAR) / TOO_FAR)
     apart = ease(longer / NEARBY)
+    shares = [1.0 - apart * (1.0 - part), 1.0 - apart * part]
+    quickest = max(ways[0] / shares[0], ways[1] / shares[1])
+    far *= 1.0 - ease((quickest / (height * max(seconds, 0.001)) - QUICK) / TOO_QUICK)
+    u = passed / seconds if seconds > 0.0 else 1.0
     out: list[FootGoal] = []
     for side in range(2):
-        share = 1.0 - apart * (1.0 - part if side == 0 else part)
+        share = shares[side]
         begin = 0.0 if left_first == (side == 0) else 1.0 - share
         x = min(max((u - begin) / share, 0.0), 1.0)
         go = ease((x - WAITS) / (1.0 - 2.0 * WAITS))
@@ -195,7 +202,8 @@ def _stance(
         goals,
         _loop(project, tracks, height, old, rest.fade_start),
         _loop(project, tracks, height, rest, ends),
-        (time - rest.fade_start) / rest.fade,
+        time - rest.fade_start,
+        rest.fade,
     )
 
 
@@ -210,9 +218,9 @@ def _loop(
     here = _row(track, spot.seconds)
     if spot.over >= 1.0:
         return here
-    return _stepped(
-        height, _row(track, spot.other), here, _row(track, spot.leaves), _row(track, spot.meets), spot.over
-    )
+    seam = spot.meets - project.span(rest.action)[0]
+    before, leaves, meets = _row(track, spot.other), _row(track, spot.leaves), _row(track, spot.meets)
+    return _stepped(height, before, here, leaves, meets, spot.over * seam, seam)
 
 
 def _row(track: FootTrack, seconds: float) -> list[FootGoal]:

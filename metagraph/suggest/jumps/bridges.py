@@ -2,14 +2,16 @@
 
 A set of takes often lacks a transition. Without it a stance is never reached and all its gestures never play.
 A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; where
-that is too short, the loop of the stance it leaves, and takes long to blend out of it. No bridge is made
-where the body would slide or turn on the spot, or where both loops are too short for the distance.
+that is too short, the loop of the stance it leaves, and takes long to blend out of it. It takes so long that
+no joint goes faster on average than it usually goes in the clips: at its fastest, half as fast again. No
+bridge is made where the body would slide or turn on the spot, or where there is no time for the distance.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from math import atan2, degrees
 from typing import Any
 
@@ -21,8 +23,8 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.checks.end_gaps import TALL, motion_of, reached_joints
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
-from metagraph.motion.features import pose_distance
-from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.posing.composer import find_composer, playable
+from metagraph.playback.posing.layers import sample_offsets
 
 Array = NDArray[Any]
 
@@ -31,6 +33,10 @@ SPEED = 0.6  # metres a second that the farthest joint goes on a bridge, on aver
 NOTICED = 0.3  # metres that a joint goes on a bridge, from which on a clip would look better
 SHORTEST, LONGEST = 0.6, 3.0  # seconds of a bridge
 HASTY = 2.0  # metres a second, on average, above which a movement looks thrown
+CALM = 0.4  # metres a second, on average, that every joint may go, even where it hardly moves in the clips
+USUAL = 99.0  # the percentile of a joint's speeds in the clips that is how fast it usually goes
+PEAK = 1.5  # times its average speed that a joint goes in the middle of a blend
+LOOKS, MOMENT = 8.0, 1 / 60  # a second, at which speeds in clips are measured, and the seconds each takes
 AWAY = 0.3  # metres over the floor that a body may slide on a bridge
 TURNED = 45.0  # degrees that it may turn on one
 FADE = 0.25  # of a bridge, that it takes to blend into or out of the loop that it is of
@@ -178,13 +184,22 @@ def _refusal(project: Project, one: _Rest, other: _Rest) -> Phrase | None:
         return phrase("the body would slide {length:.1f} m over the floor", length=away)
     if turned > TURNED:
         return phrase("the body would turn by {angle:.0f} degrees on the spot", angle=turned)
-    if metres > HASTY * size * room:
+    course = _course(project, one, other)
+    if course.hurry <= 1.001:
+        return None
+    joint, limit = course.joint, float(one.pace.limits[course.joint])
+    if limit < HASTY * size:
         return phrase(
-            "both loops are too short: {length:.0f} cm in {seconds:.1f} s look thrown",
-            length=100 * metres,
-            seconds=room,
+            "{part} goes {speed:.1f} m/s, and at most {usual:.1f} m/s in the clips",
+            part=f"'{one.pace.skeleton.names[joint]}'",
+            speed=PEAK * course.hurry * limit,
+            usual=PEAK * limit,
         )
-    return None
+    return phrase(
+        "both loops are too short: {length:.0f} cm in {seconds:.1f} s look thrown",
+        length=100 * metres,
+        seconds=room,
+    )
 
 
 def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
@@ -192,50 +207,129 @@ def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
     return next((a for a in graph.of(stance, "stance") if motion_of(project, a) is not None), None)
 
 
+class _Pace:
+    """How fast the joints of a project may go on bridges."""
+
+    def __init__(self, project: Project) -> None:
+        assert project.skeleton is not None
+        self.project, self.skeleton = project, project.skeleton
+
+    @cached_property
+    def limits(self) -> Array:
+        """How fast each joint may go on average, `[J]` m/s: as fast as it usually goes in what plays. Only
+        HASTY limits it where nothing but loops plays.
+        """
+        size, speeds = _size(self.project), []
+        moves = False
+        for action in self.project.actions():
+            clip = playable(self.project, action)
+            start, end = self.project.span(action)
+            if clip is None or end - start < 2 * MOMENT:
+                continue
+            moves = moves or action.kind != "stance"
+            times = np.arange(start, end - MOMENT, 1 / LOOKS)
+            first, second = (clip.skeleton.globals(clip.pose_at(t))[1] for t in (times, times + MOMENT))
+            speeds.append(np.linalg.norm(second - first, axis=-1) / MOMENT)
+        if not moves:
+            return np.full(len(self.skeleton), HASTY * size)
+        usual = np.percentile(np.concatenate(speeds), USUAL, axis=0)
+        return np.asarray(np.clip(usual, CALM * size, HASTY * size))
+
+
 @dataclass(frozen=True, eq=False)
 class _Rest:
     """The pose that a stance's loop begins in.
 
-    `joints` are those that the layer moves. `hips` `[2]`, metres, on the floor. `heading`: where the hips
-    face, degrees. `on_legs`: whether the layer moves the legs. `room`: seconds of the loop's clip.
+    `places` `[J, 3]`, metres, are those that its layer alone gives the joints. `joints` are
+    those that the layer moves. `hips` `[2]`, metres, on the floor. `heading`: where the hips face, degrees.
+    `on_legs`: whether the layer moves the legs. `span`: of the loop, seconds of its clip, which has `room`
+    seconds.
     """
 
-    skeleton: Skeleton
-    pose: Pose
+    loop: Action
+    places: Array
     joints: tuple[int, ...]
     hips: Array
     heading: float
     on_legs: bool
+    span: tuple[float, float]
     room: float
+    pace: _Pace
 
 
 def _poses(project: Project, graph: MetaGraph) -> dict[str, _Rest]:
     """Return stance -> the pose of its loop; of those that have a loop that is there."""
-    out = {}
-    roles = anatomy.project_roles(project)
+    out: dict[str, _Rest] = {}
+    if project.skeleton is None:
+        return out
+    roles, pace, rig = anatomy.project_roles(project), _Pace(project), find_composer(project)
     for stance in graph.stances:
         loop = _loop(project, graph, stance)
         motion = motion_of(project, loop)
         if loop is not None and motion is not None:
-            pose = motion.pose_at(project.span(loop)[0])
-            _, places = motion.skeleton.globals(pose)
+            span = project.span(loop)
+            start = np.array([span[0]])
+            _, places = motion.skeleton.globals(motion.pose_at(span[0]))
+            added = sample_offsets(rig.ground, rig.reach[graph.layer], motion, start)
+            _, shown = motion.skeleton.globals(rig.compose({graph.layer: added}, 1))
             left, right = (places[roles.get(f"{side}_upper_leg", 0)] for side in ("left", "right"))
             across = left - right
             out[stance] = _Rest(
-                motion.skeleton,
-                pose,
+                loop,
+                shown[0],
                 reached_joints(project, graph, loop),
                 places[roles.get("hips", 0)][[0, 2]],
                 degrees(atan2(-across[2], across[0])),
                 graph.weight("legs") > 0,
+                span,
                 motion.duration,
+                pace,
             )
     return out
 
 
+def _ways(one: _Rest, other: _Rest) -> Array:
+    """Return how far joints go from one pose to the other, `[J]` metres; 0 for those no loop moves."""
+    out = np.zeros(len(one.places))
+    joints = sorted({*one.joints, *other.joints})
+    out[joints] = np.linalg.norm(one.places[joints] - other.places[joints], axis=-1)
+    return out
+
+
 def _metres(one: _Rest, other: _Rest) -> float:
-    joints = tuple(sorted({*one.joints, *other.joints}))
-    return float(pose_distance(one.skeleton, one.pose, other.pose, joints))
+    return float(_ways(one, other).max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class _Course:
+    """What a bridge plays: seconds first to last of the loop that it leaves (leaving) or enters, and which
+    share of them its short blend takes. hurry: how fast the fastest joint goes, as a multiple of its limit.
+    """
+
+    leaving: bool
+    first: float
+    last: float
+    fade: float
+    joint: int
+    hurry: float
+
+
+def _course(project: Project, start: _Rest, end: _Rest) -> _Course:
+    ways = _ways(start, end)
+    needs = ways / start.pace.limits  # seconds of the long blend
+    least = max(float(ways.max()) / (SPEED * _size(project)), float(needs.max()) / (1 - FADE))
+    seconds, fade = float(np.clip(least, SHORTEST, LONGEST)), FADE
+    leaving = end.room < min(seconds, start.room)
+    begins, ends = start.span if leaving else end.span
+    room = start.room if leaving else end.room
+    if ends - begins < min(seconds, room):  # the moment itself is where neither blend is
+        seconds, fade = max(seconds * (1 - FADE) / 0.5, CAREFUL), 0.5
+        begins = max(0.0, (begins + ends - seconds) / 2)
+    first = max(0.0, min(begins, room - seconds))
+    last = min(first + seconds, room)
+    joint = int(needs.argmax())
+    hurry = float(needs[joint]) / max(1e-6, (last - first) * (1 - fade))
+    return _Course(leaving, first, last, fade, joint, hurry)
 
 
 def _size(project: Project) -> float:
@@ -247,26 +341,17 @@ def _bridge(
 ) -> tuple[Project, Bridge]:
     stance = project.stance(end)
     assert stance is not None
-    graph = project.graphs[stance.layer]
-    seconds, fade = float(np.clip(metres / (SPEED * _size(project)), SHORTEST, LONGEST)), FADE
-    leaving = poses[end].room < min(seconds, poses[start].room)
-    loop = _loop(project, graph, start if leaving else end)
-    assert loop is not None
-    entry = project.clips[loop.clip]
-    begins, ends = project.span(loop)
-    if ends - begins < min(seconds, entry.duration):  # the moment itself is where neither blend is
-        seconds, fade = max(seconds * (1 - FADE) / 0.5, CAREFUL), 0.5
-        begins = max(0.0, (begins + ends - seconds) / 2)
-    first = max(0.0, min(begins, entry.duration - seconds))
-    last = min(first + seconds, entry.duration)
-    project = edits.place_clips(project, [entry.id], stance.layer, "transition", start, end)
+    course = _course(project, poses[start], poses[end])
+    clip = poses[start if course.leaving else end].loop.clip
+    project = edits.place_clips(project, [clip], stance.layer, "transition", start, end)
     made = list(project.graphs[stance.layer].actions)[-1]
-    long, short = round((last - first) * (1 - fade), 3), round((last - first) * fade, 3)
+    seconds = course.last - course.first
+    long, short = round(seconds * (1 - course.fade), 3), round(seconds * course.fade, 3)
     timing = {
-        "start": round(first, 3),
-        "end": round(last, 3),
-        "blend_in": short if leaving else long,
-        "blend_out": long if leaving else short,
+        "start": round(course.first, 3),
+        "end": round(course.last, 3),
+        "blend_in": short if course.leaving else long,
+        "blend_out": long if course.leaving else short,
     }
     project = edits.update_actions(project, [made], timing=timing, name=f"to {stance.name}, blended")
-    return project, Bridge(made, start, end, metres, last - first)
+    return project, Bridge(made, start, end, metres, seconds)

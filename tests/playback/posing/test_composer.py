@@ -90,7 +90,7 @@ def test_a_clip_without_its_base_is_its_offset(toy: Any) -> None:
     for reach in frame.reach.values():
         offsets = frame.ground.offsets(clip, reach)
         back = rotation.multiply(frame.ground.base.rotations[reach.joints], offsets.rotations)
-        assert np.all(rotation.angle_between(back, clip.rotations[:, reach.joints]) < 1e-6)
+        assert np.all(rotation.angle_between(back, clip.dense.rotations[:, reach.joints]) < 1e-6)
         assert frame.ground.offsets(clip, reach) is offsets, "worked out once"
 
 

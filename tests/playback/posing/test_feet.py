@@ -10,8 +10,12 @@ import pytest
 
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
+from metagraph.graph.requests import Play
+from metagraph.playback.continuity import RATE, ContinuityLaw
+from metagraph.playback.evaluator import WEIGHT, Evaluator
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.posing.weight import foot_rows_of
 from sample_clips.make.conformance_projects import stepping
 from tests.posing import pose_at, weight_of
@@ -159,3 +163,21 @@ def test_a_layer_that_moves_the_legs_in_part_plants_none(
 def test_two_layers_that_move_the_legs_plant_none() -> None:
     made = edits.set_weight(project(), "arms", "legs", 1.0)
     assert weight_of(project()).feet_layer == "body" and weight_of(made).feet_layer is None
+
+
+@pytest.mark.parametrize("name", ["near again", "far again", "too far again"])
+@pytest.mark.parametrize("seconds", [0.2, 0.3])
+def test_feet_of_a_fidget_that_is_cut_short_glide_rather_than_jump(name: str, seconds: float) -> None:
+    """Two steps in 0.3 s moved a knee eight times as far as the law of continuity allows."""
+    of = project(1.0)
+    stance = next(s.id for s in of.graphs["body"].stances.values() if s.name == "wide")
+    asks = [Play(id="p", action=named(name), at=1.0)]
+    plan = plan_performance(of, asks, 3.0, 1, {"body": stance}, idle=False)
+    layer = plan.layers["body"]
+    cue = layer.cues[0]
+    blends = min(cue.blend_in, seconds / 2), min(cue.blend_out, seconds / 2)
+    cut = replace(cue, end=cue.start + seconds, blend_in=blends[0], blend_out=blends[1])
+    plan = replace(plan, layers={**plan.layers, "body": replace(layer, cues=(cut,))})
+    times = np.arange(0.9, 1.1 + seconds, 1 / RATE)
+    added = ContinuityLaw(of).added(Evaluator(plan, of).stages(times))
+    assert added[WEIGHT].breaks.max() < 1.0

@@ -15,14 +15,19 @@ from metagraph.graph import edits
 from metagraph.graph.check import check_project
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.requests import Play
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.suggest.accept import accept
 from metagraph.suggest.jumps.bridges import (
+    CALM,
     CAREFUL,
     HASTY,
     LONGEST,
     SHORTEST,
+    SPEED,
     bridge_all,
     bridge_stance,
     describe_bridges,
@@ -40,7 +45,7 @@ ANGLES = (0.0, 0.4, 0.8, 1.2, -0.3)
 
 
 def stances(
-    count: int, ways: Sequence[tuple[int, int]] = (), seconds: float = 2.0, size: float = 1.0
+    count: int, ways: Sequence[tuple[int, int]] = (), seconds: float = 3.0, size: float = 1.0
 ) -> Project:
     """Stances with a loop each, s0 the start, and transitions between some."""
     clips = [TOY.clip(f"s{n} loop", seconds, ANGLES[n], swing=0.02) for n in range(count)]
@@ -264,6 +269,45 @@ def test_no_bridge_throws_the_hands() -> None:
     assert "both loops are too short" in line and "look thrown" in line
     _, made = bridge_all(stances(3))
     assert all(x.metres / x.seconds < HASTY for x in made)
+
+
+def among_calm_clips(seconds: float, height: float) -> Project:
+    """Two loops of some seconds, the second with its hips higher, and a gesture that moves one hand fast."""
+    clips = [TOY.clip(name, seconds, 0.0, swing=0.0) for name in ("low", "high")]
+    translations = clips[1].translations.copy()
+    translations[:, clips[1].translated.index(0), 1] += height
+    clips[1] = replace(clips[1], translations=translations)
+    clips.append(TOY.clip("wave", 2.0, 0.0, swing=1.0))
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    for name in ("low", "high"):
+        project = edits.add_stance(project, "body", name, [TOY.id(project, name)])
+    stance = next(iter(project.graphs["body"].stances))
+    return edits.place_clips(project, [TOY.id(project, "wave")], "body", "gesture", stance)
+
+
+def fastest(project: Project, action: str) -> float:
+    """Return how fast any joint goes while an action plays, m/s."""
+    played = project.action(action)
+    assert played is not None and project.skeleton is not None
+    start = {"body": played.stance}
+    plan = plan_performance(project, [Play(id="p", action=action, at=1.0)], 6.0, 1, start, idle=False)
+    pose = Evaluator(plan, project).layered(np.arange(360) / 60)
+    at = project.skeleton.globals(pose)[1]
+    return float(np.linalg.norm(np.diff(at, axis=0), axis=-1).max() * 60)
+
+
+def test_a_bridge_takes_as_long_as_its_slowest_joint_needs_by_the_clips() -> None:
+    project = among_calm_clips(4.0, 0.7)
+    after, made = bridge_all(project)
+    assert len(made) == 2 and all(x.seconds > 0.7 / SPEED * 1.3 for x in made)
+    assert all(0.4 < fastest(after, x.action) < 1.6 * CALM for x in made)
+
+
+def test_no_bridge_is_made_where_a_joint_had_to_go_faster_than_in_the_clips() -> None:
+    project = among_calm_clips(1.0, 0.7)
+    assert bridge_all(project) == (project, ())
+    (line,) = describe_unbridged(project)
+    assert "goes 1.4 m/s, and at most 0.6 m/s in the clips" in line
 
 
 def test_between_single_poses_there_is_nothing_to_blend() -> None:

@@ -24,7 +24,6 @@ inline constexpr double FOLDED = 0.906; // cosine of the least angle inside an e
 // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 inline constexpr double WRIST = 0.819;
 inline constexpr double SOFT = 0.006; // metres of depth over which the push out of the body sets in
-inline constexpr double DEEP = 1.0; // of the radii: nearer than this to a capsule's line it is not pushed all the way
 inline constexpr double EVEN = 0.05; // how much the middle counts where lines are side by side
 // where a straight arm bends to: no side in particular, but always one
 inline const std::tuple<double, double, double> STRAIGHT = std::tuple<double, double, double>{0.31, 0.52, 0.8};
@@ -623,7 +622,7 @@ inline std::tuple<double, double, double> _shift(
             double amount = depth > contact_solve::SOFT
                 ? depth - 0.5 * contact_solve::SOFT
                 : depth * depth / (2.0 * contact_solve::SOFT);
-            double inner = std::min(1.0, gap / (contact_solve::DEEP * radii));
+            double inner = std::min(1.0, gap / radii); // nearer to the line it is not pushed all the way
             inner = inner * inner * (3.0 - 2.0 * inner);
             if (first) {
                 lang::at(whole, side) = std::min(lang::at(whole, side), inner);

@@ -31,6 +31,8 @@ inline constexpr double LIFT = 0.25; // how high a foot is lifted for a short st
 inline constexpr double MOST_LIFT = 0.08; // metres: the limit that no foot reaches
 inline constexpr double FAR = 0.25; // of the height: no foot steps that much farther
 inline constexpr double TOO_FAR = 0.1;
+inline constexpr double QUICK = 0.65; // of the height, a second: above, feet step less and glide more
+inline constexpr double TOO_QUICK = 0.2; // as much quicker, they only glide
 inline List<Ref<FootGoal>> foot_goals(
     const Ref<Project>& project,
     const Map<std::string, Ref<FootTrack>>& tracks,
@@ -50,7 +52,8 @@ inline List<Ref<FootGoal>> _stepped(
     const List<Ref<FootGoal>>& after,
     const List<Ref<FootGoal>>& first,
     const List<Ref<FootGoal>>& last,
-    double u
+    double passed,
+    double seconds
 );
 inline Ref<FootGoal> _mixed(const Ref<FootGoal>& a, const Ref<FootGoal>& b, double x, double air, double share);
 inline int _resting(const Ref<LayerPlan>& plan, int place, double time);
@@ -129,13 +132,13 @@ inline List<Ref<FootGoal>> foot_goals(
         List<Ref<FootGoal>> before = planted_feet::_stance(project, tracks, height, plan, place, at);
         first = planted_feet::_stance(project, tracks, height, plan, place, cue->start);
         last = planted_feet::_row(track, cue_times::cue_seconds(cue, came));
-        return planted_feet::_stepped(height, before, here, first, last, (time - cue->start) / (came - cue->start));
+        return planted_feet::_stepped(height, before, here, first, last, time - cue->start, came - cue->start);
     }
     at = std::max(time, cue->end - cue->blend_out);
     List<Ref<FootGoal>> after = planted_feet::_stance(project, tracks, height, plan, place, at);
     first = planted_feet::_row(track, cue_times::cue_seconds(cue, goes));
     last = planted_feet::_stance(project, tracks, height, plan, place, cue->end);
-    return planted_feet::_stepped(height, here, after, first, last, (time - goes) / (cue->end - goes));
+    return planted_feet::_stepped(height, here, after, first, last, time - goes, cue->end - goes);
 }
 
 /// Return how long the feet take to enter a cue: its blend, and longer while it stands.
@@ -168,15 +171,16 @@ inline bool _stands(const Ref<FootTrack>& track, double seconds) {
     return lang::at(goals, 0)->planted >= 1.0 && lang::at(goals, 1)->planted >= 1.0;
 }
 
-/// Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they
-/// are when it begins and ends, which gives the order and size of the steps.
+/// Return both feet on their way, of which `passed` of its `seconds` have passed. `first` and `last` say where they are
+/// when it begins and ends, which gives the order and size of the steps.
 inline List<Ref<FootGoal>> _stepped(
     double height,
     const List<Ref<FootGoal>>& before,
     const List<Ref<FootGoal>>& after,
     const List<Ref<FootGoal>>& first,
     const List<Ref<FootGoal>>& last,
-    double u
+    double passed,
+    double seconds
 ) {
     if (lang::len(before) == 0 || lang::len(after) == 0 || lang::len(first) == 0 || lang::len(last) == 0) {
         return List<Ref<FootGoal>>{};
@@ -202,9 +206,16 @@ inline List<Ref<FootGoal>> _stepped(
     double longer = std::max(lang::at(ways, 0), lang::at(ways, 1));
     double far = 1.0 - cue_times::ease((longer / height - planted_feet::FAR) / planted_feet::TOO_FAR);
     double apart = cue_times::ease(longer / planted_feet::NEARBY);
+    List<double> shares = List<double>{1.0 - apart * (1.0 - part), 1.0 - apart * part};
+    double quickest = std::max(lang::at(ways, 0) / lang::at(shares, 0), lang::at(ways, 1) / lang::at(shares, 1));
+    far *= 1.0
+        - cue_times::ease(
+            (quickest / (height * std::max(seconds, 0.001)) - planted_feet::QUICK) / planted_feet::TOO_QUICK
+        );
+    double u = seconds > 0.0 ? passed / seconds : 1.0;
     List<Ref<FootGoal>> out;
     for (int side = 0; side < 2; side++) {
-        double share = 1.0 - apart * (side == 0 ? 1.0 - part : part);
+        double share = lang::at(shares, side);
         double begin = left_first == (side == 0) ? 0.0 : 1.0 - share;
         double x = std::min(std::max((u - begin) / share, 0.0), 1.0);
         double go = cue_times::ease((x - planted_feet::WAITS) / (1.0 - 2.0 * planted_feet::WAITS));
@@ -284,7 +295,8 @@ inline List<Ref<FootGoal>> _stance(
         goals,
         planted_feet::_loop(project, tracks, height, old, rest->fade_start),
         planted_feet::_loop(project, tracks, height, rest, ends),
-        (time - rest->fade_start) / rest->fade
+        time - rest->fade_start,
+        rest->fade
     );
 }
 
@@ -305,14 +317,11 @@ inline List<Ref<FootGoal>> _loop(
     if (spot->over >= 1.0) {
         return here;
     }
-    return planted_feet::_stepped(
-        height,
-        planted_feet::_row(track, spot->other),
-        here,
-        planted_feet::_row(track, spot->leaves),
-        planted_feet::_row(track, spot->meets),
-        spot->over
-    );
+    double seam = spot->meets - std::get<0>(project->span(rest->action));
+    List<Ref<FootGoal>> before = planted_feet::_row(track, spot->other);
+    List<Ref<FootGoal>> leaves = planted_feet::_row(track, spot->leaves);
+    List<Ref<FootGoal>> meets = planted_feet::_row(track, spot->meets);
+    return planted_feet::_stepped(height, before, here, leaves, meets, spot->over * seam, seam);
 }
 
 /// Return where a clip's feet are at a second of the clip, interpolated linearly.

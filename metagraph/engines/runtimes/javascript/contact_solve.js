@@ -14,7 +14,6 @@ export const REACHED = 0.995; // of an arm's length: it does not snap straight
 export const FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 degrees
 export const WRIST = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 export const SOFT = 0.006; // metres of depth over which the push out of the body sets in
-export const DEEP = 1; // of the radii: nearer than this to a capsule's line it is not pushed all the way
 export const EVEN = 0.05; // how much the middle counts where lines are side by side
 export const STRAIGHT = [0.31, 0.52, 0.8]; // where a straight arm bends to: no side in particular, but always one
 export const ELBOW = 0.3; // how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -468,7 +467,7 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
       }
       const depth = radii - gap;
       let amount = depth > SOFT ? depth - 0.5 * SOFT : depth * depth / (2 * SOFT);
-      let inner = Math.min(1, gap / (DEEP * radii));
+      let inner = Math.min(1, gap / radii); // nearer to the line it is not pushed all the way
       inner = inner * inner * (3 - 2 * inner);
       if (first) {
         whole[side] = Math.min(whole[side], inner);

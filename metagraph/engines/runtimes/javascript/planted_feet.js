@@ -24,6 +24,8 @@ export const LIFT = 0.25; // how high a foot is lifted for a short step, as a sh
 export const MOST_LIFT = 0.08; // metres: the limit that no foot reaches
 export const FAR = 0.25; // of the height: no foot steps that much farther
 export const TOO_FAR = 0.1;
+export const QUICK = 0.65; // of the height, a second: above, feet step less and glide more
+export const TOO_QUICK = 0.2; // as much quicker, they only glide
 
 /**
  * Where a clip's feet are.
@@ -82,13 +84,13 @@ export function footGoals(project, tracks, height, plan, cue, place, time) {
     const before = _stance(project, tracks, height, plan, place, at);
     first = _stance(project, tracks, height, plan, place, cue.start);
     last = _row(track, cueSeconds(cue, came));
-    return _stepped(height, before, here, first, last, (time - cue.start) / (came - cue.start));
+    return _stepped(height, before, here, first, last, time - cue.start, came - cue.start);
   }
   at = Math.max(time, cue.end - cue.blendOut);
   const after = _stance(project, tracks, height, plan, place, at);
   first = _row(track, cueSeconds(cue, goes));
   last = _stance(project, tracks, height, plan, place, cue.end);
-  return _stepped(height, here, after, first, last, (time - goes) / (cue.end - goes));
+  return _stepped(height, here, after, first, last, time - goes, cue.end - goes);
 }
 
 /**
@@ -144,17 +146,18 @@ function _stands(track, seconds) {
 }
 
 /**
- * Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they are
- * when it begins and ends, which gives the order and size of the steps.
+ * Return both feet on their way, of which `passed` of its `seconds` have passed. `first` and `last` say where they are when
+ * it begins and ends, which gives the order and size of the steps.
  * @param {number} height
  * @param {FootGoal[]} before
  * @param {FootGoal[]} after
  * @param {FootGoal[]} first
  * @param {FootGoal[]} last
- * @param {number} u
+ * @param {number} passed
+ * @param {number} seconds
  * @returns {FootGoal[]}
  */
-function _stepped(height, before, after, first, last, u) {
+function _stepped(height, before, after, first, last, passed, seconds) {
   if (before.length === 0 || after.length === 0 || first.length === 0 || last.length === 0) {
     return [];
   }
@@ -167,11 +170,15 @@ function _stepped(height, before, after, first, last, u) {
   const moved = plus(minus(last[0].at, first[0].at), minus(last[1].at, first[1].at));
   const leftFirst = dot(moved, minus(first[0].at, first[1].at)) >= -1e-09;
   const longer = Math.max(ways[0], ways[1]);
-  const far = 1 - ease((longer / height - FAR) / TOO_FAR);
+  let far = 1 - ease((longer / height - FAR) / TOO_FAR);
   const apart = ease(longer / NEARBY);
+  const shares = [1 - apart * (1 - part), 1 - apart * part];
+  const quickest = Math.max(ways[0] / shares[0], ways[1] / shares[1]);
+  far *= 1 - ease((quickest / (height * Math.max(seconds, 0.001)) - QUICK) / TOO_QUICK);
+  const u = seconds > 0 ? passed / seconds : 1;
   const out = [];
   for (let side = 0; side < 2; side++) {
-    const share = 1 - apart * (side === 0 ? 1 - part : part);
+    const share = shares[side];
     const begin = leftFirst === (side === 0) ? 0 : 1 - share;
     const x = Math.min(Math.max((u - begin) / share, 0), 1);
     const go = ease((x - WAITS) / (1 - 2 * WAITS));
@@ -270,7 +277,8 @@ function _stance(project, tracks, height, plan, place, time) {
     goals,
     _loop(project, tracks, height, old, rest.fadeStart),
     _loop(project, tracks, height, rest, ends),
-    (time - rest.fadeStart) / rest.fade,
+    time - rest.fadeStart,
+    rest.fade,
   );
 }
 
@@ -293,7 +301,11 @@ function _loop(project, tracks, height, rest, time) {
   if (spot.over >= 1) {
     return here;
   }
-  return _stepped(height, _row(track, spot.other), here, _row(track, spot.leaves), _row(track, spot.meets), spot.over);
+  const seam = spot.meets - project.span(rest.action)[0];
+  const before = _row(track, spot.other);
+  const leaves = _row(track, spot.leaves);
+  const meets = _row(track, spot.meets);
+  return _stepped(height, before, here, leaves, meets, spot.over * seam, seam);
 }
 
 /**

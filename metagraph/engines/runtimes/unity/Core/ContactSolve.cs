@@ -147,7 +147,6 @@ namespace Metagraph
         public const double Folded = 0.906; // cosine of the least angle inside an elbow, 25 degrees
         public const double Wrist = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
         public const double Soft = 0.006; // metres of depth over which the push out of the body sets in
-        public const double Deep = 1.0; // of the radii: nearer than this to a capsule's line it is not pushed all the way
         public const double Even = 0.05; // how much the middle counts where lines are side by side
         // where a straight arm bends to: no side in particular, but always one
         public static readonly (double, double, double) Straight = (0.31, 0.52, 0.8);
@@ -612,7 +611,7 @@ namespace Metagraph
                     }
                     var depth = radii - gap;
                     var amount = depth > Soft ? depth - 0.5 * Soft : depth * depth / (2.0 * Soft);
-                    var inner = Math.Min(1.0, gap / (Deep * radii));
+                    var inner = Math.Min(1.0, gap / radii); // nearer to the line it is not pushed all the way
                     inner = inner * inner * (3.0 - 2.0 * inner);
                     if (first)
                     {

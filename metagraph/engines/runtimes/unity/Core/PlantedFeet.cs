@@ -34,6 +34,8 @@ namespace Metagraph
         public const double MostLift = 0.08; // metres: the limit that no foot reaches
         public const double Far = 0.25; // of the height: no foot steps that much farther
         public const double TooFar = 0.1;
+        public const double Quick = 0.65; // of the height, a second: above, feet step less and glide more
+        public const double TooQuick = 0.2; // as much quicker, they only glide
 
         /// <summary>
         /// Return where both feet should be at a time; an empty list if nothing blends or it is unknown.
@@ -85,13 +87,13 @@ namespace Metagraph
                 var before = Stance(project, tracks, height, plan, place, at);
                 first = Stance(project, tracks, height, plan, place, cue.Start);
                 last = Row(track, CueTimesRules.CueSeconds(cue, came));
-                return Stepped(height, before, here, first, last, (time - cue.Start) / (came - cue.Start));
+                return Stepped(height, before, here, first, last, time - cue.Start, came - cue.Start);
             }
             at = Math.Max(time, cue.End - cue.BlendOut);
             var after = Stance(project, tracks, height, plan, place, at);
             first = Row(track, CueTimesRules.CueSeconds(cue, goes));
             last = Stance(project, tracks, height, plan, place, cue.End);
-            return Stepped(height, here, after, first, last, (time - goes) / (cue.End - goes));
+            return Stepped(height, here, after, first, last, time - goes, cue.End - goes);
         }
 
         /// <summary>Return how long the feet take to enter a cue: its blend, and longer while it stands.</summary>
@@ -130,8 +132,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they
-        /// are when it begins and ends, which gives the order and size of the steps.
+        /// Return both feet on their way, of which `passed` of its `seconds` have passed. `first` and `last` say where they are
+        /// when it begins and ends, which gives the order and size of the steps.
         /// </summary>
         private static List<FootGoal> Stepped(
             double height,
@@ -139,7 +141,8 @@ namespace Metagraph
             List<FootGoal> after,
             List<FootGoal> first,
             List<FootGoal> last,
-            double u
+            double passed,
+            double seconds
         )
         {
             if (before.Count == 0 || after.Count == 0 || first.Count == 0 || last.Count == 0)
@@ -161,10 +164,14 @@ namespace Metagraph
             var longer = Math.Max(ways[0], ways[1]);
             var far = 1.0 - CueTimesRules.Ease((longer / height - Far) / TooFar);
             var apart = CueTimesRules.Ease(longer / Nearby);
+            var shares = new List<double> { 1.0 - apart * (1.0 - part), 1.0 - apart * part };
+            var quickest = Math.Max(ways[0] / shares[0], ways[1] / shares[1]);
+            far *= 1.0 - CueTimesRules.Ease((quickest / (height * Math.Max(seconds, 0.001)) - Quick) / TooQuick);
+            var u = seconds > 0.0 ? passed / seconds : 1.0;
             var out_ = new List<FootGoal>();
             for (int side = 0; side < 2; side++)
             {
-                var share = 1.0 - apart * (side == 0 ? 1.0 - part : part);
+                var share = shares[side];
                 var begin = leftFirst == (side == 0) ? 0.0 : 1.0 - share;
                 var x = Math.Min(Math.Max((u - begin) / share, 0.0), 1.0);
                 var go = CueTimesRules.Ease((x - Waits) / (1.0 - 2.0 * Waits));
@@ -253,7 +260,8 @@ namespace Metagraph
                 goals,
                 Loop(project, tracks, height, old, rest.FadeStart),
                 Loop(project, tracks, height, rest, ends),
-                (time - rest.FadeStart) / rest.Fade
+                time - rest.FadeStart,
+                rest.Fade
             );
         }
 
@@ -277,7 +285,11 @@ namespace Metagraph
             {
                 return here;
             }
-            return Stepped(height, Row(track, spot.Other), here, Row(track, spot.Leaves), Row(track, spot.Meets), spot.Over);
+            var seam = spot.Meets - project.Span(rest.Action).Item1;
+            var before = Row(track, spot.Other);
+            var leaves = Row(track, spot.Leaves);
+            var meets = Row(track, spot.Meets);
+            return Stepped(height, before, here, leaves, meets, spot.Over * seam, seam);
         }
 
         /// <summary>Return where a clip's feet are at a second of the clip, interpolated linearly.</summary>

@@ -21,6 +21,8 @@ const LIFT = 0.25  # how high a foot is lifted for a short step, as a share of i
 const MOST_LIFT = 0.08  # metres: the limit that no foot reaches
 const FAR = 0.25  # of the height: no foot steps that much farther
 const TOO_FAR = 0.1
+const QUICK = 0.65  # of the height, a second: above, feet step less and glide more
+const TOO_QUICK = 0.2  # as much quicker, they only glide
 
 
 # Where a clip's feet are.
@@ -62,12 +64,12 @@ static func foot_goals(project, tracks, height, plan, cue, place, time):
 		var before = _stance(project, tracks, height, plan, place, at)
 		first = _stance(project, tracks, height, plan, place, cue.start)
 		last = _row(track, CueTimes.cue_seconds(cue, came))
-		return _stepped(height, before, here, first, last, (time - cue.start) / (came - cue.start))
+		return _stepped(height, before, here, first, last, time - cue.start, came - cue.start)
 	at = Util.most(time, cue.end - cue.blend_out)
 	var after = _stance(project, tracks, height, plan, place, at)
 	first = _row(track, CueTimes.cue_seconds(cue, goes))
 	last = _stance(project, tracks, height, plan, place, cue.end)
-	return _stepped(height, here, after, first, last, (time - goes) / (cue.end - goes))
+	return _stepped(height, here, after, first, last, time - goes, cue.end - goes)
 
 
 # Return how long the feet take to enter a cue: its blend, and longer while it stands.
@@ -97,9 +99,9 @@ static func _stands(track, seconds):
 	return goals[0].planted >= 1.0 and goals[1].planted >= 1.0
 
 
-# Return both feet on their way. `u` is the share of the time that has passed, 0..1. `first` and `last` say where they are when it
+# Return both feet on their way, of which `passed` of its `seconds` have passed. `first` and `last` say where they are when it
 # begins and ends, which gives the order and size of the steps.
-static func _stepped(height, before, after, first, last, u):
+static func _stepped(height, before, after, first, last, passed, seconds):
 	if before.size() == 0 or after.size() == 0 or first.size() == 0 or last.size() == 0:
 		return []
 	var ways = []
@@ -114,9 +116,13 @@ static func _stepped(height, before, after, first, last, u):
 	var longer = Util.most(ways[0], ways[1])
 	var far = 1.0 - CueTimes.ease_((longer / height - FAR) / TOO_FAR)
 	var apart = CueTimes.ease_(longer / NEARBY)
+	var shares = [1.0 - apart * (1.0 - part), 1.0 - apart * part]
+	var quickest = Util.most(ways[0] / shares[0], ways[1] / shares[1])
+	far *= 1.0 - CueTimes.ease_((quickest / (height * Util.most(seconds, 0.001)) - QUICK) / TOO_QUICK)
+	var u = passed / seconds if seconds > 0.0 else 1.0
 	var out = []
 	for side in range(2):
-		var share = 1.0 - apart * (1.0 - part if side == 0 else part)
+		var share = shares[side]
 		var begin = 0.0 if left_first == (side == 0) else 1.0 - share
 		var x = Util.least(Util.most((u - begin) / share, 0.0), 1.0)
 		var go = CueTimes.ease_((x - WAITS) / (1.0 - 2.0 * WAITS))
@@ -182,7 +188,8 @@ static func _stance(project, tracks, height, plan, place, time):
 		goals,
 		_loop(project, tracks, height, old, rest.fade_start),
 		_loop(project, tracks, height, rest, ends),
-		(time - rest.fade_start) / rest.fade
+		time - rest.fade_start,
+		rest.fade
 	)
 
 
@@ -195,7 +202,11 @@ static func _loop(project, tracks, height, rest, time):
 	var here = _row(track, spot.seconds)
 	if spot.over >= 1.0:
 		return here
-	return _stepped(height, _row(track, spot.other), here, _row(track, spot.leaves), _row(track, spot.meets), spot.over)
+	var seam = spot.meets - project.span(rest.action)[0]
+	var before = _row(track, spot.other)
+	var leaves = _row(track, spot.leaves)
+	var meets = _row(track, spot.meets)
+	return _stepped(height, before, here, leaves, meets, spot.over * seam, seam)
 
 
 # Return where a clip's feet are at a second of the clip, interpolated linearly.
