@@ -98,7 +98,7 @@ class ContinuityLaw:
 
         times `[N]`: a sixtieth of a second apart. shown: what the layers of `plan` compose then.
         """
-        far, turned = sizes_of(moves_of(self._globals(shown)))
+        far, turned = measure_moves(moves_of(self._globals(shown)))
         own_far, own_turned = self._own(plan, times)
         mixed = blending(self.project, plan, times[1:])[:, None]
         return AddedMoves(
@@ -135,7 +135,7 @@ class ContinuityLaw:
             plan, layers={layer: of if layer == of.layer else LayerPlan(layer) for layer in LAYERS}
         )
         pose = LayersStage(alone, self.project, find_composer(self.project)).run(times)
-        sizes = np.stack(sizes_of(moves_of(self._globals(pose))))
+        sizes = np.stack(measure_moves(moves_of(self._globals(pose))))
         sizes[:, _cuts(self.project, alone, times)] = 0.0
         sizes[:, _within((s for cue in of.cues for s in _seams_of_cue(cue)), times[1:])] = 0.0
         near = sizes.copy()
@@ -176,7 +176,7 @@ def _beyond(moved: Array, before: Array) -> Array:
     return np.asarray(np.linalg.norm(moved - part[..., None] * before, axis=-1))
 
 
-def sizes_of(moves: tuple[Array, Array]) -> tuple[Array, Array]:
+def measure_moves(moves: tuple[Array, Array]) -> tuple[Array, Array]:
     """Return the lengths of moves, `[N-1, J]` each: metres and radians."""
     return np.linalg.norm(moves[0], axis=-1), np.linalg.norm(moves[1], axis=-1)
 
@@ -186,7 +186,7 @@ def usual_moves(project: Project, joints: list[int]) -> tuple[Array, Array]:
     `[J]` each: the USUAL percentile over all that plays.
     """
     found = [
-        sizes_of(moves_of((turns[:, joints].astype(np.float64), at[:, joints].astype(np.float64))))
+        measure_moves(moves_of((turns[:, joints].astype(np.float64), at[:, joints].astype(np.float64))))
         for turns, at in play_clips(project)
     ]
     if not found:
