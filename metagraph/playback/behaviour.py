@@ -86,7 +86,7 @@ class Lack:
 
 
 @dataclass(frozen=True)
-class Behaviour:
+class BehaviourCount:
     """What was counted in a mode, and which stances lack actions."""
 
     mode: Mode
@@ -117,11 +117,11 @@ def describe_lack(project: Project, lack: Lack) -> Phrase:
 
 def measure_behaviour(
     project: Project, mode: Mode = "talking", seconds: float = HOUR, seed: int | None = None
-) -> Behaviour:
+) -> BehaviourCount:
     """Return what a character does by itself in `seconds` of a mode, in which nothing is said."""
     plan = improvise(project, seconds, seed, mode)
     rows = (*_acts(project, plan, seconds), *_rests(plan, seconds), *_face(plan, mode, seconds))
-    return Behaviour(mode, seconds, rows, _lacks(project, plan))
+    return BehaviourCount(mode, seconds, rows, _lacks(project, plan))
 
 
 def _acts(project: Project, plan: Plan, seconds: float) -> list[BehaviourRow]:

@@ -10,7 +10,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import MODES, Project
 from metagraph.playback.behaviour import (
     LATER,
-    Behaviour,
+    BehaviourCount,
     describe_lack,
     measure_behaviour,
     repeated_share,
@@ -21,29 +21,31 @@ from tests.projects import as_in_the_paper
 SECONDS = 1200.0
 
 
-def value(of: Behaviour, name: str) -> float:
+def value(of: BehaviourCount, name: str) -> float:
     return next(row.value for row in of.rows if row.name.startswith(name))
 
 
 @pytest.fixture(scope="module")
-def counted(sample: Project) -> dict[str, Behaviour]:
+def counted(sample: Project) -> dict[str, BehaviourCount]:
     return {mode: measure_behaviour(sample, mode, SECONDS) for mode in MODES}
 
 
-def test_nobody_gestures_or_nods_to_nobody(counted: dict[str, Behaviour]) -> None:
+def test_nobody_gestures_or_nods_to_nobody(counted: dict[str, BehaviourCount]) -> None:
     assert value(counted["idle"], "Gestures") == value(counted["idle"], "Nods") == 0
     assert value(counted["idle"], "Fidgets") > 2 and value(counted["idle"], "Changes of stance") > 1
     assert value(counted["talking"], "Gestures") > 3 and value(counted["listening"], "Nods") > 3
     assert value(counted["listening"], "Gestures") < 0.2 * value(counted["talking"], "Gestures")
 
 
-def test_acts_of_the_arms_seldom_come_again_at_once(counted: dict[str, Behaviour]) -> None:
+def test_acts_of_the_arms_seldom_come_again_at_once(counted: dict[str, BehaviourCount]) -> None:
     for mode, most in (("idle", 0.4), ("listening", 0.4), ("talking", 0.5)):
         assert value(counted[mode], "The same act of the arms again within 30 s") <= 0.07
         assert value(counted[mode], "The same act of the arms again within 5 minutes") <= most
 
 
-def test_stances_are_kept_rests_spread_and_the_head_is_mostly_straight(counted: dict[str, Behaviour]) -> None:
+def test_stances_are_kept_rests_spread_and_the_head_is_mostly_straight(
+    counted: dict[str, BehaviourCount],
+) -> None:
     for mode in MODES:
         assert value(counted[mode], "Changes of stance undone") == 0
         assert value(counted[mode], "Head tilted") < 0.45
@@ -51,7 +53,7 @@ def test_stances_are_kept_rests_spread_and_the_head_is_mostly_straight(counted: 
     assert 5 < value(counted["idle"], "Rests of the arms, half") < 30
 
 
-def test_eyes_do_as_peoples_do(counted: dict[str, Behaviour]) -> None:
+def test_eyes_do_as_peoples_do(counted: dict[str, BehaviourCount]) -> None:
     for mode in MODES:
         compared = [row for row in counted[mode].rows if row.source is not None]
         assert compared and all(row.usual for row in compared), [(r.name, r.value) for r in compared]

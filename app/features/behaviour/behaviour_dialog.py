@@ -26,7 +26,7 @@ from app.widgets.choice_row import ChoiceRow
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.model import MODES, Project
 from metagraph.graph.temperaments import TEMPERAMENTS, find_temperament, set_temperament
-from metagraph.playback.behaviour import Behaviour, describe_lack, measure_behaviour
+from metagraph.playback.behaviour import BehaviourCount, describe_lack, measure_behaviour
 from metagraph.playback.planning.markov import DEFAULTS
 
 OWN = "own"
@@ -44,7 +44,7 @@ class BehaviourDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
-        self.found: dict[str, Behaviour] = {}
+        self.found: dict[str, BehaviourCount] = {}
         self._counted: Project | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Behaviour"))
@@ -139,12 +139,12 @@ class BehaviourDialog(QDialog):
         self._counted = project
         self.state.setText(tr("Counting…"))
 
-        def work(job: WindowJob) -> tuple[Project, dict[str, Behaviour]]:
+        def work(job: WindowJob) -> tuple[Project, dict[str, BehaviourCount]]:
             return project, {m: measure_behaviour(project, m) for m in MODES if not job.cancelled}
 
         self.jobs.start("behaviour", work, self._done, self._failed, quick=True)
 
-    def _done(self, found: tuple[Project, dict[str, Behaviour]]) -> None:
+    def _done(self, found: tuple[Project, dict[str, BehaviourCount]]) -> None:
         if found[0] is self._counted:
             self.found = found[1]
             self._show()

@@ -17,7 +17,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
-from metagraph.playback.planning.director import interval
+from metagraph.playback.planning.director import repeat_interval
 from metagraph.playback.planning.prominence import prominence
 from metagraph.playback.timing.phases import phases
 
@@ -123,7 +123,7 @@ class ActionRows(QWidget):
         shares = [prominence(project, a) for a in actions]
         self.prominence.show_value(common_value([100 * share for share in shares]))
         variety = project.settings.variety
-        soonest = min(interval(a.kind, x) for a, x in zip(actions, shares, strict=True)) * variety
+        soonest = min(repeat_interval(a.kind, x) for a, x in zip(actions, shares, strict=True)) * variety
         self.prominence.setToolTip(
             tr(
                 "How much viewers notice it. The more it stands out, the longer the character waits before "

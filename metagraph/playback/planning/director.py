@@ -22,7 +22,7 @@ LEAVES_HOME = 0.2  # share of the written tilts of the head that leave the stanc
 GOES_HOME = 0.7  # share of the written moves of a tilted head that go back there
 
 
-def interval(kind: Kind, prominence: float) -> float:
+def repeat_interval(kind: Kind, prominence: float) -> float:
     """Return after how many seconds an action may be done again.
 
     A beat that hardly shows takes 18 s, a gesture that stands out six minutes; fidgets, which nothing but

@@ -34,8 +34,8 @@ from metagraph.playback.planning.director import (
     SHORTER,
     STANDS_OUT,
     freshness,
-    interval,
     posture,
+    repeat_interval,
 )
 from metagraph.playback.planning.hashing import Bits
 from metagraph.playback.planning.mood import (
@@ -506,7 +506,7 @@ class Performer:
         variety = self.project.settings.variety
         if variety <= 0 or action.kind == "transition" or action.id not in self.ended:
             return 1.0
-        needed = interval(action.kind, prominence(self.project, action)) * variety
+        needed = repeat_interval(action.kind, prominence(self.project, action)) * variety
         return freshness(now - self.ended[action.id], needed)
 
     def _fresh(self, meta: MetaAction, candidates: Sequence[Action], now: float) -> list[Action]:
@@ -531,7 +531,7 @@ class Performer:
             shows = prominence(self.project, action)
             if reminded and shows >= STANDS_OUT:
                 continue
-            needed = interval(action.kind, shows) * share
+            needed = repeat_interval(action.kind, shows) * share
             if action.id not in self.ended or now >= self.ended[action.id] + needed:
                 out.append(action)
         return out

@@ -19,8 +19,8 @@ from metagraph.playback.planning.director import (
     STALE,
     STANDS_OUT,
     freshness,
-    interval,
     posture,
+    repeat_interval,
 )
 from metagraph.playback.planning.prominence import prominence
 from metagraph.playback.planning.running_plan import improvise
@@ -33,9 +33,9 @@ def cues(project: Project, layer: Any, mode: Any, seed: int = 2) -> tuple[Cue, .
 
 
 def test_a_beat_comes_again_in_seconds_and_what_stands_out_in_minutes() -> None:
-    assert interval("gesture", 0.0) == 18 and interval("gesture", 1.0) == pytest.approx(360)
-    assert interval("fidget", 0.0) == 240 and interval("fidget", 1.0) == pytest.approx(600)
-    assert interval("gesture", 0.3) < 60 < 150 < interval("gesture", 0.75)
+    assert repeat_interval("gesture", 0.0) == 18 and repeat_interval("gesture", 1.0) == pytest.approx(360)
+    assert repeat_interval("fidget", 0.0) == 240 and repeat_interval("fidget", 1.0) == pytest.approx(600)
+    assert repeat_interval("gesture", 0.3) < 60 < 150 < repeat_interval("gesture", 0.75)
 
 
 def test_what_has_just_been_played_is_hardly_likely_and_what_is_rested_is_as_likely_as_ever() -> None:
@@ -50,7 +50,7 @@ def test_nothing_written_comes_again_before_its_time(sample: Project, mode: Any)
         free = 0.0
         for cue in cues(sample, layer, mode):
             if cue.action.kind != "transition":
-                needed = interval(cue.action.kind, prominence(sample, cue.action))
+                needed = repeat_interval(cue.action.kind, prominence(sample, cue.action))
                 needed *= 1.0 if cue.start < free + LONG_REST else SHORTER
                 assert cue.start >= last.get(cue.action.id, -1e9) + needed - 1e-6
                 last[cue.action.id] = cue.end

@@ -23,7 +23,7 @@ inline constexpr double SHORTER = 0.3;
 inline constexpr double STALE = 0.05; // least factor of the likelihood of what has just been played
 inline constexpr double LEAVES_HOME = 0.2; // share of the written tilts of the head that leave the stance it begins in
 inline constexpr double GOES_HOME = 0.7; // share of the written moves of a tilted head that go back there
-inline double interval(const std::string& kind, double prominence);
+inline double repeat_interval(const std::string& kind, double prominence);
 inline double posture(const std::string& layer);
 inline double freshness(double since, double needed);
 
@@ -35,7 +35,7 @@ namespace director {
 ///
 /// A beat that hardly shows takes 18 s, a gesture that stands out six minutes; fidgets, which nothing but time calls
 /// for, 4 to 10 minutes. prominence: 0..1.
-inline double interval(const std::string& kind, double prominence) {
+inline double repeat_interval(const std::string& kind, double prominence) {
     if (kind == "gesture") {
         return 18.0 * std::exp(std::log(20.0) * prominence);
     }

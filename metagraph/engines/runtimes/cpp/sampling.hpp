@@ -922,7 +922,7 @@ inline double Performer::_variety(const Ref<Action>& action, double now) {
     if (variety <= 0 || action->kind == "transition" || !lang::contains(this->ended, action->id)) {
         return 1.0;
     }
-    double needed = director::interval(action->kind, prominence::prominence(this->project, action)) * variety;
+    double needed = director::repeat_interval(action->kind, prominence::prominence(this->project, action)) * variety;
     return director::freshness(now - this->ended.at(action->id), needed);
 }
 
@@ -962,7 +962,7 @@ inline List<Ref<Action>> Performer::_fresh(
         if (reminded && shows >= director::STANDS_OUT) {
             continue;
         }
-        double needed = director::interval(action->kind, shows) * share;
+        double needed = director::repeat_interval(action->kind, shows) * share;
         if (!lang::contains(this->ended, action->id) || now >= this->ended.at(action->id) + needed) {
             out.push_back(action);
         }

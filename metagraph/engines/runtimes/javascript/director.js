@@ -27,7 +27,7 @@ export const GOES_HOME = 0.7; // share of the written moves of a tilted head tha
  * @param {number} prominence
  * @returns {number}
  */
-export function interval(kind, prominence) {
+export function repeatInterval(kind, prominence) {
   if (kind === "gesture") {
     return 18 * Math.exp(Math.log(20) * prominence);
   }

@@ -21,7 +21,17 @@ import {
   shapeOf,
   slackOf,
 } from "./cue_shapes.js";
-import { APART, GOES_HOME, LEAVES_HOME, LONG_REST, SHORTER, STANDS_OUT, freshness, interval, posture } from "./director.js";
+import { 
+  APART,
+  GOES_HOME,
+  LEAVES_HOME,
+  LONG_REST,
+  SHORTER,
+  STANDS_OUT,
+  freshness,
+  posture,
+  repeatInterval,
+} from "./director.js";
 import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./mood.js";
 import { prominence } from "./prominence.js";
 import { node, remember, rested } from "./remembering.js";
@@ -599,7 +609,7 @@ export class Performer {
     if (variety <= 0 || action.kind === "transition" || !this.ended.has(action.id)) {
       return 1;
     }
-    const needed = interval(action.kind, prominence(this.project, action)) * variety;
+    const needed = repeatInterval(action.kind, prominence(this.project, action)) * variety;
     return freshness(now - this.ended.get(action.id), needed);
   }
 
@@ -630,7 +640,7 @@ export class Performer {
       if (reminded && shows >= STANDS_OUT) {
         continue;
       }
-      const needed = interval(action.kind, shows) * share;
+      const needed = repeatInterval(action.kind, shows) * share;
       if (!this.ended.has(action.id) || now >= this.ended.get(action.id) + needed) {
         out.push(action);
       }

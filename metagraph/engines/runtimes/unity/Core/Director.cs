@@ -29,7 +29,7 @@ namespace Metagraph
         /// A beat that hardly shows takes 18 s, a gesture that stands out six minutes; fidgets, which nothing but time calls for,
         /// 4 to 10 minutes. prominence: 0..1.
         /// </summary>
-        public static double Interval(string kind, double prominence)
+        public static double RepeatInterval(string kind, double prominence)
         {
             if (kind == "gesture")
             {

@@ -740,7 +740,7 @@ namespace Metagraph
             {
                 return 1.0;
             }
-            var needed = DirectorRules.Interval(action.Kind, ProminenceRules.Prominence(Project, action)) * variety;
+            var needed = DirectorRules.RepeatInterval(action.Kind, ProminenceRules.Prominence(Project, action)) * variety;
             return DirectorRules.Freshness(now - Ended[action.Id], needed);
         }
 
@@ -778,7 +778,7 @@ namespace Metagraph
                 {
                     continue;
                 }
-                var needed = DirectorRules.Interval(action.Kind, shows) * share;
+                var needed = DirectorRules.RepeatInterval(action.Kind, shows) * share;
                 if (!Ended.ContainsKey(action.Id) || now >= Ended[action.Id] + needed)
                 {
                     out_.Add(action);

@@ -21,7 +21,7 @@ const GOES_HOME = 0.7  # share of the written moves of a tilted head that go bac
 #
 # A beat that hardly shows takes 18 s, a gesture that stands out six minutes; fidgets, which nothing but time calls for, 4 to 10
 # minutes. prominence: 0..1.
-static func interval(kind, prominence):
+static func repeat_interval(kind, prominence):
 	if kind == "gesture":
 		return 18.0 * exp(log(20.0) * prominence)
 	return 240.0 * exp(log(2.5) * prominence)

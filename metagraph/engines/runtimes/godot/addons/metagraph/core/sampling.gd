@@ -580,7 +580,7 @@ class Performer:
 		var variety = self.project.settings.variety
 		if variety <= 0 or action.kind == "transition" or not self.ended.has(action.id):
 			return 1.0
-		var needed = Director.interval(action.kind, Prominence.prominence(self.project, action)) * variety
+		var needed = Director.repeat_interval(action.kind, Prominence.prominence(self.project, action)) * variety
 		return Director.freshness(now - self.ended[action.id], needed)
 
 	# Return those that may be done of one's own accord; see `director`.
@@ -608,7 +608,7 @@ class Performer:
 			var shows = Prominence.prominence(self.project, action)
 			if reminded and shows >= Director.STANDS_OUT:
 				continue
-			var needed = Director.interval(action.kind, shows) * share
+			var needed = Director.repeat_interval(action.kind, shows) * share
 			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
 				out.append(action)
 		return out
