@@ -6,7 +6,7 @@ import json
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections import Counter
 
-from app.cli.command_output import LONGEST, open_for_command
+from app.cli.command_output import LONGEST, explain_code_3, open_for_command
 from app.cli.journal_note import warn_of_journals
 from app.cli.showing_command import name_showing_command
 from metagraph.formats.project.verified import count_in_words
@@ -67,4 +67,7 @@ def run(options: Namespace) -> int:
                 if command := name_showing_command(project, p, options.project):
                     print(f"        See it: {command}")
         print(", ".join(count_in_words(counts[one], one) for one in ("error", "warning", "hint")))
-    return 3 if grave(problems, options.strict) else 0
+    failing = grave(problems, options.strict)
+    if failing:
+        explain_code_3(f"{count_in_words(len(failing), 'problem')} to solve")
+    return 3 if failing else 0

@@ -51,6 +51,11 @@ def open_for_command(path: Path) -> Project:
     return found.project
 
 
+def explain_code_3(why: str) -> None:
+    """Say on the terminal why a command that did its work ends with exit code 3."""
+    print(f"exit code 3: {why}", file=sys.stderr)
+
+
 def stage_performance(project: Project, options: Namespace) -> Plan:
     """Return the performance that is asked for, or an improvised one; its length goes into the options."""
     kept = _kept(project, options.performance) if options.performance is not None else None

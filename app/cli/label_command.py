@@ -206,7 +206,23 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         told_of, data_of = _told_of_merging(begun, path)
         words, data = f"{words}\n{told_of}", data | data_of
     say(options, words, data)
-    return 3 if taken.left or errors or faults else 0
+    return _exit_code(len(taken.left), len(errors), len(faults))
+
+
+def _exit_code(left: int, errors: int, faults: int) -> int:
+    """Return the exit code, and say on the terminal why it is not 0."""
+    from app.cli.command_output import explain_code_3
+    from metagraph.formats.project.verified import count_in_words
+
+    counts = (
+        (left, "clip left", "clips left"),
+        (errors, "problem", "problems"),
+        (faults, "fault seen", "faults seen"),
+    )
+    failing = [count_in_words(count, one, many) for count, one, many in counts if count]
+    if failing:
+        explain_code_3(", ".join(failing))
+    return 3 if failing else 0
 
 
 def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:

@@ -33,6 +33,7 @@ class ProblemWatch(QObject):
 
     changed = Signal()
     played = Signal(bool)  # begun, or over
+    progressed = Signal(int)  # percent of the playing that is done
 
     def __init__(
         self,
@@ -75,6 +76,7 @@ class ProblemWatch(QObject):
             lambda job: rehearse(project, progress=job.tell, cancelled=lambda: job.cancelled),
             lambda problems: self._show_seen(project, problems),
         )
+        job.progress.connect(self._progress)
         job.ended.connect(self._over)
         self.played.emit(True)
 
@@ -82,6 +84,10 @@ class ProblemWatch(QObject):
         self._seen = tuple((p, _subject(project, p)) for p in problems)
         self._seen_fixes = fix_clips(project, problems)
         self._merge()
+
+    def _progress(self, done: int, total: int, words: str = "") -> None:
+        if self.is_playing and total > 0:
+            self.progressed.emit(100 * done // total)
 
     def _over(self) -> None:
         self.is_playing = False

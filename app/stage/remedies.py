@@ -17,7 +17,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import merging_stances, retiming
 from metagraph.graph.model import Action, Project
 from metagraph.graph.problem import Problem
-from metagraph.graph.repeating import seconds_played
+from metagraph.graph.repeating import LONGEST_REPEAT, seconds_played
 
 BLENDED = 0.45  # of what plays, that each blend may take
 LIKELIER = 4.0  # times as likely a transition to a stance that is not reached
@@ -292,6 +292,10 @@ _OF_ACTIONS: dict[str, Finding] = {
     "hardly-seen": _repeat,
     "swapped-clip": _swapped,
     "moment": _times(lambda: tr("Clear the stroke"), **_NO_PHASES),
+    "short-cycle": _times(lambda: tr("Play it once"), repeat=0.0),
+    "long-repeat": _times(
+        lambda: tr("Repeat {seconds:.0f} s", seconds=LONGEST_REPEAT), repeat=LONGEST_REPEAT
+    ),
     "exit": _times(lambda: tr("Clear the exit"), earliest_exit=None),
     "blend": _shorten,
     "trim": _trim,

@@ -19,7 +19,7 @@ from metagraph.graph.expand import reachable
 from metagraph.graph.manual.check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
-from metagraph.graph.repeating import cycle_of, seconds_played
+from metagraph.graph.repeating import LEAST_CYCLE, LONGEST_REPEAT, cycle_of, seconds_played
 from metagraph.motion.in_place import travel_of
 
 Array = NDArray[Any]
@@ -228,6 +228,7 @@ class _ActionCheck:
             )
         end = entry.duration if self.timing.end is None else self.timing.end
         yield from self.played(entry, end)
+        yield from self.repeats(end)
         yield from self.blends()
         yield from self.exit(end)
         yield from self.length(entry)
@@ -341,6 +342,30 @@ class _ActionCheck:
                 phrase("Shorten its blends, or let it repeat for longer.")
                 if repeats
                 else phrase("Let it repeat, shorten its blends, or use a clip that plays it several times."),
+            )
+
+    def repeats(self, end: float) -> Iterator[Problem]:
+        """Yield a hint if it does not repeat as it is set to."""
+        timing, length = self.timing, end - self.timing.start
+        if self.action.kind not in ("gesture", "fidget") or timing.repeat <= 0:
+            return
+        if 0 < length < LEAST_CYCLE:
+            yield self.at(
+                "hint",
+                "short-cycle",
+                phrase("plays once: a part of {length:.2f} s is too short to repeat", length=length),
+                phrase("Move its start and end farther apart, or turn off Repeats."),
+            )
+        elif length >= LEAST_CYCLE and timing.repeat > LONGEST_REPEAT:
+            yield self.at(
+                "hint",
+                "long-repeat",
+                phrase(
+                    "is set to repeat for {wanted:.0f} s, and plays {most:.0f} s of them",
+                    wanted=timing.repeat,
+                    most=LONGEST_REPEAT,
+                ),
+                phrase("Set a shorter time. A request can still ask for a longer duration."),
             )
 
     def blends(self) -> Iterator[Problem]:

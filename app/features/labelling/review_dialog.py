@@ -448,6 +448,8 @@ class ReviewDialog(QDialog):
         if self.work.parted:
             self._bridged = self.work.bridge()
             self._count()
+        else:
+            self.queue.say_nothing_to_bridge()
 
     def undo(self) -> None:
         """Take the last step back, and look at that clip again."""

@@ -133,6 +133,13 @@ class ReviewQueue(QWidget):
             item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.list.blockSignals(False)
 
+    def say_nothing_to_bridge(self) -> None:
+        """Say that no stance waits to be joined to the others."""
+        words = tr("Nothing to bridge: each stance that is placed has a way in and out.")
+        if words not in self.parted.text():
+            self.parted.setText("\n".join(text for text in (self.parted.text(), words) if text))
+        self.parted.setVisible(True)
+
     def part(self, stances: Sequence[str], made: Sequence[str], unbridged: Sequence[str] = ()) -> None:
         """Tell of stances, by name, that no clip leads to or from, or else what was made of blends; and why
         others cannot be joined by blending.

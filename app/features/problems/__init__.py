@@ -27,6 +27,7 @@ def contribute(shell: Shell) -> Contribution:
         panel.play_wanted.connect(watch.play)
         panel.moment_wanted.connect(shell.stage.performance.show_moment)
         watch.played.connect(panel.show_playing)
+        watch.progressed.connect(panel.show_progress)
         panel.show_playing(watch.is_playing)
         return panel
 

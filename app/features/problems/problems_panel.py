@@ -289,6 +289,10 @@ class ProblemsPanel(QWidget):
         self.play.setEnabled(not playing)
         self.play.setText(tr("Playing…") if playing else tr("Play and check"))
 
+    def show_progress(self, percent: int) -> None:
+        """Show how much has been played."""
+        self.play.setText(tr("Playing… {percent} %", percent=percent))
+
     def fixable(self) -> list[Fix]:
         """Return what can be mended together, with one press, without taking anything away."""
         found = (self.fixes.get(p) for p in self.problems)

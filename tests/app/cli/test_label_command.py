@@ -117,8 +117,10 @@ def test_a_stance_that_nothing_leads_to_is_told_as_check_tells_it(
     assert not data["left"]
     assert [e for e in data["errors"] if "cannot be reached" in e]
     assert "problem: stance " in shown.err and "cannot be reached" in shown.err
+    assert "exit code 3: " in shown.err
     assert main(["check", data["project"]]) == 3
-    assert "cannot be reached" in capsys.readouterr().out
+    shown = capsys.readouterr()
+    assert "cannot be reached" in shown.out and "exit code 3: " in shown.err
 
 
 def test_such_a_stance_is_reached_by_blending_and_that_is_told(

@@ -43,6 +43,12 @@ CASES: dict[str, tuple[str, Wrong, str]] = {  # code: the action, what is wrong 
     "mask": ("rest wave rt", set_to(joints=("Tail",)), "Move all joints"),
     "no-end": ("rest to up", set_to(end_stance=None), "Leave it out"),
     "hardly-seen": ("rest wave rt", timed(start=0.4, end=0.7, blend_in=0.13, blend_out=0.13), "Repeat it"),
+    "short-cycle": (
+        "rest wave rt",
+        timed(start=0.4, end=0.45, blend_in=0, blend_out=0, repeat=2.0),
+        "Play it",
+    ),
+    "long-repeat": ("rest wave rt", timed(repeat=90.0), "Repeat 60 s"),
     "moment": ("rest wave rt", timed(stroke=3.0), "Clear the stroke"),
 }
 

@@ -451,6 +451,8 @@ def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_w
     drive = toys
     dialog = made_of(drive, "standing talker")
     assert not dialog.queue.bridge.isVisible()
+    press(dialog, K.Key_B)
+    assert "Nothing to bridge" in dialog.queue.parted.text()
     press(dialog, K.Key_Return)
     drive.settle()
     assert not dialog.queue.bridge.isVisible()  # a single clip is no reason to speak of it

@@ -307,7 +307,11 @@ def test_play_and_check_lists_what_is_seen_and_a_click_opens_that_moment(toys, t
     drive.wait(panel.play.isVisible)
     QTest.mouseClick(panel.play, Qt.MouseButton.LeftButton)
     assert not panel.play.isEnabled() and panel.play.text() == "Playing…"
+    shown = set()
+    drive.problems.progressed.connect(lambda percent: shown.add((percent, panel.play.text())))
     drive.wait(panel.play.isEnabled, 60)
+    assert shown and all(text == f"Playing… {percent} %" for percent, text in shown)
+    assert panel.play.text() == "Play and check"
     (seen,) = [p for p in panel.problems if p.code == "play-in-air"]
     assert seen.severity == "error" and seen.moment is not None
     assert panel.problems[0].code.startswith("play-"), "what was seen is on top"
