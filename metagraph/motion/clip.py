@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -101,6 +101,10 @@ class Clip:
             array.setflags(write=False)
             object.__setattr__(self, field, array)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what is remembered of the clip: another thread may add to it while it is sent away."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
     @property
     def frames(self) -> int:
         return len(self.rotations)
@@ -123,14 +127,17 @@ class Clip:
         full[:, list(self.translated)] = self.translations
         return Pose(self.rotations, full)
 
-    @cached_property
+    @property
     def dense(self) -> Clip:
         """Return the clip with at least 60 keys a second, which is what plays and what exports hold: the keys
         between its own are on cubic curves. Itself if it has as many, or if its keys are `straight`.
         """
-        steps = 1 if self.straight or self.frames < 2 else count_steps(self.fps)
-        if steps == 1:
-            return self
+        plain = self.straight or self.frames < 2 or count_steps(self.fps) == 1
+        return self if plain else self._dense  # a clip that held itself would outlive its project
+
+    @cached_property
+    def _dense(self) -> Clip:
+        steps = count_steps(self.fps)
         apart = (self.rotations[-1] - self.rotations[0], self.translations[-1] - self.translations[0])
         loop = all(float(np.abs(ends).max()) < CLOSED for ends in apart)
         rotations = fill_between_keys(self.rotations, steps, loop)

@@ -161,7 +161,8 @@ def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: 
         both = (data["layers"][layer]["actions"] for data in (ours, theirs))
         for a, b in zip(*both, strict=True):
             assert len(a.pop("phases", [])) == len(b.pop("phases", []))
-            assert a.pop("vigour", 0.0) == pytest.approx(b.pop("vigour", 0.0), abs=0.03)
+            for field in ("vigour", "prominence"):
+                assert a.pop(field, 0.0) == pytest.approx(b.pop(field, 0.0), abs=0.03)
     assert ours == theirs
 
 

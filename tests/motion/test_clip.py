@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -129,3 +130,13 @@ def test_a_clip_remembers_what_was_measured_of_it_and_of_no_other() -> None:
         assert one.measured(("n", n), partial(float, n)) == n
     assert one.measured(("n", MEASURES), lambda: -1.0) == MEASURES
     assert replace(one).measured(("n", MEASURES), lambda: -1.0) == -1.0
+
+
+def test_a_clip_is_sent_to_another_process_without_what_is_remembered_of_it(toy):
+    """Another thread may be measuring it at that moment."""
+    clip = toy.clip("wave", 1.0)
+    plain = len(pickle.dumps(clip))
+    assert clip.dense.frames > clip.frames
+    assert len(pickle.dumps(clip)) == plain
+    again = pickle.loads(pickle.dumps(clip))
+    assert (again.rotations == clip.rotations).all() and again.dense.frames == clip.dense.frames
