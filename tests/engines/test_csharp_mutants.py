@@ -82,7 +82,12 @@ MUTATIONS = [
     ),
     ("Replan.cs", "kept ? last.Part + 1 : last.Part", "last.Part", "the key of a remainder"),
     ("Replan.cs", "var resumes = last.Request.Resume &&", "var resumes =", "what goes on after a cut"),
-    ("Markov.cs", "0.35 + 1.3 *", "0.3 + 1.3 *", "the gap between what a model writes"),
+    (
+        "Markov.cs",
+        "const double Rests = 0.9;",
+        "const double Rests = 0.6;",
+        "the gap between what a model writes",
+    ),
     ("Hear.cs", "now + graph.Settings.Lookahead", "now", "the lookahead"),
     (
         "Hear.cs",

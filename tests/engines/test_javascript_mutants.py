@@ -145,8 +145,8 @@ MUTATIONS = [
         "if (other.start > start) {",
         "gaps for what models write",
     ),
-    ("markov.js", "0.35 + 1.3 *", "0.3 + 1.3 *", "the gap between what a model writes"),
-    ("markov.js", "return 1 + 2 * u;", "return 1 + u;", "how long what a model writes lasts"),
+    ("markov.js", "const RESTS = 0.9;", "const RESTS = 0.6;", "the gap between what a model writes"),
+    ("markov.js", "return 1 + 2 * chanceOf(", "return 1 + chanceOf(", "how long what a model writes lasts"),
     (
         "markov.js",
         "draw < chain.positive + chain.negative",

@@ -228,10 +228,15 @@ def test_vectors_that_are_missing_broken_or_newer_are_told(tmp_path: Path) -> No
 
 
 def test_vectors_of_another_performance_are_told_apart(shipped: Any) -> None:
-    _, project, data = shipped
+    folder, project, data = shipped
     case = json.loads(
-        json.dumps(next(c for c in data["cases"] if any(of["cues"] for of in c["plan"]["layers"].values())))
+        json.dumps(
+            next((c for c in data["cases"] if any(of["cues"] for of in c["plan"]["layers"].values())), None)
+        )
     )
+    if case is None:
+        assert folder.name in ("calm", "quiet", "slow", "steady"), "nobody moves where nothing is asked"
+        return
     layer = next(of for of in case["plan"]["layers"].values() if of["cues"])
     layer["cues"][0]["start"] += 0.01
     assert any("start" in words for words in vectors.find_case_differences(project, case))

@@ -167,7 +167,9 @@ def written(character: Character, layer: str, seed: int, end: float) -> list[Met
     may = [1.0 if kind in had else 0.0 for _, kind in model["states"]]
     while any(may):
         key = f"auto/{layer}/{len(out)}"
-        start = time + model["gap"] * (0.35 + 1.3 * uniform(seed, key, "gap"))
+        gap = model["gap"]
+        rest = log_normal(gap, 0.9 * gap, uniform(seed, key, "gap"), uniform(seed, key, "gap2"))
+        start = time + min(5.0 * gap, max(gap / 5.0, rest))
         if start >= end:
             break
         row = [p * m for p, m in zip(model["matrix"][state], may, strict=True)] if state >= 0 else may
@@ -177,10 +179,7 @@ def written(character: Character, layer: str, seed: int, end: float) -> list[Met
         u = uniform(seed, key, "length")
         seconds = 1.0 + 2.0 * u
         if model["lengths"]:
-            mean, deviation = model["lengths"][state]
-            a = log(1.0 + (deviation / mean) ** 2)
-            z = sqrt(-2.0 * log(u)) * cos(2.0 * pi * uniform(seed, key, "length2"))
-            seconds = mean * exp(sqrt(a) * z - a / 2.0)
+            seconds = log_normal(*model["lengths"][state], u, uniform(seed, key, "length2"))
         tags: tuple[str, ...] = tuple(model["tags"][state].split()) if model["tags"] else ()
         if kind == "gesture" and not model["tags"]:
             draw = uniform(seed, key, "tag")
@@ -189,6 +188,21 @@ def written(character: Character, layer: str, seed: int, end: float) -> list[Met
         out.append(Meta(key, kind, start, start + seconds, WRITTEN, start, True, tags, limb))
         time = start + seconds
     return out
+
+
+def log_normal(mean: float, deviation: float, u: float, v: float) -> float:
+    """ "Models"."""
+    a = log(1.0 + (deviation / mean) ** 2)
+    return mean * exp(sqrt(a) * sqrt(-2.0 * log(u)) * cos(2.0 * pi * v) - a / 2.0)
+
+
+def performed(character: Character, layer: str, seed: int, meta: Meta) -> bool:
+    """ "Meta actions": nobody said a mode and nothing is said, so the character idles."""
+    modes = character.data["layers"][layer]["markov"].get("modes") or []
+    if meta.rank != WRITTEN or not modes:
+        return True
+    share = modes[0][("gesture", "fidget", "transition").index(meta.kind)]
+    return bool(share >= 1.0 or uniform(seed, meta.key, "mode") < share)
 
 
 def replanned(metas: list[Meta], models: list[Meta], planner: dict[str, Any]) -> list[Meta]:
@@ -230,7 +244,7 @@ class Sampler:
     def __init__(self, character: Character, layer: str, case: dict[str, Any]) -> None:
         self.graph, self.planner = character.data["layers"][layer], character.data["planner"]
         self.actions, self.seed = character.actions, case["seed"]
-        self.stance = begins_in(character, layer, case)
+        self.layer, self.stance = layer, begins_in(character, layer, case)
         self.cues: list[dict[str, Any]] = []
 
     def of(self, stance: str, kind: str) -> list[dict[str, Any]]:
@@ -263,7 +277,45 @@ class Sampler:
             if (c["stance"], self.actions[c["action"]]["kind"]) == (stance, kind)
         ]
 
-    def steps(self, meta: Meta) -> list[tuple[str, list[dict[str, Any]]]] | None:
+    def ended(self, ident: str) -> float:
+        return max((cue["end"] for cue in self.cues if cue["action"] == ident), default=-inf)
+
+    def time(self, action: dict[str, Any]) -> float:
+        """ "Variety": after how long it may be done again."""
+        p, variety = action.get("prominence", 0.0), self.planner["variety"]
+        return float(variety * (18.0 * 20.0**p if action["kind"] == "gesture" else 240.0 * 2.5**p))
+
+    def rested(self, meta: Meta, every: list[dict[str, Any]], now: float) -> list[dict[str, Any]]:
+        """ "Variety": what the model may do."""
+        variety = self.planner["variety"]
+        if meta.kind == "transition":
+            moves = [c["end"] for c in self.cues if self.actions[c["action"]]["kind"] == "transition"]
+            if (
+                now
+                < max(moves, default=-inf) + variety * {"body": 15.0, "arms": 10.0, "head": 8.0}[self.layer]
+            ):
+                return []
+            if self.layer != "head":
+                return every
+            start = self.graph["start"]
+            if self.stance == start:
+                return every if uniform(self.seed, meta.key, "leaves") < 0.2 else []
+            home = [a for a in every if a["end_stance"] == start]
+            return home if home and uniform(self.seed, meta.key, "home") < 0.7 else every
+        long = now >= (self.cues[-1]["end"] if self.cues else 0.0) + 30.0 * variety
+        acts = [c for c in self.cues if self.actions[c["action"]]["kind"] != "transition"]
+        shown = any(
+            c["end"] >= now - 30.0 * variety and self.actions[c["action"]].get("prominence", 0.0) >= 0.65
+            for c in acts
+        )
+        return [
+            a
+            for a in every
+            if now >= self.ended(a["id"]) + self.time(a) * (0.3 if long else 1.0)
+            and not (shown and a.get("prominence", 0.0) >= 0.65)
+        ]
+
+    def steps(self, meta: Meta, now: float) -> list[tuple[str, list[dict[str, Any]]]] | None:
         """ "Candidates": each hop with the stance it leads to, then the action itself."""
         if meta.action is not None:
             action = self.actions[meta.action]
@@ -278,7 +330,11 @@ class Sampler:
         every = self.of(self.stance, meta.kind)
         found = [a for a in every if set(meta.tags) <= set(a["tags"])]
         exact = [a for a in found if meta.limb in (None, a["limb"])]
-        if meta.rank == WRITTEN:
+        if meta.rank == WRITTEN and self.planner["variety"] > 0.0:
+            rested = self.rested(meta, every, now)
+            wider = ([a for a in some if a in rested] for some in (exact, found, every))
+            exact, found = next((some for some in wider if some), []), []
+        elif meta.rank == WRITTEN:
             last = self.drawn(self.stance, meta.kind)[-1:]
             wider = (exact, found, every)
             exact = next((some for some in wider if any(a["id"] not in last for a in some)), every)
@@ -296,8 +352,9 @@ class Sampler:
             late = meta.timed or free - meta.asked > self.planner["wait"]
             if meta.end <= free + NEAR and meta.start < free and late:
                 continue
-            steps = self.steps(meta)
-            cues = self.realised(meta, steps, max(free, meta.start), limit, wish) if steps else []
+            now = max(free, meta.start)
+            steps = self.steps(meta, now)
+            cues = self.realised(meta, steps, now, limit, wish) if steps else []
             self.cues += cues
             self.stance = cues[-1]["then"] if cues else self.stance
         return self.cues
@@ -368,6 +425,8 @@ class Sampler:
         for a in candidates:
             uses = sum(cue["action"] == a["id"] and cue["start"] >= since for cue in self.cues)
             weights[a["id"]] = a["likelihood"] / max(self.planner["alpha"] * uses, 1.0)
+            if self.planner["variety"] > 0.0 and a["kind"] != "transition":
+                weights[a["id"]] *= min(1.0, max(0.05, (now - self.ended(a["id"])) / self.time(a)))
         return self.actions[pick(self.seed, key, "action", weights)]
 
 
@@ -379,4 +438,4 @@ def cues_of(character: Character, layer: str, case: dict[str, Any]) -> list[dict
     end = case["steps"][0]["end"]
     models = written(character, layer, case["seed"], end) if case["idle"] else []
     metas = replanned(asked(character, layer, case), models, character.data["planner"])
-    return sampler.perform(metas, end)
+    return sampler.perform([m for m in metas if performed(character, layer, case["seed"], m)], end)

@@ -43,7 +43,7 @@ def way(a: Foot, b: Foot) -> float:
     return distance + 0.3 * sqrt(max(0.0, 2.0 - 2.0 * abs(float(a.turn @ b.turn))))
 
 
-def step(height: float, *feet: Any) -> Feet | None:
+def step(height: float, seconds: float, *feet: Any) -> Feet | None:
     """ "Steps": A, B, A0, B1, u."""
     a, b, first, last, u = feet
     if any(one is None for one in (a, b, first, last)):
@@ -53,8 +53,11 @@ def step(height: float, *feet: Any) -> Feet | None:
     shift = last[0].place - first[0].place + last[1].place - first[1].place
     leads = 0 if shift @ (first[0].place - first[1].place) >= -1e-9 else 1
     far, apart = 1.0 - ease((max(ways) / height - 0.25) / 0.1), ease(max(ways) / 0.015)
+    shares = 1.0 - apart * (1.0 - p), 1.0 - apart * p
+    most = max(ways[n] / (shares[n] * max(seconds, 0.001)) for n in (0, 1))
+    far *= 1.0 - ease((most / height - 0.65) / 0.2)
     out = []
-    for n, share in enumerate((1.0 - apart * (1.0 - p), 1.0 - apart * p)):
+    for n, share in enumerate(shares):
         x = min(max((u - (0.0 if n == leads else 1.0 - share)) / share, 0.0), 1.0)
         g, v = ease((x - 0.12) / 0.76), 0.25 * ways[n]
         air = 16.0 * x * x * (1.0 - x) ** 2 * v / (1.0 + v / 0.08)
@@ -76,7 +79,7 @@ def loop(character: Character, height: float, rest: list[Any], t: float) -> Feet
     start, length = action["start"], action["end"] - action["start"]
     s = min(action["blend_in"], length / 2.0)
     ends = row(character, action, start + length - s), row(character, action, start + s)
-    return step(height, row(character, action, other), here, *ends, (second - start) / s)
+    return step(height, s, row(character, action, other), here, *ends, (second - start) / s)
 
 
 def fades(rests: list[list[Any]], n: int, t: float) -> bool:
@@ -91,7 +94,7 @@ def stance(character: Character, height: float, rests: list[list[Any]], t: float
         return shown
     old, (begin, fade) = rests[n - 1], rests[n][3:5]
     ends = loop(character, height, old, begin), loop(character, height, rests[n], begin + fade)
-    return step(height, loop(character, height, old, t), shown, *ends, (t - begin) / fade)
+    return step(height, fade, loop(character, height, old, t), shown, *ends, (t - begin) / fade)
 
 
 def lasting(character: Character, cue: dict[str, Any], into: bool) -> float:
@@ -129,12 +132,12 @@ def wanted(character: Character, plan: dict[str, Any], height: float, t: float) 
         before = stance(character, height, rests, min(t, cue["start"] + cue["blend_in"]))
         first = stance(character, height, rests, cue["start"])
         last = row(character, action, cue_second(cue, cue["start"] + came))
-        return step(height, before, here, first, last, (t - cue["start"]) / came)
+        return step(height, came, before, here, first, last, (t - cue["start"]) / came)
     if t >= cue["end"] - goes:
         after = stance(character, height, rests, max(t, cue["end"] - cue["blend_out"]))
         first = row(character, action, cue_second(cue, cue["end"] - goes))
         last = stance(character, height, rests, cue["end"])
-        return step(height, here, after, first, last, (t - cue["end"] + goes) / goes)
+        return step(height, goes, here, after, first, last, (t - cue["end"] + goes) / goes)
     return None
 
 
