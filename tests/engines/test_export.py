@@ -162,7 +162,7 @@ def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: 
         for a, b in zip(*both, strict=True):
             assert len(a.pop("phases", [])) == len(b.pop("phases", []))
             for field in ("vigour", "prominence"):
-                assert a.pop(field, 0.0) == pytest.approx(b.pop(field, 0.0), abs=0.03)
+                assert a.pop(field, 0.0) == pytest.approx(b.pop(field, 0.0), abs=0.05)
     assert ours == theirs
 
 
