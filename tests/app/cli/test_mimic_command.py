@@ -72,7 +72,7 @@ def test_in_words_it_says_the_same(project: Path, capsys: pytest.CaptureFixture[
     assert main(["mimic", str(project), str(DEEP)]) == 0
     text = capsys.readouterr().out
     assert "200 frames" in text and "19.9 s" in text
-    assert "hands at sides       is there already" in text and "on hips              goes there" in text
+    assert "weight both          is there already" in text and "on hips              goes there" in text
 
 
 def test_only_layers_that_are_wanted_mimic(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
