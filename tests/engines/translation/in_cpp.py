@@ -11,6 +11,7 @@ from metagraph.graph.model import LIMBS, MetaGraph, Project
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.mood import Mood, MoodFrom, Moods
+from metagraph.playback.planning.prominence import prominence
 from metagraph.playback.planning.vigour import vigour
 from metagraph.playback.timing import phases
 
@@ -91,7 +92,7 @@ int main(int, char**) {{
 
 def layered(sample: Project) -> Project:
     """Return the sample project as a layer of it is played in C++: its actions have no contacts."""
-    project = set_settings(sample, rest=0.2, memory=90.0)
+    project = set_settings(sample, rest=0.2, memory=90.0, variety=0.4)
     bare = {i: replace(x, contacts=()) for i, x in project.graphs["arms"].actions.items()}
     return project.with_graph(replace(project.graphs["arms"], actions=bare))  # the table below has none
 
@@ -196,13 +197,13 @@ static List<std::string> split(Word x) {
 static Ref<Action> action(
     Word id, Word clip, Word kind, Word layer, Word stance, Word name, Word end_stance, Word limb,
     Word joints, Word tags, double start, double end, double blend_in, double blend_out, double leave,
-    double likelihood, double cooldown, double spacing
+    double likelihood, double cooldown, double spacing, double prominence
 ) {
     const auto timing = made<Timing>(start, number(end), blend_in, blend_out, false, number(leave));
     const auto apart = spacing == spacing ? std::optional<int>(static_cast<int>(spacing)) : std::nullopt;
     return made<Action>(
         id, clip, kind, layer, stance, name, text(end_stance), timing, limb, split(joints), split(tags),
-        likelihood, cooldown, apart);
+        likelihood, cooldown, apart, {}, {}, "", "", prominence);
 }
 static Ref<MetaRequest> request(
     Word id, Word layer, Word kind, Word action, Word limb, Word stance, Word tags, Word among,
@@ -231,6 +232,7 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
             a.likelihood,
             a.cooldown,
             a.spacing,
+            prominence(project, a),
         ]
         lists = ["\n".join(each) for each in (a.joints, a.tags)]
         given = ", ".join([*map(_word, [*words, *lists]), *map(_or_nan, numbers)])
@@ -255,6 +257,7 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
     s = project.settings
     twice = str(s.never_twice).lower()
     settings = f"{s.alpha!r}, {s.seed}, {twice}, {s.shortest!r}, {s.wait!r}, {s.memory!r}, {s.rest!r}"
+    settings += f", {s.lookahead!r}, {s.variety!r}"
     states = ", ".join(f'{{"{limb}", "{kind}"}}' for limb, kind in markov.ARMS.states)
     rows = ", ".join("{" + ", ".join(repr(p) for p in row) + "}" for row in markov.ARMS.matrix)
     return "\n".join(

@@ -101,7 +101,7 @@ def test_from_training_to_an_export_that_says_what_was_generated(drive, tmp_path
     use.model.setCurrentText("mover")
     use.seed.setValue(5)
     use.temperature.setValue(0.0)
-    use.minutes.setValue(0.3)
+    use.minutes.setValue(0.5)
     press(use.cut_button)
     drive.wait(lambda: not use.busy, 120)
     assert "pieces, not saved yet" in dialog.said.text(), dialog.said.text()

@@ -26,7 +26,7 @@ def test_other_seeds_are_shown_and_a_click_takes_one_over(toys):
     )
     QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=QPoint(300, round(row.center().y())))
     assert toys.document.project.settings.seed == before + 2
-    wanted = plan_with(toys.document.project, None, toys.performance.length, before + 2)
+    wanted = plan_with(toys.document.project, None, toys.performance.length, before + 2, "talking")
     toys.wait(lambda: toys.performance.shown.plan.layers["arms"].cues == wanted.layers["arms"].cues)
     toys.wait(lambda: set(what_if.plans) == {before + 3, before + 4, before + 5})
     toys.document.undo()
