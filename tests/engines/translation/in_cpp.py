@@ -203,7 +203,8 @@ static Ref<Action> action(
     const auto apart = spacing == spacing ? std::optional<int>(static_cast<int>(spacing)) : std::nullopt;
     return made<Action>(
         id, clip, kind, layer, stance, name, text(end_stance), timing, limb, split(joints), split(tags),
-        likelihood, cooldown, apart, {}, {}, "", "", prominence);
+        likelihood, cooldown, apart, List<Ref<ContactSpan>>(),
+        List<std::tuple<std::string, double>>(), "", "", prominence);
 }
 static Ref<MetaRequest> request(
     Word id, Word layer, Word kind, Word action, Word limb, Word stance, Word tags, Word among,
