@@ -43,7 +43,7 @@ MANNERS: Mapping[Mode, Manner] = MappingProxyType({
         aversion_rate=0.85, aversion_length=1.5, aversion_angle=0.8, saccades=0.9, blinks=1.45
     ),
     "talking": Manner(
-        breathing=1.15, breath_rate=1.1, aversion_rate=1.05, aversion_length=2.1
+        breathing=1.15, breath_rate=1.1, aversion_rate=1.05, aversion_length=2.1, blinks=0.65
     ),
 })  # fmt: skip
 
@@ -69,7 +69,7 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     saccade_rate: Annotated[float, Meta(ge=0, le=180)] = 60.0
     lids: Annotated[float, Meta(ge=0, le=2)] = 1.0
     blinks: Annotated[float, Meta(ge=0, le=60)] = 17.0
-    accent_blinks: Annotated[float, Meta(ge=0, le=1)] = 0.4
+    accent_blinks: Annotated[float, Meta(ge=0, le=1)] = 0.7
     blink_close: Annotated[float, Meta(ge=0.02, le=1)] = 0.07
     blink_open: Annotated[float, Meta(ge=0.02, le=1)] = 0.10
     lips: Annotated[float, Meta(ge=0, le=2)] = 1.0

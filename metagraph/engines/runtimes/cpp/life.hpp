@@ -17,14 +17,14 @@ struct Life {
     bool on = true;
     double stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6;
     double aversion_rate = 12.0, aversion_length = 0.93, aversion_angle = 14.0;
-    double saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 0.4;
+    double saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 0.7;
     double blink_close = 0.07, blink_open = 0.1, lips = 1.0, lip_smoothing = 0.03, expressions = 1.0, accent_brows = 0.4;
     double valence = 0.0, arousal = 0.0, intensity = 1.0;
     double follow_through = 1.0, shoulder_lift = 1.0, planted_feet = 1.0;
     List<Ref<Manner>> manners = {
         lang::made<Manner>(Manner{1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0}),
         lang::made<Manner>(Manner{1.0, 1.0, 0.85, 1.5, 0.8, 0.9, 1.0, 1.45}),
-        lang::made<Manner>(Manner{1.15, 1.1, 1.05, 2.1, 1.0, 1.0, 1.0, 1.0}),
+        lang::made<Manner>(Manner{1.15, 1.1, 1.05, 2.1, 1.0, 1.0, 1.0, 0.65}),
     };
 };
 

@@ -6,7 +6,7 @@ import { MODES, inRange } from "./words.js";
 const LIFE = {
   stillness: [0, 0, 1], breathing: [1, 0, 2], breath_rate: [14, 0, 40], gaze: [1, 0, 1], head_share: [0.6, 0, 1], aversion_rate: [12, 0, 40],
   aversion_length: [0.93, 0, 5], aversion_angle: [14, 0, 40], saccades: [1, 0, 2], saccade_rate: [60, 0, 180], lids: [1, 0, 2],
-  blinks: [17, 0, 60], accent_blinks: [0.4, 0, 1], blink_close: [0.07, 0.02, 1], blink_open: [0.1, 0.02, 1], lips: [1, 0, 2],
+  blinks: [17, 0, 60], accent_blinks: [0.7, 0, 1], blink_close: [0.07, 0.02, 1], blink_open: [0.1, 0.02, 1], lips: [1, 0, 2],
   lip_smoothing: [0.03, 0, 0.2], expressions: [1, 0, 2], accent_brows: [0.4, 0, 1], valence: [0, -1, 1], arousal: [0, -1, 1], intensity: [1, 0, 2],
   follow_through: [1, 0, 2], shoulder_lift: [1, 0, 2], planted_feet: [1, 0, 1],
 };
@@ -16,7 +16,7 @@ const FACTORS = [
 const MANNERS = {
   idle: { aversion_rate: 1.1, aversion_length: 2.4, aversion_angle: 1.4, saccade_rate: 0.85 },
   listening: { aversion_rate: 0.85, aversion_length: 1.5, aversion_angle: 0.8, saccades: 0.9, blinks: 1.45 },
-  talking: { breathing: 1.15, breath_rate: 1.1, aversion_rate: 1.05, aversion_length: 2.1 },
+  talking: { breathing: 1.15, breath_rate: 1.1, aversion_rate: 1.05, aversion_length: 2.1, blinks: 0.65 },
 };
 
 /** Return the settings with what an export says of them; `manners`: what each mode makes of the amounts, factors from 0 to 4. */

@@ -72,7 +72,7 @@ namespace Metagraph
         public bool On = true;
         public double Stillness, Breathing = 1.0, BreathRate = 14.0, Gaze = 1.0, HeadShare = 0.6;
         public double AversionRate = 12.0, AversionLength = 0.93, AversionAngle = 14.0, Saccades = 1.0, SaccadeRate = 60.0;
-        public double Lids = 1.0, Blinks = 17.0, AccentBlinks = 0.4, BlinkClose = 0.07, BlinkOpen = 0.10, Lips = 1.0, LipSmoothing = 0.03;
+        public double Lids = 1.0, Blinks = 17.0, AccentBlinks = 0.7, BlinkClose = 0.07, BlinkOpen = 0.10, Lips = 1.0, LipSmoothing = 0.03;
         public double FollowThrough = 1.0, ShoulderLift = 1.0, PlantedFeet = 1.0;
         public double Expressions = 1.0, AccentBrows = 0.4;
         public double Valence, Arousal, Intensity = 1.0;
@@ -81,7 +81,7 @@ namespace Metagraph
         {
             { "idle", new Manner { AversionRate = 1.1, AversionLength = 2.4, AversionAngle = 1.4, SaccadeRate = 0.85 } },
             { "listening", new Manner { AversionRate = 0.85, AversionLength = 1.5, AversionAngle = 0.8, Saccades = 0.9, Blinks = 1.45 } },
-            { "talking", new Manner { Breathing = 1.15, BreathRate = 1.1, AversionRate = 1.05, AversionLength = 2.1 } },
+            { "talking", new Manner { Breathing = 1.15, BreathRate = 1.1, AversionRate = 1.05, AversionLength = 2.1, Blinks = 0.65 } },
         };
 
         public Manner Manner(string mode)

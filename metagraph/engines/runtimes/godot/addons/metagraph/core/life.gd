@@ -2,7 +2,7 @@
 
 const DIALS = {
 	on = true, stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6, aversion_rate = 12.0,
-	aversion_length = 0.93, aversion_angle = 14.0, saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 0.4,
+	aversion_length = 0.93, aversion_angle = 14.0, saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 0.7,
 	blink_close = 0.07, blink_open = 0.10, lips = 1.0, lip_smoothing = 0.03, expressions = 1.0, accent_brows = 0.4,
 	valence = 0.0, arousal = 0.0, intensity = 1.0, follow_through = 1.0, shoulder_lift = 1.0, planted_feet = 1.0
 }
@@ -13,7 +13,7 @@ const FACTORS = {
 const MANNERS = {
 	idle = {aversion_rate = 1.1, aversion_length = 2.4, aversion_angle = 1.4, saccade_rate = 0.85},
 	listening = {aversion_rate = 0.85, aversion_length = 1.5, aversion_angle = 0.8, saccades = 0.9, blinks = 1.45},
-	talking = {breathing = 1.15, breath_rate = 1.1, aversion_rate = 1.05, aversion_length = 2.1}
+	talking = {breathing = 1.15, breath_rate = 1.1, aversion_rate = 1.05, aversion_length = 2.1, blinks = 0.65}
 }
 
 
