@@ -21,7 +21,6 @@ from metagraph.graph.manual.machine import ANY, WHENS
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, PARTS, Markov, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.planning.markov import model
 
 NASTY = (
     "yes",
@@ -418,9 +417,3 @@ def few_of_the_sample(folder: Path) -> Path:
     path = folder / "sample.metagraph.yaml"
     save_project(edits.set_base(project, base), path)
     return path
-
-
-def as_in_the_paper(project: Project) -> Project:
-    """Return a project that may repeat itself, as in Borer et al., and whose models ignore the mode."""
-    models = {layer: replace(model(project, layer), modes=()) for layer in LAYERS}
-    return replace(edits.set_settings(project, variety=0.0), markov=models)

@@ -16,7 +16,7 @@ from metagraph.playback.behaviour import (
     repeated_share,
 )
 from metagraph.playback.planning.running_plan import improvise
-from tests.projects import as_in_the_paper
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 
 SECONDS = 1200.0
 
@@ -59,8 +59,8 @@ def test_eyes_do_as_peoples_do(counted: dict[str, BehaviourCount]) -> None:
         assert compared and all(row.usual for row in compared), [(r.name, r.value) for r in compared]
 
 
-def test_without_variety_all_of_it_is_as_in_the_paper(sample: Project) -> None:
-    found = measure_behaviour(as_in_the_paper(sample), "idle", SECONDS)
+def test_without_variety_all_of_it_is_plan_as_in_paper(sample: Project) -> None:
+    found = measure_behaviour(plan_as_in_paper(sample), "idle", SECONDS)
     assert value(found, "Gestures") > 3
     assert value(found, "The same act of the arms again within 5 minutes") > 0.5
 

@@ -18,8 +18,8 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import sampling
 from metagraph.playback.planning.mood import Mood
 from metagraph.playback.planning.sampling import Performer
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests.posing import pose_at, rig
-from tests.projects import as_in_the_paper
 
 LENGTH = 600.0
 SEEDS = range(1, 11)
@@ -64,7 +64,7 @@ def performances(sample: Project) -> list[Performance]:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(sampling, "pick", watch)
             patch.setattr(Performer, "_draw", watch_all)
-            made.append(Performance(make_plan(as_in_the_paper(sample), LENGTH, seed=seed), draws))
+            made.append(Performance(make_plan(plan_as_in_paper(sample), LENGTH, seed=seed), draws))
     return made
 
 

@@ -16,6 +16,7 @@ from metagraph.playback.planning import markov
 from metagraph.playback.planning.choice import key32
 from metagraph.research.exhibits.exhibit import ExhibitTable, MadeExhibit
 from metagraph.research.exhibits.material import ExhibitMaterial, actors_rates, with_rates
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from metagraph.research.generation.planted_speech import make_planted_speech
 from metagraph.speech.delivered import NAMES, Delivered, count_delivered
 from metagraph.speech.drive import drive
@@ -31,7 +32,8 @@ EXPECTED = 1.0  # moves below which a share's error is not normal: those are not
 def exhibit_delivery(material: ExhibitMaterial) -> MadeExhibit:
     """What an hour of improvising and of conversation has, beside what was asked for."""
     project = material.project
-    improvised = [_improvised(project, layer) for layer in LAYERS if project.graphs[layer].index]
+    paper = plan_as_in_paper(project)
+    improvised = [_improvised(paper, layer) for layer in LAYERS if project.graphs[layer].index]
     spoken = _spoken(project, TALKS[material.full])
     off = [z for row in spoken for z in (_errors(row[1], row[1].performed),)]
     near = sum(abs(z) <= NEAR for z in off)

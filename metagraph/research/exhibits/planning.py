@@ -21,6 +21,7 @@ from metagraph.playback.planning.replan import replan
 from metagraph.research.exhibits import drawings
 from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
 from metagraph.research.exhibits.material import ExhibitMaterial
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from metagraph.research.exhibits.published import ALPHA, FIGURE_11, STATES
 
 DRAWS = (600, 6000)  # of figure 7's formula
@@ -167,7 +168,7 @@ def _formula(
     """Return how often candidates were drawn that had been used less or more than others, chi-square with its
     degrees of freedom, and how many draws.
     """
-    plain = set_settings(project, never_twice=False, memory=0.0, alpha=ALPHA)
+    plain = set_settings(plan_as_in_paper(project), never_twice=False, memory=0.0, alpha=ALPHA)
     limbs = [
         a.id for a in plain.graphs[layer].of(stance, "gesture") if a.spacing is None and a.cooldown <= 0
     ][:6]
@@ -211,8 +212,9 @@ def exhibit_variation(material: ExhibitMaterial) -> MadeExhibit:
         return MadeExhibit(f"the project '{project.name}'", missing="it has no gestures: nothing varies")
     seeds = SEEDS[material.full]
     asked = [_ask(f"gesture {n}", layer, 1.0 + 5.0 * n, 2.0) for n in range(8)]
-    plans = [make_plan(project, 45.0, asked, s, idle=False) for s in range(1, seeds + 1)]
-    alone = [make_plan(project, 60.0, (), s) for s in range(1, seeds + 1)]
+    paper = plan_as_in_paper(project)
+    plans = [make_plan(paper, 45.0, asked, s, idle=False) for s in range(1, seeds + 1)]
+    alone = [make_plan(paper, 60.0, (), s) for s in range(1, seeds + 1)]
     rows, numbers = [], {}
     for words, some in (
         ("eight gestures asked for (figure 9)", plans),

@@ -10,7 +10,7 @@ from metagraph.graph import edits
 from metagraph.graph.editing.listing import duplicate_clips, reorder_actions, shift_actions
 from metagraph.graph.editing.marks import mark
 from metagraph.playback.planner import make_plan
-from tests.projects import as_in_the_paper
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ def test_another_order_survives_saving(project, tmp_path):
 
 def test_what_plays_does_not_depend_on_the_order_of_lists(project):
     after = shift_actions(project, ids(project, "13"), -1)
-    plans = [make_plan(p, 40.0) for p in (as_in_the_paper(project), as_in_the_paper(after))]
+    plans = [make_plan(p, 40.0) for p in (plan_as_in_paper(project), plan_as_in_paper(after))]
     heard = [[(c.action.id, c.start) for c in p.layers["arms"].cues] for p in plans]
     assert heard[0] == heard[1] and len(heard[0]) > 3
 

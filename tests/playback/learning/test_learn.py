@@ -248,7 +248,7 @@ def test_a_state_that_was_never_left_goes_on_as_often_as_each_was_seen() -> None
     assert learn_model("head", [kinds("both gesture")]).matrix == ((1.0,),)
 
 
-def test_smoothing_makes_everything_possible_and_none_is_as_in_the_paper() -> None:
+def test_smoothing_makes_everything_possible_and_none_is_plan_as_in_paper() -> None:
     acts = [kinds("both gesture", "both gesture", "both fidget", "both gesture")]
     assert np.allclose(learn_model("head", acts, smoothing=1.0).matrix, [[2 / 4, 2 / 4], [2 / 3, 1 / 3]])
     assert np.allclose(learn_model("head", acts).matrix, [[1 / 2, 1 / 2], [1, 0]])

@@ -16,9 +16,9 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.extend_performance import answer_ask, hear_asks, since
 from metagraph.playback.planning.running_plan import plan_performance
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests import thorough
 from tests.posing import pose_at
-from tests.projects import as_in_the_paper
 
 END = 30.0
 _SAMPLE: list[Project] = []
@@ -300,7 +300,7 @@ def _left(plan: Plan, layer: Layer) -> list[Cue]:
 
 
 def test_the_models_leave_a_stance_that_is_to_be_kept_alone(sample: Project) -> None:
-    project = as_in_the_paper(sample)
+    project = plan_as_in_paper(sample)
     free = plan_performance(project, [a.Go(id="g", stance="arms crossed", at=1.0)], 120)
     kept = plan_performance(project, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 120)
     assert len(_left(free, "arms")) > 2

@@ -38,8 +38,8 @@ from metagraph.playback.planning.mood import (
 )
 from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 from metagraph.playback.planning.vigour import _speed_of, vigour, vigours
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests.posing import pose_at
-from tests.projects import as_in_the_paper
 
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 
@@ -178,7 +178,7 @@ def test_a_performance_has_a_mood_beneath_all_others() -> None:
 
 
 def test_body_and_transitions_keep_their_size_and_what_touches_too(sample: Project) -> None:
-    project = feeling(as_in_the_paper(free(sample)), 0.0, -1.0)
+    project = feeling(plan_as_in_paper(free(sample)), 0.0, -1.0)
     plan = make_plan(project, 120.0, seed=2)
     assert {c.extent for c in plan.layers["body"].cues} == {1.0}, "feet stay where they are"
     arms = plan.layers["arms"].cues

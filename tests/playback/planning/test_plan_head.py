@@ -19,8 +19,8 @@ from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import Revision, extend_plan, make_plan
 from metagraph.playback.planning import plan_head, strand
 from metagraph.playback.planning.strand import Strand
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests.posing import pose_at
-from tests.projects import as_in_the_paper
 
 PROJECT = Project()
 
@@ -28,7 +28,7 @@ PROJECT = Project()
 @pytest.fixture(autouse=True, scope="module")
 def _project(toy: Any) -> None:
     global PROJECT
-    PROJECT = as_in_the_paper(toy.project())
+    PROJECT = plan_as_in_paper(toy.project())
     for clip in ("rest scratch", "rest cough"):  # a stance with several loops
         of = PROJECT.action(toy.id(PROJECT, clip)).clip
         PROJECT = edits.place_clips(PROJECT, [of], "arms", "stance", toy.id(PROJECT, "rest"))

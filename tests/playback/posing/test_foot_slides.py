@@ -20,8 +20,8 @@ from metagraph.playback.posing.foot_slides import (
     slide_speeds,
     worst_slide,
 )
+from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests.posing import pose_at
-from tests.projects import as_in_the_paper
 
 
 def moved(sample: Project, way) -> FeetSeen:
@@ -69,7 +69,7 @@ def test_a_jump_lifts_both_feet(sample):
 
 
 def test_over_a_performance_nothing_slides_and_what_is_seen_piece_by_piece_is_the_same(sample):
-    plan = make_plan(as_in_the_paper(sample), 30.0, seed=3)
+    plan = make_plan(plan_as_in_paper(sample), 30.0, seed=3)
 
     def places(times):
         return sample.skeleton.globals(pose_at(plan, sample, times))[1]
