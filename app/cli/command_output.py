@@ -68,7 +68,9 @@ def stage_performance(project: Project, options: Namespace) -> Plan:
     if options.start and kept is not None:  # a part is the same as in the whole
         length = max(length, kept.length)
     if kept is None:
-        return improvise(project, length, options.seed, options.mode)
+        return improvise(project, length, options.seed, options.mode or "talking")
+    if options.mode is not None:
+        raise ValueError("--mode is for what the models improvise; a kept performance has a mode of its own")
     seed = kept.seed if options.seed is None else options.seed
     return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
@@ -109,8 +111,7 @@ def add_performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     parser.add_argument(
         "--mode",
         choices=MODES,
-        default="talking",
-        help="what the character does while the models improvise (default: talking)",
+        help="what the character does while the models improvise (default: talking); not with --performance",
     )
     parser.add_argument(
         "--seed", type=int, help="another performance of the same project (default: the project's seed)"

@@ -200,7 +200,7 @@ class Stimuli:
     def _performance(self, made: Condition) -> tuple[ShownPlayback, Path]:
         project, folder = self._project(made)
         wanted = Namespace(
-            performance=made.performance, seconds=None, seed=made.seed, usual_seconds=10.0, mode="talking"
+            performance=made.performance, seconds=None, seed=made.seed, usual_seconds=10.0, mode=None
         )
         plan = stage_performance(project, wanted)
         return ShownPlayback(project, plan, wanted.seconds), folder

@@ -80,8 +80,6 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             "--progress",
             "--start",
             f"{wanted.start:.6f}",
-            "--mode",
-            wanted.mode,
             "--captions" if wanted.captions else "--no-captions",
         ]
         if not wanted.cuts:
@@ -92,6 +90,8 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             words.append("--network")
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]
+        elif wanted.conversation is None:
+            words += ["--mode", wanted.mode]
         if wanted.conversation is not None:
             words += ["--conversation", wanted.conversation]
         process = start(

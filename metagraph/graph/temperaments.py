@@ -49,17 +49,16 @@ TEMPERAMENTS: Mapping[str, Temperament] = MappingProxyType({
 
 def set_temperament(project: Project, name: str, usual: Mapping[Layer, Markov]) -> Project:
     """Return the project with a temperament. usual: the models' defaults by layer, whose rests are scaled; a
-    model that was learned keeps its own states. Raises KeyError for a name that is none.
+    model that was learned stays as it is. Raises KeyError for a name that is none.
     """
     of = TEMPERAMENTS[name]
     markov = dict(project.markov)
     for layer in LAYERS:
-        model = markov.get(layer, usual[layer])
-        gap = round(usual[layer].gap * of.rests, 3)
-        if model.gap != gap:
-            markov[layer] = replace(model, gap=gap)
-        if markov.get(layer) == usual[layer]:
-            del markov[layer]
+        own = markov.pop(layer, usual[layer])
+        if replace(own, gap=usual[layer].gap) != usual[layer]:  # learned
+            markov[layer] = own
+        elif of.rests != 1.0:
+            markov[layer] = replace(usual[layer], gap=round(usual[layer].gap * of.rests, 3))
     life: Life = msgspec.structs.replace(
         project.life,
         valence=of.valence,

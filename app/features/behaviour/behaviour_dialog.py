@@ -21,16 +21,18 @@ from app.look.theme import theme
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_error, tr_phrase
+from app.translation import lazy_texts, tr, tr_error, tr_phrase, tr_plural
 from app.widgets.choice_row import ChoiceRow
 from app.widgets.quiet_fields import ComboBox
-from metagraph.graph.model import MODES, Project
+from metagraph.graph.model import Mode, Project
 from metagraph.graph.temperaments import TEMPERAMENTS, find_temperament, set_temperament
 from metagraph.playback.behaviour import BehaviourCount, describe_lack, measure_behaviour
 from metagraph.playback.planning.markov import DEFAULTS
 
 OWN = "own"
 SETTLED = 400  # milliseconds without an edit after which is counted again
+MOST_LACKS = 4  # stances that lack actions, named in the dialog
+ORDER: tuple[Mode, ...] = ("talking", "listening", "idle")
 TITLES = lazy_texts(
     lambda: {"talking": tr("Talking"), "listening": tr("Listening"), "idle": tr("Idle")},
 )
@@ -63,6 +65,7 @@ class BehaviourDialog(QDialog):
         document.changed.connect(self._edited)
         document.loaded.connect(self._edited)
         session.look.changed.connect(self._show)
+        session.onstage.performance_changed.connect(self._show)
         self._edited()
         self._count()
 
@@ -70,11 +73,8 @@ class BehaviourDialog(QDialog):
         row = QHBoxLayout()
         row.setSpacing(10)
         ways = (tr("What it does while it talks"), tr("What it does while it listens"), tr("At rest"))
-        order = ("talking", "listening", "idle")
-        self.modes = ChoiceRow(self, tuple(zip((TITLES[m] for m in order), ways, strict=True)))
-        self.modes.show_choice(0)
-        self.modes.chosen.connect(lambda n: self._choose(order[n]))
-        self.mode = "talking"
+        self.modes = ChoiceRow(self, tuple(zip((TITLES[m] for m in ORDER), ways, strict=True)))
+        self.modes.chosen.connect(lambda n: self.session.onstage.improvise(ORDER[n]))
         row.addWidget(self.modes)
         row.addStretch(1)
         row.addWidget(QLabel(tr("Temperament"), self))
@@ -117,11 +117,6 @@ class BehaviourDialog(QDialog):
         foot.addWidget(close)
         box.addLayout(foot)
 
-    def _choose(self, mode: str) -> None:
-        self.mode = mode
-        self.session.onstage.improvise(mode)  # type: ignore[arg-type]
-        self._show()
-
     def _set_temperament(self, _: int) -> None:
         name = self.temperament.currentData()
         if name != OWN:
@@ -140,7 +135,7 @@ class BehaviourDialog(QDialog):
         self.state.setText(tr("Counting…"))
 
         def work(job: WindowJob) -> tuple[Project, dict[str, BehaviourCount]]:
-            return project, {m: measure_behaviour(project, m) for m in MODES if not job.cancelled}
+            return project, {m: measure_behaviour(project, m) for m in ORDER if not job.cancelled}
 
         self.jobs.start("behaviour", work, self._done, self._failed, quick=True)
 
@@ -153,7 +148,9 @@ class BehaviourDialog(QDialog):
         self.state.setText(tr_error(error))
 
     def _show(self) -> None:
-        found = self.found.get(self.mode)
+        mode = self.session.onstage.improvised
+        self.modes.show_choice(ORDER.index(mode))
+        found = self.found.get(mode)
         if found is None:
             return
         colors = theme(self.session.look.name)
@@ -171,7 +168,9 @@ class BehaviourDialog(QDialog):
                 if column == 2:
                     item.setForeground(QColor(colors.dim))
                 self.table.setItem(n, column, item)
-        lines = [tr_phrase(describe_lack(self.document.project, x)) for x in found.lacks[:4]]
+        lines = [tr_phrase(describe_lack(self.document.project, x)) for x in found.lacks[:MOST_LACKS]]
+        if more := len(found.lacks) - MOST_LACKS:
+            lines += [tr_plural("{count} more stance", "{count} more stances", more)] if more > 0 else []
         self.lacks.setText("\n".join(lines))
         self.lacks.setVisible(bool(lines))
         self.state.setText(

@@ -46,3 +46,11 @@ def test_a_temperament_is_one_step_to_undo_and_is_counted_again(toys):
 def test_a_stance_that_has_to_repeat_itself_is_named(toys):
     dialog = opened(toys)
     assert "'rest'" in dialog.lacks.text() and "would end the repetition" in dialog.lacks.text()
+
+
+def test_it_shows_the_mode_that_plays_wherever_that_was_chosen(toys):
+    toys.session.onstage.improvise("idle")
+    dialog = opened(toys)
+    assert dialog.modes.group.checkedId() == 2 and shown(dialog)[0][1] == "0.0 a minute"
+    toys.session.onstage.improvise("talking")
+    assert dialog.modes.group.checkedId() == 0 and shown(dialog)[0][1] != "0.0 a minute"
