@@ -45,3 +45,12 @@ def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypa
 def test_where_nothing_is_played_only_the_time_is_told(project):
     plan = make_plan(project, 1.0, idle=False)
     assert render_command._doing(ShownPlayback(project, plan, 1.0), 0.5) == ""
+
+
+def test_a_mode_beside_a_kept_performance_is_refused_and_not_ignored(tmp_path, capsys):
+    from app.cli.parser import main
+
+    out = str(tmp_path / "a.png")
+    words = ["render", str(SAMPLE), "-o", out, "-s", "1", "--performance", "greeting", "--mode", "idle"]
+    assert main(words) == 1
+    assert "a kept performance has a mode of its own" in capsys.readouterr().err
