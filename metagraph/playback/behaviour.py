@@ -136,7 +136,6 @@ def _acts(project: Project, plan: Plan, seconds: float) -> list[BehaviourRow]:
     )
     out = [
         BehaviourRow(phrase("Gestures of the arms"), 60 * count["arms", "gesture"] / seconds, minute),
-        BehaviourRow(phrase("Nods and head shakes"), 60 * count["head", "gesture"] / seconds, minute),
         BehaviourRow(
             phrase("Fidgets"), 60 * sum(count[layer, "fidget"] for layer in LAYERS) / seconds, minute
         ),
@@ -160,14 +159,23 @@ def _acts(project: Project, plan: Plan, seconds: float) -> list[BehaviourRow]:
                 share=True,
             )
         )
-    start = project.graphs["head"].start
-    away = 0.0
-    lane = plan.layers["head"]
-    ends = [*(rest.start for rest in lane.rests[1:]), seconds]
-    for rest, until in zip(lane.rests, ends, strict=False):  # a layer without stances has no rest
-        away += max(0.0, min(until, seconds) - rest.start) if rest.stance != start else 0.0
-    out.append(BehaviourRow(phrase("Head tilted"), away / seconds, phrase("of the time"), share=True))
+    if project.graphs["head"].actions:
+        nods = 60 * count["head", "gesture"] / seconds
+        out.insert(1, BehaviourRow(phrase("Nods and head shakes"), nods, minute))
+        tilted = _tilted(project, plan, seconds) / seconds
+        out.append(BehaviourRow(phrase("Head tilted"), tilted, phrase("of the time"), share=True))
     return out
+
+
+def _tilted(project: Project, plan: Plan, seconds: float) -> float:
+    """Return the seconds that the head spends outside of the stance it begins in."""
+    start, rests = project.graphs["head"].start, plan.layers["head"].rests
+    ends = [*(rest.start for rest in rests[1:]), seconds]
+    return sum(
+        max(0.0, min(until, seconds) - rest.start)
+        for rest, until in zip(rests, ends, strict=bool(rests))
+        if rest.stance != start
+    )
 
 
 def repeated_share(cues: Sequence[Cue], seconds: float) -> float:
@@ -196,7 +204,7 @@ def _rests(plan: Plan, seconds: float) -> list[BehaviourRow]:
         BehaviourRow(
             phrase("Spread of the time between acts of the arms"),
             pstdev(gaps) / fmean(gaps),
-            phrase("of its mean; a metronome has 0"),
+            phrase("of its mean"),
         ),
     ]
 

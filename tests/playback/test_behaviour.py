@@ -82,6 +82,7 @@ def test_a_stance_lacks_as_many_actions_as_would_end_the_repetition(sample: Proj
     assert "'hands at sides' would end the repetition; it has 1" in describe_lack(poor, found[0])
 
 
-def test_an_empty_project_does_nothing() -> None:
+def test_an_empty_project_does_nothing_and_has_no_head_to_speak_of() -> None:
     found = measure_behaviour(Project(), "idle", 60.0)
+    assert not any("ead" in row.name for row in found.rows)
     assert value(found, "Fidgets") == 0 and found.lacks == ()

@@ -24,8 +24,8 @@ def contribute(shell: Shell) -> Contribution:
         commands=(
             Command(
                 "behaviour",
-                "&View",
-                "graph",
+                "&Play",
+                "show",
                 tr("&Behaviour…"),
                 show,
                 tip=tr("Count what the character does by itself in an hour, and choose its temperament"),

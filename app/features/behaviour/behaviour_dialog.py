@@ -50,7 +50,7 @@ class BehaviourDialog(QDialog):
         self._counted: Project | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Behaviour"))
-        self.resize(760, 620)
+        self.resize(840, 620)
         self._soon = QTimer(self, singleShot=True, interval=SETTLED)
         self._soon.timeout.connect(self._count)
         box = QVBoxLayout(self)
