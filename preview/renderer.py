@@ -86,6 +86,7 @@ class Renderer:
         Actors with transforms that are not finite are skipped.
         """
         width, height = max(1, int(size[0])), max(1, int(size[1]))
+        theme = theme if scene.lamp is None else theme.turned(scene.lamp)
         actors = [a for a in scene.actors if is_drawable(a)]
         self._resize(width, height)
         self._drawing.begin()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +15,16 @@ from preview.figure import MeshFigure
 
 Array = NDArray[Any]
 Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class LampTurn:
+    """How the lamp of a theme is turned: by `angle` radians about +Y, after it changed sides if
+    `mirrored`.
+    """
+
+    angle: float
+    mirrored: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +54,10 @@ class Actor:
 class Scene:
     """All actors of a picture and what is behind them.
 
-    `background` is one flat sRGB colour with alpha, premultiplied, instead of the theme's background; there
-    is no ground then. `picture` is uint8 `[H, W, 3]`, sRGB, first row at the top, which is shown whole behind
-    the actors, also without ground.
+    `lamp` is what the theme's lamp is turned by, if the light follows the camera. `background` is one flat
+    sRGB colour with alpha, premultiplied, instead of the theme's background; there is no ground then.
+    `picture` is uint8 `[H, W, 3]`, sRGB, first row at the top, which is shown whole behind the actors, also
+    without ground.
     """
 
     actors: tuple[Actor, ...] = ()
@@ -54,11 +65,13 @@ class Scene:
     shadow: bool = True
     background: tuple[float, float, float, float] | None = None
     picture: Array | None = None
+    lamp: LampTurn | None = None
 
     def same(self, other: Scene) -> bool:
         """Return whether both scenes give exactly the same picture."""
         return (
-            (self.ground, self.shadow, self.background) == (other.ground, other.shadow, other.background)
+            (self.ground, self.shadow, self.background, self.lamp)
+            == (other.ground, other.shadow, other.background, other.lamp)
             and self.picture is other.picture
             and len(self.actors) == len(other.actors)
             and all(_same(a, b) for a, b in zip(self.actors, other.actors, strict=True))
@@ -111,6 +124,13 @@ class SceneTheme:
     rim: Color
     ink: Color  # the skeleton drawn over a mesh
     toward: Color = (-0.42, 0.80, 0.62)  # direction to the lamp, of any length, above the ground
+
+    def turned(self, by: LampTurn) -> SceneTheme:
+        """Return the theme with its lamp turned."""
+        x, y, z = self.toward
+        x = -x if by.mirrored else x
+        sine, cosine = math.sin(by.angle), math.cos(by.angle)
+        return replace(self, toward=(x * cosine + z * sine, y, z * cosine - x * sine))
 
     @cached_property
     def to_light(self) -> Array:

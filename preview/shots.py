@@ -2,8 +2,9 @@
 
 All cameras are on one side of the line between two speakers, so that the one who looks to the right does so
 in every picture (the rule of 180 degrees). Sizes and angles are the usual ones of filmed conversations (over
-the shoulder from the chest up, close from the shoulders up, all from the knees up), as shares of a figure's
-height. The numbers are our own.
+the shoulder from the chest up, close from the shoulders up, all from the waist up), as shares of a figure's
+height. A face is large enough to read in each of them: of two speakers, no head is lower than 0.22 of a
+picture of 16:9. The numbers are our own.
 """
 
 from __future__ import annotations
@@ -21,13 +22,17 @@ Array = NDArray[Any]
 Shot = Literal["over", "two", "close"]
 
 # Metres behind and above the head over whose shoulder the camera looks, and from this head to the line of
-# sight that passes it; for a figure of 1.75 m.
-BEHIND, BESIDE, ABOVE = 0.78, 0.21, 0.07
+# sight that passes it; for a figure of 1.75 m. From so far behind, the head in front is not twice as large.
+BEHIND, BESIDE, ABOVE = 1.55, 0.23, 0.05
 USUAL = 1.75  # metres; the height of the figure for which those hold
-OVER_FOV, CLOSE_FOV, TWO_FOV = math.radians(30.0), math.radians(22.0), math.radians(28.0)
+OVER_TALL, CLOSE_TALL = 0.50, 0.34  # of the height of who is seen; as much of it is in the picture
+OVER_ROOM, OVER_UP = 0.09, 0.10  # of the height; how far the picture's middle is beside and below the face
+CLOSE_FOV, TWO_FOV = math.radians(22.0), math.radians(16.0)
+# Of the height: from the head to the ends of the picture of all, below, above and on the sides.
+TWO_BELOW, TWO_ABOVE, TWO_BESIDE = 0.33, 0.08, 0.08
 CLOSE_TURN = math.radians(24.0)  # between the line of sight and a close camera beside it
 LOOKING = 0.03  # of the height; how much more room there is before a face than behind it
-TWO_TURN = math.radians(22.0)  # between the middle and the camera that shows all
+TWO_TURN = math.radians(16.0)  # between the middle and the camera that shows all
 
 
 def camera_from(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
@@ -65,18 +70,15 @@ def partner(heads: Array, side: int) -> int:
     return max(others, key=lambda n: float(np.linalg.norm((heads[n] - heads[side])[[0, 2]])), default=side)
 
 
-def shot_camera(
-    shot: Shot, side: int, heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float
-) -> Camera:
+def shot_camera(shot: Shot, side: int, heads: Array, heights: Sequence[float], aspect: float) -> Camera:
     """Return the camera of a shot.
 
     `side` is who is seen. `heads` are the middles of the heads `[N, 3]` in metres, `heights` the heights of
-    the figures. `bounds` are the lowest and the highest corner of all of them. `aspect` is width divided by
-    height.
+    the figures. `aspect` is width divided by height.
     """
     side = min(side, len(heads) - 1)
     if shot == "two" or len(heads) < 2:
-        return _all(heads, heights, bounds, aspect)
+        return _all(heads, heights, aspect)
     beside, other = camera_side(heads), partner(heads, side)
     sight = heads[other] - heads[side]
     sight[1] = 0.0
@@ -94,7 +96,7 @@ def shot_camera(
         )
         height = heights[side]
         target = heads[side] + height * (LOOKING * sight - np.array([0.0, 0.045, 0.0]))
-        tall = 0.34 * height * max(1.0, 1.0 / aspect)
+        tall = CLOSE_TALL * height * max(1.0, 1.0 / aspect)
         return camera_from(
             target + turned * (tall / 2 / math.tan(CLOSE_FOV / 2)) + (0, 0.02 * height, 0), target, CLOSE_FOV
         )
@@ -102,14 +104,28 @@ def shot_camera(
     apart = max(0.3, float(np.linalg.norm((heads[other] - heads[side])[[0, 2]])))
     aside = BESIDE * (apart + BEHIND * scale) / apart  # so that the line to the face passes the head
     eye = heads[other] + scale * (BEHIND * sight + aside * across + np.array([0.0, ABOVE, 0.0]))
-    target = heads[side] + 0.10 * scale * (across * 0.3 - np.array([0.0, 0.9, 0.0]))
-    return camera_from(eye, target, OVER_FOV * max(1.0, min(1.6, 1.5 / aspect)))
+    height = heights[side]
+    target = heads[side] + height * (OVER_ROOM * across - np.array([0.0, OVER_UP, 0.0]))
+    tall = OVER_TALL * height * max(1.0, 1.5 / aspect)
+    return camera_from(eye, target, 2 * math.atan(tall / 2 / float(np.linalg.norm(eye - target))))
 
 
-def _all(heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float) -> Camera:
-    """Return the camera that shows all speakers from the knees up, from three quarters."""
-    beside = camera_side(heads)
+def lamp_side(camera: Camera, shot: Shot, side: int, heads: Array) -> bool:
+    """Return whether the lamp of a shot stands on the camera's right, not on its left: it lights the side of
+    a face that is turned from the camera, as the light of a filmed conversation does.
+    """
+    if shot == "two" or len(heads) < 2:
+        return False
+    side = min(side, len(heads) - 1)
+    return bool(camera.axes[0] @ (heads[partner(heads, side)] - heads[side]) > 0)
+
+
+def _all(heads: Array, heights: Sequence[float], aspect: float) -> Camera:
+    """Return the camera that shows all speakers from the waist up, from three quarters."""
+    beside, height = camera_side(heads), float(max(heights))
     camera = Camera(fov=TWO_FOV).facing(math.atan2(beside[0], beside[2]) - TWO_TURN, math.radians(4.0))
-    low, high = np.array(bounds[0], float), np.array(bounds[1], float)
-    low[1] = max(low[1], float(heads[:, 1].min()) - 0.62 * float(max(heights)))
-    return camera.frame((low, high), aspect, 1.12)
+    low, high = heads.min(axis=0), heads.max(axis=0)
+    room = height * TWO_BESIDE
+    return camera.frame(
+        (low - (room, height * TWO_BELOW, room), high + (room, height * TWO_ABOVE, room)), aspect, 1.0
+    )

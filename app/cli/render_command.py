@@ -113,9 +113,11 @@ def render_pictures(
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Give one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, says one; by
-    default it sees all. into: an array that all come in, for who is done with one before asking for the next.
+    """Give one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, returns what
+    is filmed then; by default it sees all. into: an array that all come in, for who is done with one before
+    asking for the next.
     """
+    from app.stage.cutting import Filmed
     from app.stage.stools import stools
     from preview.camera import frame_whole_figure
     from preview.drawing_apart import draw_scenes
@@ -133,7 +135,8 @@ def render_pictures(
             some = times[first : first + TOGETHER]
             acted = zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True)
             for at, actors in zip(some, acted, strict=True):
-                yield Scene((*actors, *seats)), camera(float(at)) if callable(camera) else camera
+                now = camera(float(at)) if callable(camera) else Filmed(camera)
+                yield Scene((*actors, *seats), lamp=now.lamp), now.camera
 
     return draw_scenes(scenes(), len(times), size, theme, into)
 
@@ -146,16 +149,16 @@ def render_directed(
     direction: Direction = ((), ()),
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Yield pictures as `pictures` does, cut and with captions."""
+    """Yield pictures as `render_pictures` does, cut and with captions."""
     cuts, captions = direction
     camera: Callable[[float], Any] | None = None
     if cuts:
-        from app.stage.cutting import Cutting
+        from app.stage.cutting import Cutting, Filmed
         from preview.camera import frame_whole_figure
 
         aspect, cutting = size[0] / size[1], Cutting()
         whole = frame_whole_figure(measure_bounds(seen, times), aspect, ASIDE)
-        camera = lambda at: cutting.camera(seen, cuts, at, aspect) or whole  # noqa: E731
+        camera = lambda at: cutting.camera(seen, cuts, at, aspect) or Filmed(whole)  # noqa: E731
     if not captions:
         yield from render_pictures(seen, times, size, look, camera, into)
         return

@@ -151,9 +151,9 @@ def _row(n: int, side: Side) -> dict[str, Any]:
 
 
 def _keep(output: ProjectOutput, project: Project, read: Read) -> str:
-    from metagraph.graph.conversation.edits import add_conversation
+    from metagraph.speech.automatic_cuts import keep_filmed_conversation
 
-    project, ident = add_conversation(project, read.conversation)
+    project, ident = keep_filmed_conversation(project, read.conversation)
     output.save(project)
     return ident
 

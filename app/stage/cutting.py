@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,8 @@ from metagraph.speech.captions import (
     list_timed_words,
 )
 from preview.camera import Camera
-from preview.shots import shot_camera
+from preview.scene import LampTurn
+from preview.shots import lamp_side, shot_camera
 
 Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
 SAMPLED = 2  # moments of a cut at which the positions of heads are taken
@@ -34,19 +35,28 @@ HEAD, MOST = (
 FARTHEST = 8.0  # seconds of a cut over which they are taken
 
 
+class Filmed(NamedTuple):
+    """The camera of a picture, and how the light is turned for it."""
+
+    camera: Camera
+    lamp: LampTurn | None = None
+
+
 class Cutting:
-    """Finds one camera for each cut. It stands still, placed for where the speakers are during the cut."""
+    """Finds one camera for each cut. It stands still, placed for where the speakers are during the cut. The
+    light follows it.
+    """
 
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
-        self._kept: dict[tuple[Cut, float, float], Camera] = {}
+        self._kept: dict[tuple[Cut, float, float], Filmed] = {}
         self._heads: list[tuple[float, float]] = []
 
     def camera(
         self, seen: Sequence[Seen], cuts: tuple[Cut, ...], seconds: float, aspect: float
-    ) -> Camera | None:
-        """Return the camera at a time; None if there is no cut. `seen` has the speakers, the first side
-        first.
+    ) -> Filmed | None:
+        """Return the camera and the light at a time; None if there is no cut. `seen` has the speakers, the
+        first side first.
         """
         found = cut_at(cuts, seconds)
         if found is None or len(seen) < 2:
@@ -58,7 +68,7 @@ class Cutting:
             self._heads = [_head(figure) for figure, _ in seen]
         key = (cut, end, round(aspect, 2))
         if key not in self._kept:
-            self._kept[key] = _camera(
+            self._kept[key] = _film(
                 seen, self._heads, cut, min(end, cut.at + FARTHEST, seen[0][1].length), aspect
             )
         return self._kept[key]
@@ -74,11 +84,11 @@ def _head(figure: Any) -> tuple[float, float]:
     return lift, min(MOST, max(1.0, (above - lift) / (HEAD * figure.height))) * figure.height
 
 
-def _camera(
+def _film(
     seen: Sequence[Seen], sizes: Sequence[tuple[float, float]], cut: Cut, end: float, aspect: float
-) -> Camera:
+) -> Filmed:
     times = np.linspace(cut.at, max(cut.at, end), SAMPLED)
-    heads, heights, lows, highs = [], [], [], []
+    heads, heights = [], []
     for (figure, shown), (lift, height) in zip(seen, sizes, strict=True):
         pose, skeleton = shown.pose(times), shown.skeleton
         assert pose is not None and skeleton is not None
@@ -88,11 +98,9 @@ def _camera(
         middle = np.mean([figure.head(r, p) for r, p in zip(rotations, positions, strict=True)], axis=0)
         heads.append(middle + np.array([0.0, lift, 0.0]))
         heights.append(height)
-        low, high = figure.bounds(positions)
-        lows.append(low)
-        highs.append(high)
-    bounds = (np.min(lows, axis=0), np.max(highs, axis=0))
-    return shot_camera(cut.shot, cut.side, np.array(heads), heights, bounds, aspect)
+    at = np.array(heads)
+    camera = shot_camera(cut.shot, cut.side, at, heights, aspect)
+    return Filmed(camera, LampTurn(camera.yaw, lamp_side(camera, cut.shot, cut.side, at)))
 
 
 def list_captions(

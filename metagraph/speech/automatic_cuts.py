@@ -1,14 +1,19 @@
 """Cuts of a conversation's camera that follow who speaks: over the listener's shoulder at each new speaker,
-closer where somebody speaks long, all who talk at the beginning, in a long silence and where several speak at
-once. The rules are those any editor of dialogue begins with; the numbers are ours.
+closer where somebody speaks long, to a listener who answers in passing or has long been out of the picture,
+all who talk at the beginning, in a long silence and where several speak at once. The rules are those any
+editor of dialogue begins with; the numbers are ours.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
+from metagraph.graph.conversation.edits import add_conversation
 from metagraph.graph.conversation.model import Conversation
+from metagraph.graph.model import Project
 from metagraph.graph.timeline import Cut, Shot
+from metagraph.graph.timeline_edits import change_timeline
 
 OPENING = 2.0  # seconds at least that all are seen at the beginning
 SHORTEST = 1.6  # seconds a picture is seen at least
@@ -17,6 +22,10 @@ BRIEF = 1.0  # seconds below which what is said is an answer in passing and no t
 EARLY = 0.12  # seconds before the first sound at which it is cut to who speaks
 LONG = 7.0  # seconds of one picture of a speaker after which it goes closer, or back
 SILENCE = 3.0  # seconds without a word in which all are seen
+REACTION = 1.8  # seconds that a listener is seen
+ANSWER = 0.35  # seconds before its answer at which it is cut to a listener
+BEFORE = 2.0  # seconds that a speaker is seen before it is cut to a listener's answer
+UNSEEN = 12.0  # seconds of one speaker after which the listener is seen without an answer
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +81,63 @@ def automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
         together = both and turn.end - turn.start < LONG
         if begin < turn.end - SHORTEST / 2:
             cut(begin, "two" if together else "over", 0 if together else side)
-        at, close = begin + LONG, True
-        while not both and at < min(turn.end, after) - SHORTEST:
-            cut(_between_words(conversation, side, at), "close" if close else "over", side)
-            at, close = at + LONG, not close
+        if not both:
+            _cut_within(conversation, turn, begin, min(turn.end, after), cut)
         until = max(until, turn.end)
+    for start, side in sorted((s.start, n) for n, of in enumerate(conversation.sides) for s in of.segments):
+        if start > until:  # a last answer
+            cut(start - EARLY, "over", side)
+            until = conversation.length
     if conversation.length - until > SILENCE:
         cut(until + 1.0, "two", 0)
     return tuple(cuts)
+
+
+def _cut_within(
+    conversation: Conversation,
+    turn: FloorTurn,
+    begin: float,
+    end: float,
+    cut: Callable[[float, Shot, int], None],
+) -> None:
+    """Cut within a long turn: closer and back, and to who listens."""
+    answers = [
+        (s.start - ANSWER, n)
+        for n, side in enumerate(conversation.sides)
+        if n != turn.side
+        for s in side.segments
+        if s.kind == "response"
+    ]
+    listener = 1 - turn.side if len(conversation.sides) == 2 else None
+    shots: tuple[Shot, Shot] = ("close", "over")
+    seen, last, place = begin, begin, 0  # when a listener was last seen, the last cut, the next shot
+    while True:
+        at, who = last + LONG, turn.side
+        answer = next((a for a in sorted(answers) if last + BEFORE <= a[0] <= at), None)
+        if answer is not None and answer[0] < end - REACTION - SHORTEST:
+            at, who = answer
+        elif listener is not None and UNSEEN - 0.01 <= at - seen < end - seen - REACTION - SHORTEST:
+            who = listener
+        if at >= end - SHORTEST:
+            return
+        if who == turn.side:
+            last = _between_words(conversation, turn.side, at)
+            cut(last, shots[place % 2], who)
+        else:
+            cut(at, "close", who)
+            seen = last = at + REACTION
+            cut(last, shots[place % 2], turn.side)
+        place += 1
+
+
+def keep_filmed_conversation(project: Project, conversation: Conversation) -> tuple[Project, str]:
+    """Keep a conversation with automatic cuts; return the project and the conversation's id. One side alone
+    is not cut.
+    """
+    project, ident = add_conversation(project, conversation)
+    if len(conversation.sides) < 2:
+        return project, ident
+    return change_timeline(project, ident, cuts=automatic_cuts(conversation)), ident
 
 
 def _between_words(conversation: Conversation, side: int, at: float) -> float:

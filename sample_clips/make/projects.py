@@ -17,10 +17,10 @@ from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph import requests as a
-from metagraph.graph.conversation.edits import add_conversation
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
+from metagraph.speech.automatic_cuts import keep_filmed_conversation
 from metagraph.suggest.find_contacts import with_contacts, with_measured_body
 from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, RECIPES, SEATED, Entry, catalogue
@@ -84,7 +84,7 @@ def sample() -> Project:
     project = performance_edits.add_performance(
         _finished("sample", practice(), catalogue(), STARTS), GREETING
     )[0]
-    return add_conversation(project, conversation())[0]
+    return keep_filmed_conversation(project, conversation())[0]
 
 
 @numbered_ids()

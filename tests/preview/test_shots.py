@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from preview.shots import camera_from, camera_side, shot_camera
+from preview.shots import camera_from, camera_side, lamp_side, shot_camera
 
 HEADS = np.array([[-0.65, 1.6, 0.0], [0.65, 1.7, 0.0]])
-BOUNDS = (np.array([-1.0, 0.0, -0.4]), np.array([1.0, 1.85, 0.4]))
+HEIGHTS = [1.7, 1.8, 1.6]
+HEAD = 0.13  # of the height, from chin to top
 CIRCLE = np.array([[-0.9, 1.6, 0.0], [0.9, 1.6, 0.0], [0.0, 1.6, -1.2]])
 
 
 def seen(shot, side, heads=HEADS, aspect=16 / 9):
-    camera = shot_camera(shot, side, heads, [1.7, 1.8, 1.6][: len(heads)], BOUNDS, aspect)
+    camera = shot_camera(shot, side, heads, HEIGHTS[: len(heads)], aspect)
     return camera, camera.project(heads, aspect)
 
 
@@ -36,7 +37,7 @@ def test_over_a_shoulder_the_other_is_nearer_and_to_the_side_of_the_face():
     for heads, side, other in ((HEADS, 0, 1), (HEADS, 1, 0), (CIRCLE, 0, 1), (CIRCLE, 1, 0), (CIRCLE, 2, 0)):
         camera, at = seen("over", side, heads)
         away = np.linalg.norm(heads - camera.eye, axis=1)
-        assert away[other] < 1.0 < away[side]
+        assert away[other] < 1.8 < 2.4 < away[side]
         assert abs(at[other, 0] - at[side, 0]) > 0.2, "the one does not hide the other"
 
 
@@ -58,3 +59,22 @@ def test_a_camera_is_where_it_was_put():
 def test_one_alone_is_seen_whole():
     camera, at = seen("over", 3, HEADS[:1])
     assert ((at > 0) & (at < 1)).all() and camera.distance > 1
+
+
+def test_of_two_no_head_is_lower_than_120_of_540_pixels():
+    for shot in ("over", "close", "two"):
+        for side in (0, 1):
+            camera, _ = seen(shot, side)
+            for n in (0, 1) if shot == "two" else (side,):
+                half = np.array([0.0, HEAD * HEIGHTS[n] / 2, 0.0])
+                low, high = camera.project(np.array([HEADS[n] - half, HEADS[n] + half]), 16 / 9)
+                assert abs(high[1] - low[1]) * 540 > 120, (shot, side, n)
+
+
+def test_the_lamp_lights_the_side_of_a_face_that_is_turned_from_the_camera():
+    for shot in ("over", "close"):
+        for side in (0, 1):
+            camera, _ = seen(shot, side)
+            looks = camera.axes[0] @ (HEADS[1 - side] - HEADS[side])
+            assert lamp_side(camera, shot, side, HEADS) == (looks > 0)
+    assert not lamp_side(seen("two", 0)[0], "two", 0, HEADS)

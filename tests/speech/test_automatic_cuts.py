@@ -8,7 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation.model import Conversation, Segment, Side
+from metagraph.graph.model import Project
 from metagraph.graph.timeline import Cut, with_cut
+from metagraph.graph.timeline_edits import timeline_of
 from metagraph.speech import automatic_cuts as c
 
 
@@ -33,6 +35,35 @@ def test_an_answer_in_passing_is_no_cut():
         length=10.0,
     )
     assert [x.side for x in c.automatic_cuts(some)] == [0, 0]
+
+
+def test_a_listener_who_answers_in_a_long_turn_is_seen_and_then_the_speaker_again():
+    some = talk(
+        [("clause", 3.0 + 2 * n, 4.9 + 2 * n) for n in range(6)], [("response", 8.0, 8.4)], length=16.0
+    )
+    assert [(x.at, x.shot, x.side) for x in c.automatic_cuts(some)] == [
+        (0.0, "two", 0), (2.88, "over", 0), (7.65, "close", 1), (9.45, "close", 0),
+    ]  # fmt: skip
+
+
+def test_a_listener_without_a_word_is_seen_after_a_while():
+    some = talk([("clause", 3.0 + 2 * n, 4.9 + 2 * n) for n in range(14)], [], length=32.0)
+    assert [(x.shot, x.side) for x in c.automatic_cuts(some)] == [
+        ("two", 0), ("over", 0), ("close", 0), ("close", 1), ("over", 0), ("close", 0),
+    ]  # fmt: skip
+
+
+def test_a_last_answer_is_seen():
+    some = talk([("clause", 3.0, 7.0)], [("response", 7.5, 8.0)], length=10.0)
+    assert [(x.at, x.shot, x.side) for x in c.automatic_cuts(some)][-1] == (7.38, "over", 1)
+
+
+def test_a_new_conversation_is_filmed_and_one_voice_alone_is_not():
+    some = talk([("clause", 3.0, 7.0)], [("clause", 8.0, 12.0)], length=13.0)
+    project, ident = c.keep_filmed_conversation(Project(name="x"), some)
+    assert timeline_of(project, ident).cuts == c.automatic_cuts(some)
+    project, alone = c.keep_filmed_conversation(Project(name="x"), talk([("clause", 3.0, 7.0)], length=9.0))
+    assert timeline_of(project, alone).cuts == ()
 
 
 def test_who_speaks_long_is_seen_closer_and_a_long_silence_shows_all():

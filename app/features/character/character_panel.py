@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
@@ -255,6 +256,9 @@ class PreviewPanel(QWidget):
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
         self.composed = scene
+        lamp = self.directing.follow(shown, seconds)
+        if lamp is not None:  # a cut has the camera
+            return replace(scene, lamp=lamp)
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.others else 0.0
@@ -263,7 +267,6 @@ class PreviewPanel(QWidget):
             )
         elif self._last is not None:
             self.looking.keep_in_picture(shown, self._last[0])
-        self.directing.follow(shown, seconds)
         return scene
 
     def _run_or_rest(self) -> None:

@@ -14,6 +14,7 @@ from app.widgets.memo import Once
 if TYPE_CHECKING:
     from app.stage.cutting import Cutting
     from metagraph.speech.captions import Caption
+    from preview.scene import LampTurn
 
 
 class CaptionLabel(QWidget):
@@ -64,8 +65,10 @@ class Directing:
         self._cutting, self._captions, self._cut = None, Once(), False
         self.label.say([])
 
-    def follow(self, shown: ShownPlayback, seconds: float) -> None:
-        """Let the camera be where the cuts want it; called before a picture is drawn."""
+    def follow(self, shown: ShownPlayback, seconds: float) -> LampTurn | None:
+        """Let the camera be where the cuts want it, and return how they turn the light; called before a
+        picture is drawn.
+        """
         view, performance = self.panel.view, self.panel.performance
         cuts = performance.timeline.now.cuts if shown.others else ()
         if not cuts or view.moved_by_hand or self.panel.session.transport.show != "plan":
@@ -73,20 +76,22 @@ class Directing:
                 self._cut = False
                 self.panel.frame_all()  # all are seen, as before there were cuts
             self._cut = self._cut and bool(cuts)
-            return
+            return None
         seen = [(self.panel.figures.of(one), one) for one in shown.everyone]
         if any(figure is None for figure, _ in seen):
-            return
+            return None
         if self._cutting is None:
             from app.stage.cutting import Cutting
 
             self._cutting = Cutting()
-        camera = self._cutting.camera(seen, cuts, seconds, view.width() / max(1, view.height()))
-        if camera is not None:
-            view.camera, self._cut = camera, True
-        elif self._cut:  # before the first cut
+        filmed = self._cutting.camera(seen, cuts, seconds, view.width() / max(1, view.height()))
+        if filmed is not None:
+            view.camera, self._cut = filmed.camera, True
+            return filmed.lamp
+        if self._cut:  # before the first cut
             self._cut = False
             self.panel.frame_all()
+        return None
 
     def tell(self, seconds: float) -> None:
         """Show the words of who speaks, where they are wanted."""

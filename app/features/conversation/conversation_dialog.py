@@ -408,7 +408,9 @@ class ImportDialog(QDialog):
 
         def edit(project: Project) -> Project:
             nonlocal ident
-            project, ident = conversation_edits.add_conversation(project, conversation)
+            from metagraph.speech.automatic_cuts import keep_filmed_conversation
+
+            project, ident = keep_filmed_conversation(project, conversation)
             return conversation_edits.set_language(project, str(self.language.currentData()))
 
         self.document.edit(tr("Add conversation"), edit)
