@@ -1,7 +1,7 @@
 """Cuts of a conversation's camera that follow who speaks: over the listener's shoulder at each new speaker,
 closer where somebody speaks long, to a listener who answers in passing or has long been out of the picture,
-all who talk at the beginning, in a long silence and where several speak at once. The rules are those any
-editor of dialogue begins with; the numbers are ours.
+to who thinks before an answer, all who talk at the beginning, now and then, in a long silence and where
+several speak at once. The rules are those any editor of dialogue begins with; the numbers are ours.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from metagraph.graph.conversation.edits import add_conversation
-from metagraph.graph.conversation.model import Conversation
+from metagraph.graph.conversation.model import Conversation, Segment
 from metagraph.graph.model import Project
 from metagraph.graph.timeline import Cut, Shot
 from metagraph.graph.timeline_edits import change_timeline
@@ -18,8 +18,12 @@ from metagraph.graph.timeline_edits import change_timeline
 OPENING = 2.0  # seconds at least that all are seen at the beginning
 SHORTEST = 1.6  # seconds a picture is seen at least
 JOINED = 1.2  # seconds of silence over which one goes on speaking
-BRIEF = 1.0  # seconds below which what is said is an answer in passing and no turn
+BRIEF = 0.8  # seconds below which what is said is an answer in passing and no turn
 EARLY = 0.12  # seconds before the first sound at which it is cut to who speaks
+HELD = 0.4  # seconds that the last speaker is still seen in a longer pause
+MUSING = 1.2  # seconds before the first sound, at most, that somebody is seen who thinks before an answer
+AGAIN = 40.0  # seconds after which a short turn is used to show all again
+SHORT_TURN = 4.0  # seconds
 LONG = 7.0  # seconds of one picture of a speaker after which it goes closer, or back
 SILENCE = 3.0  # seconds without a word in which all are seen
 REACTION = 1.8  # seconds that a listener is seen
@@ -38,20 +42,22 @@ class FloorTurn:
 
 
 def list_turns(conversation: Conversation) -> list[FloorTurn]:
-    """Return who has the floor, by start: stretches of one side's clauses, joined over short silences,
+    """Return who has the floor, by start: stretches of what one side says, joined over short silences,
     without answers in passing.
     """
     some: list[FloorTurn] = []
     for n, side in enumerate(conversation.sides):
-        held: list[FloorTurn] = []
+        held: list[list[Segment]] = []
         for s in side.segments:
-            if s.kind == "response":
-                continue
-            if held and s.start - held[-1].end < JOINED:
-                held[-1] = FloorTurn(n, held[-1].start, s.end)
+            if held and s.start - held[-1][-1].end < JOINED:
+                held[-1].append(s)
             else:
-                held.append(FloorTurn(n, s.start, s.end))
-        some += [t for t in held if t.end - t.start >= BRIEF]
+                held.append([s])
+        some += [
+            FloorTurn(n, group[0].start, group[-1].end)
+            for group in held
+            if group[-1].end - group[0].start >= BRIEF and any(s.kind != "response" for s in group)
+        ]
     return sorted(some, key=lambda t: (t.start, t.end))
 
 
@@ -65,10 +71,10 @@ def automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
         if (last.shot, last.side) == (shot, side) or at >= conversation.length - SHORTEST / 2:
             return
         least = OPENING if len(cuts) == 1 else SHORTEST
-        if at - last.at >= least:
+        if at - last.at >= least - 0.005:
             cuts.append(Cut(at=round(at, 2), shot=shot, side=side))
 
-    until = 0.0  # when the last word ends so far
+    until = shown = 0.0  # when the last word ends so far, and when all were last seen
     for n, turn in enumerate(found):
         side = turn.side
         if turn.start - until > SILENCE:
@@ -77,10 +83,13 @@ def automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
         both = any(
             t.side != turn.side and t.start < turn.end - 1.0 and t.end > turn.start + 1.0 for t in found
         )
-        begin = max(turn.start - EARLY, cuts[-1].at + (OPENING if len(cuts) == 1 else SHORTEST))
-        together = both and turn.end - turn.start < LONG
+        early = max(EARLY, min(MUSING, turn.start - until - HELD)) if n else EARLY
+        begin = max(turn.start - early, cuts[-1].at + (OPENING if len(cuts) == 1 else SHORTEST))
+        long = turn.end - turn.start
+        together = (both and long < LONG) or (begin - shown > AGAIN and long < SHORT_TURN)
         if begin < turn.end - SHORTEST / 2:
             cut(begin, "two" if together else "over", 0 if together else side)
+            shown = begin if together else shown
         if not both:
             _cut_within(conversation, turn, begin, min(turn.end, after), cut)
         until = max(until, turn.end)

@@ -144,7 +144,7 @@ def conversation() -> Conversation:
     read = read_conversation([folder / "talk.ogg"], [folder / "talk.json"], HERE, "Office").conversation
     sides = tuple(
         msgspec.structs.replace(side, name=name, character=body)
-        for side, name, body in zip(read.sides, ("Ada", "Ben"), (None, "ben.glb"), strict=True)
+        for side, name, body in zip(read.sides, ("Ben", "Ada"), ("ben.glb", None), strict=True)
     )
     return msgspec.structs.replace(read, sides=sides)
 

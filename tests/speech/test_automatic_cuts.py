@@ -24,7 +24,7 @@ def talk(*sides, length=40.0):
 def test_it_begins_with_all_and_cuts_to_who_speaks_a_little_early():
     some = talk([("clause", 3.0, 7.0)], [("clause", 8.0, 12.0)], length=13.0)
     assert [(x.at, x.shot, x.side) for x in c.automatic_cuts(some)] == [
-        (0.0, "two", 0), (2.88, "over", 0), (7.88, "over", 1),
+        (0.0, "two", 0), (2.88, "over", 0), (7.4, "over", 1),
     ]  # fmt: skip
 
 
@@ -51,6 +51,25 @@ def test_a_listener_without_a_word_is_seen_after_a_while():
     assert [(x.shot, x.side) for x in c.automatic_cuts(some)] == [
         ("two", 0), ("over", 0), ("close", 0), ("close", 1), ("over", 0), ("close", 0),
     ]  # fmt: skip
+
+
+def test_who_thinks_before_an_answer_is_seen_thinking():
+    some = talk([("clause", 3.0, 7.0)], [("clause", 9.0, 12.0)], length=13.0)
+    assert c.automatic_cuts(some)[-1].at == 7.8
+
+
+def test_a_short_answer_that_goes_on_is_seen_from_its_first_word():
+    some = talk([("clause", 3.0, 7.0)], [("response", 7.3, 7.6), ("clause", 8.2, 11.0)], length=12.0)
+    assert c.automatic_cuts(some)[-1].at == 7.18
+
+
+def test_all_are_shown_again_now_and_then():
+    some = talk(
+        [("clause", 3.0 + 10 * n, 6.0 + 10 * n) for n in range(6)],
+        [("clause", 7.0 + 10 * n, 12.5 + 10 * n) for n in range(6)],
+        length=70.0,
+    )
+    assert [round(x.at) for x in c.automatic_cuts(some) if x.shot == "two"] == [0, 43, 64]
 
 
 def test_a_last_answer_is_seen():

@@ -101,7 +101,7 @@ def test_cuts_by_who_speaks_are_dragged_and_taken_away(talking):
         )  # fmt: skip
         QApplication.sendEvent(view, event)
     QTest.mouseRelease(view, Qt.MouseButton.LeftButton, pos=end.toPoint())
-    assert timeline.now.cuts[2].at == pytest.approx(6.88 + 0.75, abs=0.04)
+    assert timeline.now.cuts[2].at == pytest.approx(6.4 + 0.75, abs=0.04)
     assert "Over the shoulder of Bo" in view.tip(QPointF(view.scale().x(9.0), y))
     menu = view.cameras.menu(QPointF(view.scale().x(9.0), y))
     next(x for x in menu.actions() if x.text().startswith("Remove this cut")).trigger()
