@@ -6,7 +6,7 @@ from argparse import ArgumentParser, Namespace
 from typing import Any
 
 from app.cli.command_output import open_for_command, say
-from metagraph.graph.words import MODES
+from metagraph.graph.words import LASTING_MODES, MODES
 
 LEAST, MOST = 60.0, 86400.0  # seconds that are counted
 
@@ -14,7 +14,7 @@ LEAST, MOST = 60.0, 86400.0  # seconds that are counted
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
-        "--mode", choices=MODES, help="only while the character talks, listens or idles (default: all three)"
+        "--mode", choices=MODES, help="only in this mode (default: idle, listening and talking)"
     )
     parser.add_argument("-s", "--seconds", type=float, default=3600.0, help="how long (default: an hour)")
     parser.add_argument("--seed", type=int, help="another performance (default: the project's seed)")
@@ -29,7 +29,7 @@ def run(options: Namespace) -> int:
     project = open_for_command(options.project)
     words: list[str] = []
     data: dict[str, Any] = {}
-    for mode in [options.mode] if options.mode else MODES:
+    for mode in [options.mode] if options.mode else LASTING_MODES:
         found = measure_behaviour(project, mode, options.seconds, options.seed)
         words.append(f"{mode}, {options.seconds:g} s:")
         for row in found.rows:

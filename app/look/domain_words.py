@@ -64,4 +64,5 @@ WORDS = (
     *(tr_noop("preparation"), tr_noop("stroke"), tr_noop("hold"), tr_noop("retraction")),
     *(tr_noop("positive"), tr_noop("negative"), tr_noop("Positive"), tr_noop("Negative")),
     *(tr_noop("idle"), tr_noop("listening"), tr_noop("talking")),
+    *(tr_noop("thinking"), tr_noop("reacting")),
 )

@@ -26,9 +26,23 @@ DIRECTIONS = {
     tr_noop("Down"): (0.0, 0.6, 1.0),
 }
 MOOD_WORDS = {name: vocabulary_title(name) for name in FEELINGS}
-MODE_WORDS = lazy_texts(lambda: {"idle": tr("Idle"), "listening": tr("Listen"), "talking": tr("Talk")})
+MODE_WORDS = lazy_texts(
+    lambda: {
+        "idle": tr("Idle"),
+        "listening": tr("Listen"),
+        "talking": tr("Talk"),
+        "thinking": tr("Think"),
+        "reacting": tr("React"),
+    }
+)
 MODE_ASKED = lazy_texts(
-    lambda: {"idle": tr("idle"), "listening": tr("listen"), "talking": tr("talk")}
+    lambda: {
+        "idle": tr("idle"),
+        "listening": tr("listen"),
+        "talking": tr("talk"),
+        "thinking": tr("think"),
+        "reacting": tr("react"),
+    }
 )  # within a sentence
 
 

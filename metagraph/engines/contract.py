@@ -155,9 +155,9 @@ class ExportedMarkov(Struct, forbid_unknown_fields=True):
     """A model that writes meta actions. states: (limb, kind). matrix: rows of probabilities. gap: mean
     seconds of rest between meta actions. positive, negative: the share of gestures that ask for that tag.
     tags: the tags that each state asks for, separated by blanks; empty if no state asks for any. lengths: for
-    each state mean and standard deviation in seconds, or empty. modes: a row each for idling, listening and
-    talking with the shares of written gestures, fidgets and transitions that are performed; empty for all of
-    them.
+    each state mean and standard deviation in seconds, or empty. modes: a row each for idling, listening,
+    talking, thinking and reacting with the shares of written gestures, fidgets and transitions that are
+    performed; the last two may be left out; empty for all of them.
     """
 
     states: list[tuple[LimbName, KindName]]

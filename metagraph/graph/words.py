@@ -8,13 +8,14 @@ Layer = Literal["body", "arms", "head"]
 Kind = Literal["stance", "gesture", "fidget", "transition"]
 Limb = Literal["left", "right", "both"]
 Part = Literal["legs", "spine", "arms", "head", "face"]
-Mode = Literal["idle", "listening", "talking"]
+Mode = Literal["idle", "listening", "talking", "thinking", "reacting"]
 
 LAYERS: tuple[Layer, ...] = get_args(Layer)
 KINDS: tuple[Kind, ...] = get_args(Kind)
 LIMBS: tuple[Limb, ...] = get_args(Limb)
 PARTS: tuple[Part, ...] = get_args(Part)
 MODES: tuple[Mode, ...] = get_args(Mode)
+LASTING_MODES: tuple[Mode, ...] = MODES[:3]  # the others last for moments
 
 Feeling = Literal[
     "neutral",

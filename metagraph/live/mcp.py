@@ -252,7 +252,8 @@ def _instructions(project: Project) -> str:
         f"You move the body of a character ('{project.name}') that stands before whom you talk with. It "
         "idles, breathes, blinks and looks about by itself. Call `say` with what you say: gestures that go "
         "with its words are made (`gestures` false leaves them to you). `gesture` with a tag, `nod`, `shake` "
-        "and `look` do more where it matters; `mode` 'listening' while the other speaks, `mood` when it "
+        "and `look` do more where it matters; `mode` 'listening' while the other speaks, 'thinking' "
+        "while you prepare an answer, 'reacting' for a second when something surprises you, `mood` when it "
         "changes. Times are seconds; without `at` or `after` things begin as soon as can be. A result tells "
         "when it plays, or in `why` why it does not."
     )

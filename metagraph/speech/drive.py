@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from metagraph.graph.conversation.model import Conversation, Segment, others_of, segments_heard_by
-from metagraph.graph.model import Action, Layer, Mode, Project
+from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import (
     AnyRequest,
     Behave,
@@ -35,6 +35,7 @@ from metagraph.playback.timing.phases import phases
 from metagraph.speech.addressing import TURN, speaking_spans
 from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import looks_of
+from metagraph.speech.mode_spans import list_modes
 from metagraph.speech.peak_blinks import peak_blinks
 from metagraph.speech.turn_cues import LISTEN, look_at_turns, nod_to_clauses
 
@@ -44,7 +45,6 @@ ROUNDS = 12  # rounds in which requests that would be late are removed
 CLAUSE, ANSWER, FILL = 3, 2, 1  # priorities: own clauses, then answers, then fillers
 HEAD: Point = (0.0, 1.6, 1.3)  # metres: where a partner's head is if its height is unknown
 PLAIN = ("beat", "explain", "open")  # tags of gestures that go with any words
-QUIET = 2.0  # seconds of everyone's silence after which a side idles
 REST = 3.5  # seconds without requests after which a character may fidget
 FIDGETS = 0.5  # how often it does
 # how often the body changes its stance when its side begins to speak, where most shifts of posture are
@@ -69,7 +69,8 @@ def drive_side(
     if line is not None:
         out.append(Say(id="voice", at=0.0, line=line, gestures=False))
     out += [
-        Behave(id=f"mode {n}", at=at, mode=mode) for n, (at, mode) in enumerate(_modes(conversation, side))
+        Behave(id=f"mode {n}", at=at, mode=mode)
+        for n, (at, mode) in enumerate(list_modes(conversation, side))
     ]
     if conversation.blinks == "peaks":
         peaks = [s.peak for s in conversation.sides[side].segments if s.peak is not None]
@@ -282,24 +283,6 @@ def key_segments(segments: tuple[Segment, ...]) -> list[tuple[str, Segment]]:
         seen[word] += 1
         out.append((f"{word} {seen[word]}" if seen[word] > 1 or not s.text else word, s))
     return out
-
-
-def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]]:
-    """Yield from when on a side talks, listens or idles. Short silences count to the previous speaker."""
-    own = speaking_spans(conversation.sides[side].segments)
-    other = [
-        span for n in others_of(conversation, side) for span in speaking_spans(conversation.sides[n].segments)
-    ]
-    edges = sorted({0.0, *(x for start, end in (*own, *other) for x in (start, end))})
-    last: Mode | None = None
-    for at in edges:
-        talking = any(start <= at < end for start, end in own)
-        answered = any(start <= at < end for start, end in other)
-        near = any(start <= at < end + QUIET for start, end in (*own, *other))
-        mode: Mode = "talking" if talking else "listening" if answered or near else "idle"
-        if mode != last:
-            yield round(at, 3), mode
-            last = mode
 
 
 def _gaps(busy: list[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:

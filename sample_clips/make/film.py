@@ -29,7 +29,9 @@ SCENE = (
     Turn(BEN, 0.8, ("but you have been here for *nine* years", "you *built* half of this place")),
     Turn(ADA, 0.2, ("response: I know",)),
     Turn(ADA, 0.6, ("and I *loved* it", "but every morning I walk past that *little* shop")),
-    Turn(ADA, 0.4, ("the one on the *corner* with the blue door", "and it has been *empty* since the winter")),
+    Turn(
+        ADA, 0.4, ("the one on the *corner* with the blue door", "and it has been *empty* since the winter")
+    ),
     Turn(BEN, -0.6, ("response: right",)),
     Turn(ADA, 0.5, ("so last week I just *called* the owner", "and we *talked* for an hour")),
     Turn(ADA, 0.3, ("and she is going to *give* it to me",)),
@@ -97,7 +99,7 @@ SCENE = (
     Turn(BEN, 0.4, ("do not *thank* me yet", "I have not seen the *boxes*")),
     Turn(ADA, 0.6, ("then I see you on *Saturday*", "and do not *tell* anybody")),
     Turn(BEN, 0.3, ("response: of course",)),
-)  # fmt: skip
+)
 
 
 def main() -> None:

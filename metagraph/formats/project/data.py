@@ -65,7 +65,7 @@ from metagraph.graph.model import (
 from metagraph.graph.requests import explain_invalid_ask
 from metagraph.graph.timeline import Timeline
 from metagraph.graph.touch import Touch
-from metagraph.graph.words import MODES
+from metagraph.graph.words import LASTING_MODES, MODES
 from metagraph.motion.contact_hold import Contact
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
@@ -498,10 +498,12 @@ def markov_from(layer: Layer, data: Any, where: str) -> Markov:
         floats(x if isinstance(x, list) else [], 3, f"{where}.modes")
         for x in get(data, "modes", list, where, [])
     ]
-    if modes and (len(modes) != len(MODES) or not all(0 <= x <= 1 for row in modes for x in row)):
-        raise DataError(
-            f"{where}.modes", f"should be {len(MODES)} rows ({', '.join(MODES)}) of three shares from 0 to 1"
-        )
+    if modes and (
+        not len(LASTING_MODES) <= len(modes) <= len(MODES)
+        or not all(0 <= x <= 1 for row in modes for x in row)
+    ):
+        rows = f"{len(LASTING_MODES)} to {len(MODES)} rows ({', '.join(MODES)})"
+        raise DataError(f"{where}.modes", f"should be {rows} of three shares from 0 to 1")
     more = fill_fields(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths", "modes"))
     return Markov(
         layer,

@@ -28,8 +28,10 @@ SHOULDERS = 1.3
 BOWED = {"spine": 3.0, "chest": 4.0, "upper_chest": 4.0, "neck": 4.0, "head": 9.0}
 # The same of a body that leans into it (`mood.Bearing.thrust` of 1): trunk ahead, face level.
 THRUST = {"spine": 4.0, "chest": 4.0, "upper_chest": 3.0, "neck": 7.0, "head": -18.0}
-# Who takes how much of a turn of the head; what a skeleton lacks, the others take.
-SHARES = {"chest": 0.04, "upper_chest": 0.06, "neck": 0.35, "head": 0.55}
+# Who takes how much of a turn towards what is looked at; what a skeleton lacks, the others take. The turn
+# grows with the square of small angles, so a glance moves the trunk by a degree, and a look far aside turns
+# it along.
+SHARES = {"spine": 0.08, "chest": 0.08, "upper_chest": 0.08, "neck": 0.30, "head": 0.46}
 PARTNER_AWAY = 1.2  # metres ahead, at the height of the eyes: where "user" is unless somebody says otherwise
 # Where the eyes are, seen from the head's joint, in heights of the figure: up, ahead, to each side.
 EYE_UP, EYE_AHEAD, EYE_SIDE = 0.055, 0.05, 0.018

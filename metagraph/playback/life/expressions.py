@@ -31,7 +31,7 @@ LONGEST_SWELL = 4.0
 SWELL_RISES = 0.35  # of its length
 KEPT = 0.6  # of a mood's face between swells
 WARMTH = 0.35  # of a smile that a listener's swell is
-# Emphases: brows raised in speech; rows: length s, amount, rise s.
+# Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 EARLY = 0.06  # seconds a raise begins before its syllable
 RAISE = 0.35  # seconds it takes at least
 RAISE_CHANCE = 0.3  # and what chance adds
@@ -39,6 +39,7 @@ RAISE_RISES = 0.12
 ASKING = 0.8  # seconds before the end of a question that its brows begin to rise, but in its second half
 ASKING_ON = 0.5  # seconds they take to sink after it
 ASKING_LIFTS = 0.8  # of a full raise
+REACTING = 1.2  # seconds they take where a reaction begins
 LONGEST_EMPHASIS = 1.5  # seconds
 # Cues: what those with certain tags show.
 CUE_RISES = 0.25  # seconds
@@ -104,7 +105,7 @@ def emphases_on(
     before: Lane,
 ) -> Lane:
     """Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as
-    `accent_brows` says, and at the end of questions.
+    `accent_brows` says, at the end of questions, and where a reaction begins.
     """
     found: list[list[float]] = []
     for speech in track.speeches:
@@ -122,6 +123,10 @@ def emphases_on(
             at = speech.start + length - lead
             if at < speech.end:
                 found.append([at, lead + ASKING_ON, ASKING_LIFTS, lead])
+    for change in track.modes:
+        if change.mode == "reacting" and life.accent_brows > 0:
+            chance = uniform(seed, change.id, "raise")
+            found.append([change.start, REACTING, 0.6 + 0.4 * chance, RAISE_RISES])
     times: list[float] = []
     rows: list[list[float]] = []
     for event in sorted(found, key=lambda x: (x[0], x[3])):

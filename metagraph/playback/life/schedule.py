@@ -221,6 +221,11 @@ class LifeDraw:
         """Return the place of the segment that a time is in."""
         return max(0, bisect_right(self.edges, seconds) - 1)
 
+    def thinks(self, seconds: float) -> bool:
+        """Return whether the character thinks at a time: then it looks up and aside, never down."""
+        mode = max(0, bisect_right(self.modes.times, seconds) - 1)
+        return MODES[int(self.modes.rows[mode][0])] == "thinking"
+
     def after(self, seconds: float, need: float, rates: Sequence[float]) -> float:
         """Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each
         segment; infinity where it is not before the end.
@@ -326,8 +331,9 @@ class LifeDraw:
             last = at + max(SHORTEST_AVERSION, length)
             size = own.aversion_angle * (0.7 + 0.6 * chance_of(key, "size"))
             turn = 2.0 * math.pi * chance_of(key, "way")
+            up = UPRIGHT * size * math.sin(turn)
             times.append(at)
-            rows.append([last, size * math.sin(turn + math.pi / 2.0), UPRIGHT * size * math.sin(turn)])
+            rows.append([last, size * math.sin(turn + math.pi / 2.0), abs(up) if self.thinks(at) else up])
             number += 1
 
     def blinks(self, lane: Lane) -> Lane:

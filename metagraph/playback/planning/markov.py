@@ -46,7 +46,7 @@ ARMS = Markov(
     0    0    0    0    20 20 0    0    60
     """),
     gap=1.6,
-    modes=((0.0, 1.0, 0.8), (0.05, 0.7, 0.5), (1.0, 0.3, 0.5)),
+    modes=((0.0, 1.0, 0.8), (0.05, 0.7, 0.5), (1.0, 0.3, 0.5), (0.0, 0.2, 0.3), (0.0, 0.1, 0.1)),
 )
 HEAD = Markov(
     "head",
@@ -55,14 +55,14 @@ HEAD = Markov(
     gap=2.4,
     positive=0.2,
     negative=0.1,
-    modes=((0.0, 1.0, 0.8), (1.0, 0.5, 0.6), (0.7, 0.6, 0.7)),
+    modes=((0.0, 1.0, 0.8), (1.0, 0.5, 0.6), (0.7, 0.6, 0.7), (0.0, 0.3, 0.8), (1.0, 0.2, 0.3)),
 )
 BODY = Markov(
     "body",
     _states("LR,G LR,F LR,T"),
     _rows("10 40 50\n20 30 50\n25 45 30"),
     gap=6.0,
-    modes=((0.0, 1.0, 0.7), (0.1, 0.8, 0.6), (1.0, 0.5, 0.6)),
+    modes=((0.0, 1.0, 0.7), (0.1, 0.8, 0.6), (1.0, 0.5, 0.6), (0.0, 0.2, 0.3), (0.1, 0.2, 0.4)),
 )
 DEFAULTS: Mapping[Layer, Markov] = {"body": BODY, "arms": ARMS, "head": HEAD}
 
@@ -74,6 +74,7 @@ def model(project: Project, layer: Layer) -> Markov:
     return project.markov.get(layer, DEFAULTS[layer])
 
 
+LISTENS = 1  # place of the row that stands for modes of which a model says nothing
 BEGIN = Cursor()
 RESTS = 0.9  # standard deviation of rests, times their mean
 
@@ -141,7 +142,9 @@ def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode) -> bool:
     """
     if len(chain.modes) == 0 or meta.request.kind not in KINDS:
         return True
-    share = chain.modes[MODES.index(mode)][KINDS.index(meta.request.kind)]
+    place = MODES.index(mode)
+    row = chain.modes[place if place < len(chain.modes) else LISTENS]
+    share = row[KINDS.index(meta.request.kind)]
     return share >= 1 or uniform(seed, meta.request.id, "mode") < share
 
 

@@ -404,3 +404,22 @@ def test_any_manner_is_survived(manner: Manner) -> None:
     found = drawn(track_of(TALK), 40.0, life)
     assert all((np.diff(getattr(found, name).starts) > 0).all() for name in LANES)
     assert found.targets[0].to == PARTNER
+
+
+def test_who_thinks_looks_away_for_long_and_never_down():
+    thinking = drawn(track_of([ModeFrom("m", 0, "thinking")]), HOUR)
+    lengths = [row[0] - at for at, row in zip(thinking.aversions.times, thinking.aversions.rows, strict=True)]
+    assert 3.0 < sum(lengths) / len(lengths) < 4.0
+    assert all(row[2] >= 0 for row in thinking.aversions.rows)
+    assert any(row[2] < 0 for row in drawn(track_of([ModeFrom("m", 0, "talking")]), HOUR).aversions.rows)
+
+
+def test_who_reacts_looks_at_it_and_raises_the_brows_once():
+    reacting = drawn(track_of([ModeFrom("m", 5.0, "reacting"), ModeFrom("n", 7.0, "listening")]), 20.0)
+    assert [at for at in reacting.emphases.times if at < 8] == [5.0]
+    assert not [at for at in drawn(track_of([ModeFrom("m", 5.0, "listening")]), 20.0).emphases.times if at < 8]
+    away = [
+        sum(row[0] - at for at, row in zip(some.aversions.times, some.aversions.rows, strict=True))
+        for some in (drawn(track_of([ModeFrom("m", 0, m)]), HOUR) for m in ("reacting", "listening"))
+    ]
+    assert away[0] < 0.3 * away[1]

@@ -34,7 +34,7 @@ inline constexpr double LONGEST_SWELL = 4.0;
 inline constexpr double SWELL_RISES = 0.35; // of its length
 inline constexpr double KEPT = 0.6; // of a mood's face between swells
 inline constexpr double WARMTH = 0.35; // of a smile that a listener's swell is
-// Emphases: brows raised in speech; rows: length s, amount, rise s.
+// Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 inline constexpr double EARLY = 0.06; // seconds a raise begins before its syllable
 inline constexpr double RAISE = 0.35; // seconds it takes at least
 inline constexpr double RAISE_CHANCE = 0.3; // and what chance adds
@@ -43,6 +43,7 @@ inline constexpr double RAISE_RISES = 0.12;
 inline constexpr double ASKING = 0.8;
 inline constexpr double ASKING_ON = 0.5; // seconds they take to sink after it
 inline constexpr double ASKING_LIFTS = 0.8; // of a full raise
+inline constexpr double REACTING = 1.2; // seconds they take where a reaction begins
 inline constexpr double LONGEST_EMPHASIS = 1.5; // seconds
 // Cues: what those with certain tags show.
 inline constexpr double CUE_RISES = 0.25; // seconds
@@ -157,7 +158,7 @@ inline Ref<Lane> swells_on(
 }
 
 /// Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows`
-/// says, and at the end of questions.
+/// says, at the end of questions, and where a reaction begins.
 inline Ref<Lane> emphases_on(
     const Ref<Life>& life,
     const Ref<Track>& track,
@@ -168,6 +169,7 @@ inline Ref<Lane> emphases_on(
     const Ref<Lane>& before
 ) {
     List<List<double>> found;
+    double chance{};
     for (const auto& speech : track->speeches) {
         if (speech->end <= cut || speech->start >= drawn) {
             continue;
@@ -180,7 +182,7 @@ inline Ref<Lane> emphases_on(
                 || choice::uniform(seed, List<std::string>{speech->id, "brows", lang::text(n)}) >= life->accent_brows) {
                 continue;
             }
-            double chance = choice::uniform(seed, List<std::string>{speech->id, "raise", lang::text(n)});
+            chance = choice::uniform(seed, List<std::string>{speech->id, "raise", lang::text(n)});
             found.push_back(List<double>{
                 at,
                 expressions::RAISE + expressions::RAISE_CHANCE * chance,
@@ -195,6 +197,17 @@ inline Ref<Lane> emphases_on(
             if (at < speech->end) {
                 found.push_back(List<double>{at, lead + expressions::ASKING_ON, expressions::ASKING_LIFTS, lead});
             }
+        }
+    }
+    for (const auto& change : track->modes) {
+        if (change->mode == "reacting" && life->accent_brows > 0) {
+            chance = choice::uniform(seed, List<std::string>{change->id, "raise"});
+            found.push_back(List<double>{
+                change->start,
+                expressions::REACTING,
+                0.6 + 0.4 * chance,
+                expressions::RAISE_RISES
+            });
         }
     }
     List<double> times;

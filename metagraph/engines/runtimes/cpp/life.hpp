@@ -12,7 +12,7 @@ struct Manner {
     double saccades = 1.0, saccade_rate = 1.0, blinks = 1.0;
 };
 
-/// The settings; docs/reference/export-rigs.md says what each means. manners: of idle, listening, talking.
+/// The settings; docs/reference/export-rigs.md says what each means. manners: of each mode.
 struct Life {
     bool on = true;
     double stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6;
@@ -25,6 +25,8 @@ struct Life {
         lang::made<Manner>(Manner{1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0}),
         lang::made<Manner>(Manner{1.0, 1.0, 0.85, 1.5, 0.8, 0.9, 1.0, 1.45}),
         lang::made<Manner>(Manner{1.15, 1.1, 1.05, 2.1, 1.0, 1.0, 1.0, 0.65}),
+        lang::made<Manner>(Manner{0.8, 1.0, 1.1, 3.8, 1.3, 0.7, 0.6, 1.0}),
+        lang::made<Manner>(Manner{1.2, 1.0, 0.2, 1.0, 0.6, 0.7, 1.0, 1.6}),
     };
 };
 

@@ -94,7 +94,7 @@ inline Ref<Markov> read_markov(const std::string& layer, const Node& json) {
     const bool whole = matrix.size() == states.size() && (tags.empty() || tags.size() == states.size())
         && (lengths.empty() || lengths.size() == states.size());
     if (!whole) json.wrong("should have a row of everything for each state");
-    if (!modes.empty() && modes.size() != words::MODES.size()) json.wrong("should have shares for each mode");
+    if (!modes.empty() && (modes.size() < 3 || modes.size() > words::MODES.size())) json.wrong("should have shares for each mode");
     return lang::made<Markov>(
         layer, states, matrix, json["gap"].within(1e-3, 1e9), json["positive"].number(), json["negative"].number(), tags,
         lengths, modes

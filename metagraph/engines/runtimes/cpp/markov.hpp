@@ -161,7 +161,9 @@ inline bool performs(
     if (lang::len(chain->modes) == 0 || !lang::contains(markov::KINDS, meta->request->kind)) {
         return true;
     }
-    double share = lang::at(lang::at(chain->modes, lang::index(words::MODES, mode)), lang::index(markov::KINDS, meta->request->kind));
+    int place = lang::index(words::MODES, mode);
+    List<double> row = lang::at(chain->modes, place < lang::len(chain->modes) ? place : markov::LISTENS);
+    double share = lang::at(row, lang::index(markov::KINDS, meta->request->kind));
     return share >= 1 || choice::uniform(seed, List<std::string>{meta->request->id, "mode"}) < share;
 }
 

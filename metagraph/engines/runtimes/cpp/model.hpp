@@ -153,8 +153,9 @@ struct Stance {
 /// `positive` and `negative` are the shares of gestures that ask for that tag, if tags are not part of the states.
 /// `tags` has one text for each state, the tags it asks for with blanks between them; it is empty if tags are not part
 /// of the states. `lengths` has the mean and standard deviation of each state's actions, in seconds; it is empty if
-/// they are unknown. `modes` has one row each for idling, listening and talking: the shares, 0 to 1, of the written
-/// gestures, fidgets and transitions that are performed in that mode. It is empty if the mode makes no difference.
+/// they are unknown. `modes` has one row for each mode, in the order of `words.MODES`: the shares, 0 to 1, of the
+/// written gestures, fidgets and transitions that are performed in that mode. Without the last two rows, thinking and
+/// reacting are as listening. It is empty if the mode makes no difference.
 struct Markov {
     std::string layer;
     List<std::tuple<std::string, std::string>> states;

@@ -193,6 +193,9 @@ struct LifeDraw {
     /// Return the place of the segment that a time is in.
     int place_at(double seconds);
 
+    /// Return whether the character thinks at a time: then it looks up and aside, never down.
+    bool thinks(double seconds);
+
     /// Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment;
     /// infinity where it is not before the end.
     double after(double seconds, double need, const List<double>& rates);
@@ -313,6 +316,11 @@ inline std::uint32_t LifeDraw::key(const std::string& what, int number) {
 
 inline int LifeDraw::place_at(double seconds) {
     return std::max(0, lang::bisect_right(this->edges, seconds) - 1);
+}
+
+inline bool LifeDraw::thinks(double seconds) {
+    int mode = std::max(0, lang::bisect_right(this->modes->times, seconds) - 1);
+    return lang::at(words::MODES, static_cast<int>(lang::at(lang::at(this->modes->rows, mode), 0))) == "thinking";
 }
 
 inline double LifeDraw::after(double seconds, double need, const List<double>& rates) {
@@ -442,11 +450,12 @@ inline Ref<Lane> LifeDraw::aversions(const Ref<Lane>& lane) {
         last = at + std::max(schedule::SHORTEST_AVERSION, length);
         double size = own->aversion_angle * (0.7 + 0.6 * choice::chance_of(key, "size"));
         double turn = 2.0 * lang::PI * choice::chance_of(key, "way");
+        double up = schedule::UPRIGHT * size * std::sin(turn);
         times.push_back(at);
         rows.push_back(List<double>{
             last,
             size * std::sin(turn + lang::PI / 2.0),
-            schedule::UPRIGHT * size * std::sin(turn)
+            this->thinks(at) ? std::abs(up) : up
         });
         number += 1;
     }

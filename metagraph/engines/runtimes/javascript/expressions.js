@@ -24,7 +24,7 @@ export const LONGEST_SWELL = 4;
 export const SWELL_RISES = 0.35; // of its length
 export const KEPT = 0.6; // of a mood's face between swells
 export const WARMTH = 0.35; // of a smile that a listener's swell is
-// Emphases: brows raised in speech; rows: length s, amount, rise s.
+// Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 export const EARLY = 0.06; // seconds a raise begins before its syllable
 export const RAISE = 0.35; // seconds it takes at least
 export const RAISE_CHANCE = 0.3; // and what chance adds
@@ -32,6 +32,7 @@ export const RAISE_RISES = 0.12;
 export const ASKING = 0.8; // seconds before the end of a question that its brows begin to rise, but in its second half
 export const ASKING_ON = 0.5; // seconds they take to sink after it
 export const ASKING_LIFTS = 0.8; // of a full raise
+export const REACTING = 1.2; // seconds they take where a reaction begins
 export const LONGEST_EMPHASIS = 1.5; // seconds
 // Cues: what those with certain tags show.
 export const CUE_RISES = 0.25; // seconds
@@ -104,8 +105,8 @@ export function swellsOn(track, seed, cut, drawn, before) {
 }
 
 /**
- * Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows` says,
- * and at the end of questions.
+ * Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows` says, at
+ * the end of questions, and where a reaction begins.
  * @param {Life} life
  * @param {Track} track
  * @param {Voices} voices
@@ -117,6 +118,7 @@ export function swellsOn(track, seed, cut, drawn, before) {
  */
 export function emphasesOn(life, track, voices, seed, cut, drawn, before) {
   const found = [];
+  let chance;
   for (const speech of track.speeches) {
     if (speech.end <= cut || speech.start >= drawn) {
       continue;
@@ -127,7 +129,7 @@ export function emphasesOn(life, track, voices, seed, cut, drawn, before) {
       if (at >= speech.end || uniform(seed, speech.id, "brows", String(n)) >= life.accentBrows) {
         continue;
       }
-      const chance = uniform(seed, speech.id, "raise", String(n));
+      chance = uniform(seed, speech.id, "raise", String(n));
       found.push([at, RAISE + RAISE_CHANCE * chance, 0.5 + 0.5 * chance, RAISE_RISES]);
     }
     if (asks(speech)) {
@@ -137,6 +139,12 @@ export function emphasesOn(life, track, voices, seed, cut, drawn, before) {
       if (at < speech.end) {
         found.push([at, lead + ASKING_ON, ASKING_LIFTS, lead]);
       }
+    }
+  }
+  for (const change of track.modes) {
+    if (change.mode === "reacting" && life.accentBrows > 0) {
+      chance = uniform(seed, change.id, "raise");
+      found.push([change.start, REACTING, 0.6 + 0.4 * chance, RAISE_RISES]);
     }
   }
   const times = [];

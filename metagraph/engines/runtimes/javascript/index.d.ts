@@ -3,7 +3,7 @@
 export type Layer = "body" | "arms" | "head";
 export type Kind = "stance" | "gesture" | "fidget" | "transition";
 export type Limb = "left" | "right" | "both";
-export type Mode = "idle" | "listening" | "talking";
+export type Mode = "idle" | "listening" | "talking" | "thinking" | "reacting";
 export type Point = [number, number, number];
 export const LAYERS: readonly Layer[];
 

@@ -104,7 +104,9 @@ export function performs(chain, seed, meta, mode) {
   if (chain.modes.length === 0 || !KINDS.includes(meta.request.kind)) {
     return true;
   }
-  const share = chain.modes[MODES.indexOf(mode)][KINDS.indexOf(meta.request.kind)];
+  const place = MODES.indexOf(mode);
+  const row = chain.modes[place < chain.modes.length ? place : LISTENS];
+  const share = row[KINDS.indexOf(meta.request.kind)];
   return share >= 1 || uniform(seed, meta.request.id, "mode") < share;
 }
 

@@ -252,6 +252,12 @@ export class LifeDraw {
     return Math.max(0, bisectRight(this.edges, seconds) - 1);
   }
 
+  /** Return whether the character thinks at a time: then it looks up and aside, never down. */
+  thinks(seconds) {
+    const mode = Math.max(0, bisectRight(this.modes.times, seconds) - 1);
+    return MODES[Math.trunc(this.modes.rows[mode][0])] === "thinking";
+  }
+
   /**
    * Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity
    * where it is not before the end.
@@ -374,8 +380,9 @@ export class LifeDraw {
       last = at + Math.max(SHORTEST_AVERSION, length);
       const size = own.aversionAngle * (0.7 + 0.6 * chanceOf(key, "size"));
       const turn = 2 * Math.PI * chanceOf(key, "way");
+      const up = UPRIGHT * size * Math.sin(turn);
       times.push(at);
-      rows.push([last, size * Math.sin(turn + Math.PI / 2), UPRIGHT * size * Math.sin(turn)]);
+      rows.push([last, size * Math.sin(turn + Math.PI / 2), this.thinks(at) ? Math.abs(up) : up]);
       number += 1;
     }
   }

@@ -2,7 +2,7 @@
 
 /** In the order in which layers' offsets are multiplied onto the base pose. */
 export const LAYERS = ["body", "arms", "head"];
-export const MODES = ["idle", "listening", "talking"];
+export const MODES = ["idle", "listening", "talking", "thinking", "reacting"];
 export const VISEMES = ["sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U"];
 export const LIDS = ["upper_lid_left", "upper_lid_right", "lower_lid_left", "lower_lid_right"];
 export const MOUTH = ["jaw_open", ...VISEMES.slice(1).map((v) => `viseme_${v}`)];

@@ -17,7 +17,7 @@ namespace Metagraph
         public static readonly string[] Kinds = { "stance", "gesture", "fidget", "transition" };
         public static readonly string[] Limbs = { "left", "right", "both" };
         public static readonly string[] Parts = { "legs", "spine", "arms", "head", "face" };
-        public static readonly string[] Modes = { "idle", "listening", "talking" };
+        public static readonly string[] Modes = { "idle", "listening", "talking", "thinking", "reacting" };
         public static readonly string[] None = new string[0];
 
         /// <summary>3x^2 - 2x^3 of x clamped to 0..1.</summary>

@@ -45,7 +45,7 @@ namespace Metagraph
         public const double SwellRises = 0.35; // of its length
         public const double Kept = 0.6; // of a mood's face between swells
         public const double Warmth = 0.35; // of a smile that a listener's swell is
-        // Emphases: brows raised in speech; rows: length s, amount, rise s.
+        // Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
         public const double Early = 0.06; // seconds a raise begins before its syllable
         public const double Raise = 0.35; // seconds it takes at least
         public const double RaiseChance = 0.3; // and what chance adds
@@ -54,6 +54,7 @@ namespace Metagraph
         public const double Asking = 0.8;
         public const double AskingOn = 0.5; // seconds they take to sink after it
         public const double AskingLifts = 0.8; // of a full raise
+        public const double Reacting = 1.2; // seconds they take where a reaction begins
         public const double LongestEmphasis = 1.5; // seconds
         // Cues: what those with certain tags show.
         public const double CueRises = 0.25; // seconds
@@ -107,7 +108,7 @@ namespace Metagraph
 
         /// <summary>
         /// Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows`
-        /// says, and at the end of questions.
+        /// says, at the end of questions, and where a reaction begins.
         /// </summary>
         public static Lane EmphasesOn(
             LifeSettings life,
@@ -120,6 +121,7 @@ namespace Metagraph
         )
         {
             var found = new List<List<double>>();
+            double chance = default(double);
             foreach (Speech speech in track.Speeches)
             {
                 if (speech.End <= cut || speech.Start >= drawn)
@@ -136,7 +138,7 @@ namespace Metagraph
                     {
                         continue;
                     }
-                    var chance = ChoiceRules.Uniform(seed, speech.Id, "raise", PlainText.Of(n));
+                    chance = ChoiceRules.Uniform(seed, speech.Id, "raise", PlainText.Of(n));
                     found.Add(new List<double> { at, Raise + RaiseChance * chance, 0.5 + 0.5 * chance, RaiseRises });
                 }
                 if (Asks(speech))
@@ -148,6 +150,14 @@ namespace Metagraph
                     {
                         found.Add(new List<double> { at, lead + AskingOn, AskingLifts, lead });
                     }
+                }
+            }
+            foreach (ModeFrom change in track.Modes)
+            {
+                if (change.Mode == "reacting" && life.AccentBrows > 0)
+                {
+                    chance = ChoiceRules.Uniform(seed, change.Id, "raise");
+                    found.Add(new List<double> { change.Start, Reacting, 0.6 + 0.4 * chance, RaiseRises });
                 }
             }
             var times = new List<double>();

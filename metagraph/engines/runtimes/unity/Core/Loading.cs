@@ -266,7 +266,7 @@ namespace Metagraph
             List<List<double>> modes = json.Maybe("modes", out found)
                 ? found.Items.ConvertAll(row => row.Numbers(3).ToList())
                 : new List<List<double>>();
-            if (modes.Count != 0 && modes.Count != Basics.Modes.Length)
+            if (modes.Count != 0 && (modes.Count < 3 || modes.Count > Basics.Modes.Length))
             {
                 throw json.Wrong("should have shares for each mode");
             }

@@ -128,7 +128,9 @@ namespace Metagraph
             {
                 return true;
             }
-            var share = chain.Modes[WordsRules.Modes.IndexOf(mode)][Kinds.IndexOf(meta.Request.Kind)];
+            var place = WordsRules.Modes.IndexOf(mode);
+            var row = chain.Modes[place < chain.Modes.Count ? place : Listens];
+            var share = row[Kinds.IndexOf(meta.Request.Kind)];
             return share >= 1 || ChoiceRules.Uniform(seed, meta.Request.Id, "mode") < share;
         }
 

@@ -205,6 +205,13 @@ namespace Metagraph
             return Math.Max(0, PlainLists.Right(Edges, seconds) - 1);
         }
 
+        /// <summary>Return whether the character thinks at a time: then it looks up and aside, never down.</summary>
+        public bool Thinks(double seconds)
+        {
+            var mode = Math.Max(0, PlainLists.Right(Modes.Times, seconds) - 1);
+            return WordsRules.Modes[(int)(Modes.Rows[mode][0])] == "thinking";
+        }
+
         /// <summary>
         /// Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity
         /// where it is not before the end.
@@ -361,12 +368,9 @@ namespace Metagraph
                 last = at + Math.Max(ScheduleRules.ShortestAversion, length);
                 var size = own.AversionAngle * (0.7 + 0.6 * ChoiceRules.ChanceOf(key, "size"));
                 var turn = 2.0 * Math.PI * ChoiceRules.ChanceOf(key, "way");
+                var up = ScheduleRules.Upright * size * Math.Sin(turn);
                 times.Add(at);
-                rows.Add(new List<double> {
-                    last,
-                    size * Math.Sin(turn + Math.PI / 2.0),
-                    ScheduleRules.Upright * size * Math.Sin(turn)
-                 });
+                rows.Add(new List<double> { last, size * Math.Sin(turn + Math.PI / 2.0), Thinks(at) ? Math.Abs(up) : up });
                 number += 1;
             }
         }

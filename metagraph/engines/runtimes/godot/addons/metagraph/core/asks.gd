@@ -41,7 +41,7 @@ const USUAL = {
 }
 const WORDS = {
 	"set": ["oculus", "azure", "sapi", "polly", "arkit"], "layer": ["body", "arms", "head"], "limb": ["left", "right", "both"],
-	"mode": ["idle", "listening", "talking"]
+	"mode": ["idle", "listening", "talking", "thinking", "reacting"]
 }
 
 

@@ -21,7 +21,7 @@ const LONGEST_SWELL = 4.0
 const SWELL_RISES = 0.35  # of its length
 const KEPT = 0.6  # of a mood's face between swells
 const WARMTH = 0.35  # of a smile that a listener's swell is
-# Emphases: brows raised in speech; rows: length s, amount, rise s.
+# Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 const EARLY = 0.06  # seconds a raise begins before its syllable
 const RAISE = 0.35  # seconds it takes at least
 const RAISE_CHANCE = 0.3  # and what chance adds
@@ -29,6 +29,7 @@ const RAISE_RISES = 0.12
 const ASKING = 0.8  # seconds before the end of a question that its brows begin to rise, but in its second half
 const ASKING_ON = 0.5  # seconds they take to sink after it
 const ASKING_LIFTS = 0.8  # of a full raise
+const REACTING = 1.2  # seconds they take where a reaction begins
 const LONGEST_EMPHASIS = 1.5  # seconds
 # Cues: what those with certain tags show.
 const CUE_RISES = 0.25  # seconds
@@ -93,10 +94,11 @@ static func swells_on(track, seed_, cut, drawn, before):
 		number += 1
 
 
-# Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows` says, and at
-# the end of questions.
+# Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows` says, at the
+# end of questions, and where a reaction begins.
 static func emphases_on(life, track, voices, seed_, cut, drawn, before):
 	var found = []
+	var chance
 	for speech in track.speeches:
 		if speech.end <= cut or speech.start >= drawn:
 			continue
@@ -106,7 +108,7 @@ static func emphases_on(life, track, voices, seed_, cut, drawn, before):
 			at = Util.most(speech.start, speech.start + peak - EARLY)
 			if at >= speech.end or Choice.uniform(seed_, [speech.id, "brows", str(n)]) >= life.accent_brows:
 				continue
-			var chance = Choice.uniform(seed_, [speech.id, "raise", str(n)])
+			chance = Choice.uniform(seed_, [speech.id, "raise", str(n)])
 			found.append([at, RAISE + RAISE_CHANCE * chance, 0.5 + 0.5 * chance, RAISE_RISES])
 		if asks(speech):
 			var length = speech.end - speech.start if speech.length == null else speech.length
@@ -114,6 +116,10 @@ static func emphases_on(life, track, voices, seed_, cut, drawn, before):
 			at = speech.start + length - lead
 			if at < speech.end:
 				found.append([at, lead + ASKING_ON, ASKING_LIFTS, lead])
+	for change in track.modes:
+		if change.mode == "reacting" and life.accent_brows > 0:
+			chance = Choice.uniform(seed_, [change.id, "raise"])
+			found.append([change.start, REACTING, 0.6 + 0.4 * chance, RAISE_RISES])
 	var times = []
 	var rows = []
 	var keys = []

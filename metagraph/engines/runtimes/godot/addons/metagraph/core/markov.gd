@@ -102,7 +102,9 @@ static func _row(chain, state, open_to):
 static func performs(chain, seed_, meta, mode):
 	if chain.modes.size() == 0 or not KINDS.has(meta.request.kind):
 		return true
-	var share = chain.modes[Words.MODES.find(mode)][KINDS.find(meta.request.kind)]
+	var place = Words.MODES.find(mode)
+	var row = chain.modes[place if place < chain.modes.size() else LISTENS]
+	var share = row[KINDS.find(meta.request.kind)]
 	return share >= 1 or Choice.uniform(seed_, [meta.request.id, "mode"]) < share
 
 

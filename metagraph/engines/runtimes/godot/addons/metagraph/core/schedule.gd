@@ -307,6 +307,11 @@ class LifeDraw:
 	func place_at(seconds):
 		return Util.most(0, Util.right_of(self.edges, seconds) - 1)
 
+	# Return whether the character thinks at a time: then it looks up and aside, never down.
+	func thinks(seconds):
+		var mode = Util.most(0, Util.right_of(self.modes.times, seconds) - 1)
+		return Words.MODES[int(self.modes.rows[mode][0])] == "thinking"
+
 	# Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity where it
 	# is not before the end.
 	func after(seconds, need, rates):
@@ -413,8 +418,9 @@ class LifeDraw:
 			last = at + Util.most(SHORTEST_AVERSION, length)
 			var size = own.aversion_angle * (0.7 + 0.6 * Choice.chance_of(key, "size"))
 			var turn = 2.0 * PI * Choice.chance_of(key, "way")
+			var up = UPRIGHT * size * sin(turn)
 			times.append(at)
-			rows.append([last, size * sin(turn + PI / 2.0), UPRIGHT * size * sin(turn)])
+			rows.append([last, size * sin(turn + PI / 2.0), Util.absolute(up) if self.thinks(at) else up])
 			number += 1
 
 	# Blinks of themselves, on stressed syllables and asked for, whichever comes first.

@@ -2,5 +2,5 @@
 
 const Util = preload("util.gd")
 const LAYERS = Util.LAYERS
-const MODES = ["idle", "listening", "talking"]
+const MODES = ["idle", "listening", "talking", "thinking", "reacting"]
 const VISEMES = ["sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U"]
