@@ -102,9 +102,12 @@ def list_life_cases(project: Project) -> Iterator[ScriptCase]:
             ask("m1", "mode", 2.0, mode="listening"),
             ask("m2", "mode", 8.0, mode="talking"),
             ask("m3", "mode", 11.0, mode=None),
+            ask("m4", "mode", 18.0, mode="thinking"),
+            ask("m5", "mode", 36.0, mode="reacting"),
+            ask("m6", "mode", 40.0, mode="talking"),
         ],
         60.0,
-        times=(0.9, 1.03, 1.1, 9.0, 33.3),
+        times=(0.9, 1.03, 1.1, 9.0, 21.5, 33.3, 36.3),
         alive=ALIVE,
     )
     yield _said()

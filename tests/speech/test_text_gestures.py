@@ -92,7 +92,7 @@ def test_a_character_without_a_tag_does_the_next_best_or_nothing() -> None:
 def test_times_are_those_that_are_told_else_as_long_as_lips_take() -> None:
     told = [("Well", 0.1, 0.4), ("hello", 2.0, 2.6)]
     (one,) = propose_gestures(timed_words("Well, hello there", told), EVERY)
-    assert one.word == "hello" and one.at == pytest.approx(2.2)
+    assert one.word == "hello" and one.at == pytest.approx(2.1)
     guessed = timed_words("Well, hello there")
     assert [w.text for w in guessed] == ["Well", "hello", "there"] and guessed[0].mark == ","
     slow = timed_words("Well, hello there", seconds=10.0)

@@ -52,6 +52,10 @@ BETWEEN_AVERSIONS = 0.6  # seconds at least
 SHORTEST_AVERSION = 0.25
 BREATH = 0.85  # of the mean length and depth: the least
 BREATH_CHANCE = 0.3  # and what chance adds
+# Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
+# shortened or drawn out by so much of its length at most. Ours.
+BREATHES_IN = 0.55  # seconds
+STRETCH = 0.5
 
 
 @dataclass(frozen=True)
@@ -176,7 +180,7 @@ def _change(before: Schedule, life: Life, track: Track, voices: Mapping[str, Voi
 class LifeDraw:
     """One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks
     change; manners: what mode and mood make of the amounts from each on;
-    strict: 1 where the look then is, else 0.
+    strict: 1 where the look then is, else 0. phrases: when the character begins to speak.
     """
 
     life: Life
@@ -192,10 +196,17 @@ class LifeDraw:
     edges: list[float] = field(default_factory=list)
     manners: list[Manner] = field(default_factory=list)
     strict: list[int] = field(default_factory=list)
+    phrases: list[float] = field(default_factory=list)
 
     def begin(self, cut: float) -> None:
         """Lay modes, moods and strict looks out in one row of segments."""
         self.cut = cut
+        for speech in self.track.speeches:
+            self.phrases.append(speech.start)
+        for change in self.track.modes:
+            if change.mode == "talking":
+                self.phrases.append(change.start)
+        self.phrases = sorted(self.phrases)
         edges = list(self.modes.times)
         edges += self.moods.times
         for n, target in enumerate(self.targets):
@@ -267,6 +278,7 @@ class LifeDraw:
             key = self.key("breath", number)
             length = (BREATH + BREATH_CHANCE * chance_of(key, "length")) / rate
             length *= 1.0 + 2.0 * self.life.stillness  # slower, too, but never halting
+            length = self.to_phrase(at, length) if begun else length
             depth = ways.breathing * (BREATH + BREATH_CHANCE * chance_of(key, "depth"))
             if not begun:
                 at = -length * uniform(self.seed, "breath", "first")
@@ -278,6 +290,16 @@ class LifeDraw:
             at += length
             number += 1
         return lane.plus(times, rows)
+
+    def to_phrase(self, at: float, length: float) -> float:
+        """Return the length of a breath that begins at `at`, so that the next one begins right before the
+        character speaks.
+        """
+        for phrase in self.phrases:
+            wanted = phrase - BREATHES_IN - at
+            if abs(wanted - length) <= STRETCH * length:
+                return wanted
+        return length
 
     def saccades(self, lane: Lane) -> Lane:
         """The eyes' small jumps."""

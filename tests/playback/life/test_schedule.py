@@ -417,9 +417,19 @@ def test_who_thinks_looks_away_for_long_and_never_down():
 def test_who_reacts_looks_at_it_and_raises_the_brows_once():
     reacting = drawn(track_of([ModeFrom("m", 5.0, "reacting"), ModeFrom("n", 7.0, "listening")]), 20.0)
     assert [at for at in reacting.emphases.times if at < 8] == [5.0]
-    assert not [at for at in drawn(track_of([ModeFrom("m", 5.0, "listening")]), 20.0).emphases.times if at < 8]
+    assert len(drawn(track_of([ModeFrom("m", 5.0, "listening")]), 20.0).emphases.times) == 0
     away = [
         sum(row[0] - at for at, row in zip(some.aversions.times, some.aversions.rows, strict=True))
         for some in (drawn(track_of([ModeFrom("m", 0, m)]), HOUR) for m in ("reacting", "listening"))
     ]
     assert away[0] < 0.3 * away[1]
+
+
+def test_who_is_about_to_speak_breathes_in():
+    speaks = [12.0, 33.0, 61.0]
+    track = track_of([ModeFrom(f"m{at}", at, "talking") for at in speaks])
+    breaths = drawn(track, 90.0).breaths
+    for at in speaks:
+        assert min(abs(start - (at - 0.55)) for start in breaths.times) < 1e-6
+    lengths = [row[0] for row in breaths.rows]
+    assert max(lengths) < 3 * min(lengths)

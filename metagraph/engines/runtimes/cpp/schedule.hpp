@@ -49,6 +49,10 @@ inline constexpr double BETWEEN_AVERSIONS = 0.6; // seconds at least
 inline constexpr double SHORTEST_AVERSION = 0.25;
 inline constexpr double BREATH = 0.85; // of the mean length and depth: the least
 inline constexpr double BREATH_CHANCE = 0.3; // and what chance adds
+// Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
+// shortened or drawn out by so much of its length at most. Ours.
+inline constexpr double BREATHES_IN = 0.55; // seconds
+inline constexpr double STRETCH = 0.5;
 inline Ref<Schedule> schedule(
     const Ref<Life>& life,
     const Ref<Track>& track,
@@ -139,7 +143,8 @@ struct Schedule {
 };
 
 /// One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change;
-/// manners: what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+/// manners: what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases:
+/// when the character begins to speak.
 struct LifeDraw {
     Ref<Life> life;
     Ref<Track> track;
@@ -154,6 +159,7 @@ struct LifeDraw {
     List<double> edges;
     List<Ref<Manner>> manners;
     List<int> strict;
+    List<double> phrases;
 
     LifeDraw(
         Ref<Life> life_,
@@ -168,7 +174,8 @@ struct LifeDraw {
         List<Ref<GazeTarget>> targets_,
         List<double> edges_ = List<double>{},
         List<Ref<Manner>> manners_ = List<Ref<Manner>>{},
-        List<int> strict_ = List<int>{}
+        List<int> strict_ = List<int>{},
+        List<double> phrases_ = List<double>{}
     )
         : life(std::move(life_)),
             track(std::move(track_)),
@@ -182,7 +189,8 @@ struct LifeDraw {
             targets(std::move(targets_)),
             edges(std::move(edges_)),
             manners(std::move(manners_)),
-            strict(std::move(strict_)) {}
+            strict(std::move(strict_)),
+            phrases(std::move(phrases_)) {}
 
     /// Lay modes, moods and strict looks out in one row of segments.
     void begin(double cut);
@@ -202,6 +210,10 @@ struct LifeDraw {
 
     /// Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
     Ref<Lane> breaths(const Ref<Lane>& lane);
+
+    /// Return the length of a breath that begins at `at`, so that the next one begins right before the character
+    /// speaks.
+    double to_phrase(double at, double length);
 
     /// The eyes' small jumps.
     Ref<Lane> saccades(const Ref<Lane>& lane);
@@ -278,6 +290,15 @@ inline Ref<Schedule> Schedule::since(double seconds) const {
 
 inline void LifeDraw::begin(double cut) {
     this->cut = cut;
+    for (const auto& speech : this->track->speeches) {
+        this->phrases.push_back(speech->start);
+    }
+    for (const auto& change : this->track->modes) {
+        if (change->mode == "talking") {
+            this->phrases.push_back(change->start);
+        }
+    }
+    this->phrases = lang::in_order(this->phrases);
     List<double> edges = this->modes->times;
     lang::extend(edges, this->moods->times);
     for (int n = 0; n < lang::len(this->targets); n++) {
@@ -364,6 +385,7 @@ inline Ref<Lane> LifeDraw::breaths(const Ref<Lane>& lane) {
         int key = this->key("breath", number);
         double length = (schedule::BREATH + schedule::BREATH_CHANCE * choice::chance_of(key, "length")) / rate;
         length *= 1.0 + 2.0 * this->life->stillness; // slower, too, but never halting
+        length = begun ? this->to_phrase(at, length) : length;
         double depth = ways->breathing * (schedule::BREATH + schedule::BREATH_CHANCE * choice::chance_of(key, "depth"));
         if (!begun) {
             at = -length * choice::uniform(this->seed, List<std::string>{"breath", "first"});
@@ -378,6 +400,16 @@ inline Ref<Lane> LifeDraw::breaths(const Ref<Lane>& lane) {
         number += 1;
     }
     return lane->plus(times, rows);
+}
+
+inline double LifeDraw::to_phrase(double at, double length) {
+    for (const auto& phrase : this->phrases) {
+        double wanted = phrase - schedule::BREATHES_IN - at;
+        if (std::abs(wanted - length) <= schedule::STRETCH * length) {
+            return wanted;
+        }
+    }
+    return length;
 }
 
 inline Ref<Lane> LifeDraw::saccades(const Ref<Lane>& lane) {

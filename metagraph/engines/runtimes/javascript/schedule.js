@@ -38,6 +38,10 @@ export const BETWEEN_AVERSIONS = 0.6; // seconds at least
 export const SHORTEST_AVERSION = 0.25;
 export const BREATH = 0.85; // of the mean length and depth: the least
 export const BREATH_CHANCE = 0.3; // and what chance adds
+// Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
+// shortened or drawn out by so much of its length at most. Ours.
+export const BREATHES_IN = 0.55; // seconds
+export const STRETCH = 0.5;
 
 /**
  * Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
@@ -195,13 +199,29 @@ function _change(before, life, track, voices, seed) {
 
 /**
  * One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners:
- * what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+ * what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases: when the character
+ * begins to speak.
  *
  * life: Life; track: Track; voices: Voices; seed: number; cut: number; drawn: number; calm: number; modes: Lane; moods:
- * Lane; targets: GazeTarget[]; edges: number[]; manners: Manner[]; strict: number[].
+ * Lane; targets: GazeTarget[]; edges: number[]; manners: Manner[]; strict: number[]; phrases: number[].
  */
 export class LifeDraw {
-  constructor(life, track, voices, seed, cut, drawn, calm, modes, moods, targets, edges = [], manners = [], strict = []) {
+  constructor(
+    life,
+    track,
+    voices,
+    seed,
+    cut,
+    drawn,
+    calm,
+    modes,
+    moods,
+    targets,
+    edges = [],
+    manners = [],
+    strict = [],
+    phrases = [],
+  ) {
     this.life = life;
     this.track = track;
     this.voices = voices;
@@ -215,11 +235,21 @@ export class LifeDraw {
     this.edges = edges;
     this.manners = manners;
     this.strict = strict;
+    this.phrases = phrases;
   }
 
   /** Lay modes, moods and strict looks out in one row of segments. */
   begin(cut) {
     this.cut = cut;
+    for (const speech of this.track.speeches) {
+      this.phrases.push(speech.start);
+    }
+    for (const change of this.track.modes) {
+      if (change.mode === "talking") {
+        this.phrases.push(change.start);
+      }
+    }
+    this.phrases = sorted(this.phrases);
     const edges = [...this.modes.times];
     edges.push(...this.moods.times);
     for (const [n, target] of this.targets.entries()) {
@@ -304,6 +334,7 @@ export class LifeDraw {
       const key = this.key("breath", number);
       let length = (BREATH + BREATH_CHANCE * chanceOf(key, "length")) / rate;
       length *= 1 + 2 * this.life.stillness; // slower, too, but never halting
+      length = begun ? this.toPhrase(at, length) : length;
       const depth = ways.breathing * (BREATH + BREATH_CHANCE * chanceOf(key, "depth"));
       if (!begun) {
         at = -length * uniform(this.seed, "breath", "first");
@@ -318,6 +349,17 @@ export class LifeDraw {
       number += 1;
     }
     return lane.plus(times, rows);
+  }
+
+  /** Return the length of a breath that begins at `at`, so that the next one begins right before the character speaks. */
+  toPhrase(at, length) {
+    for (const phrase of this.phrases) {
+      const wanted = phrase - BREATHES_IN - at;
+      if (Math.abs(wanted - length) <= STRETCH * length) {
+        return wanted;
+      }
+    }
+    return length;
   }
 
   /** The eyes' small jumps. */

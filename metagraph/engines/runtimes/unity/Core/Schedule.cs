@@ -112,7 +112,8 @@ namespace Metagraph
 
     /// <summary>
     /// One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners:
-    /// what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+    /// what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases: when the character
+    /// begins to speak.
     /// </summary>
     public sealed class LifeDraw
     {
@@ -129,6 +130,7 @@ namespace Metagraph
         public List<double> Edges;
         public List<Manner> Manners;
         public List<int> Strict;
+        public List<double> Phrases;
 
         public LifeDraw(
             LifeSettings life,
@@ -143,7 +145,8 @@ namespace Metagraph
             List<GazeTarget> targets,
             List<double> edges = null,
             List<Manner> manners = null,
-            List<int> strict = null
+            List<int> strict = null,
+            List<double> phrases = null
         )
         {
             Life = life;
@@ -159,12 +162,25 @@ namespace Metagraph
             Edges = edges ?? new List<double>();
             Manners = manners ?? new List<Manner>();
             Strict = strict ?? new List<int>();
+            Phrases = phrases ?? new List<double>();
         }
 
         /// <summary>Lay modes, moods and strict looks out in one row of segments.</summary>
         public void Begin(double cut)
         {
             Cut = cut;
+            foreach (Speech speech in Track.Speeches)
+            {
+                Phrases.Add(speech.Start);
+            }
+            foreach (ModeFrom change in Track.Modes)
+            {
+                if (change.Mode == "talking")
+                {
+                    Phrases.Add(change.Start);
+                }
+            }
+            Phrases = Phrases.OrderBy(x => x).ToList();
             var edges = Modes.Times.ToList();
             edges.AddRange(Moods.Times);
             foreach (var one in Targets.Select((item, n) => (n, item)))
@@ -268,6 +284,7 @@ namespace Metagraph
                 var key = Key("breath", number);
                 var length = (ScheduleRules.Breath + ScheduleRules.BreathChance * ChoiceRules.ChanceOf(key, "length")) / rate;
                 length *= 1.0 + 2.0 * Life.Stillness; // slower, too, but never halting
+                length = begun ? ToPhrase(at, length) : length;
                 var depth = ways.Breathing
                     * (ScheduleRules.Breath + ScheduleRules.BreathChance * ChoiceRules.ChanceOf(key, "depth"));
                 if (!begun)
@@ -285,6 +302,22 @@ namespace Metagraph
                 number += 1;
             }
             return lane.Plus(times, rows);
+        }
+
+        /// <summary>
+        /// Return the length of a breath that begins at `at`, so that the next one begins right before the character speaks.
+        /// </summary>
+        public double ToPhrase(double at, double length)
+        {
+            foreach (double phrase in Phrases)
+            {
+                var wanted = phrase - ScheduleRules.BreathesIn - at;
+                if (Math.Abs(wanted - length) <= ScheduleRules.Stretch * length)
+                {
+                    return wanted;
+                }
+            }
+            return length;
         }
 
         /// <summary>The eyes' small jumps.</summary>
@@ -499,6 +532,10 @@ namespace Metagraph
         public const double ShortestAversion = 0.25;
         public const double Breath = 0.85; // of the mean length and depth: the least
         public const double BreathChance = 0.3; // and what chance adds
+        // Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
+        // shortened or drawn out by so much of its length at most. Ours.
+        public const double BreathesIn = 0.55; // seconds
+        public const double Stretch = 0.5;
 
         /// <summary>
         /// Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.

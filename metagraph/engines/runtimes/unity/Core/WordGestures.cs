@@ -160,6 +160,9 @@ namespace Metagraph
         public const double First = 1.4;
         public const double Plain = 0.55; // of the clauses that propose nothing, how many get a beat
         public const double Lead = 0.1; // seconds that a stroke comes before the middle of its word's vowels
+        public const double MeaningLead = 0.2; // the same of a gesture that means something
+        // tags of gestures that go with any word
+        public static readonly List<string> Beats = new List<string> { "beat", "emphasis", "explain", "open" };
         public const double Nod = 0.3; // seconds from where a nod begins to its first stroke
         public const int Clause = 3; // words of a clause that gets a beat, at least
         public const int Longest = 20000; // letters of a text
@@ -367,7 +370,14 @@ namespace Metagraph
             {
                 if (arms.Contains(tag))
                 {
-                    out_.Add(new ProposedGesture("arms", at, new List<string> { tag }, rule.Strength, word.Text));
+                    var early = Beats.Contains(tag) ? 0.0 : MeaningLead - Lead;
+                    out_.Add(new ProposedGesture(
+                        "arms",
+                        Math.Max(0.0, at - early),
+                        new List<string> { tag },
+                        rule.Strength,
+                        word.Text
+                    ));
                     break;
                 }
             }

@@ -35,6 +35,10 @@ const BETWEEN_AVERSIONS = 0.6  # seconds at least
 const SHORTEST_AVERSION = 0.25
 const BREATH = 0.85  # of the mean length and depth: the least
 const BREATH_CHANCE = 0.3  # and what chance adds
+# Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
+# shortened or drawn out by so much of its length at most. Ours.
+const BREATHES_IN = 0.55  # seconds
+const STRETCH = 0.5
 
 
 # Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
@@ -231,7 +235,8 @@ static func _change(before, life, track, voices, seed_):
 
 
 # One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners: what mode
-# and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+# and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases: when the character begins to
+# speak.
 class LifeDraw:
 	var life
 	var track
@@ -246,6 +251,7 @@ class LifeDraw:
 	var edges
 	var manners
 	var strict
+	var phrases
 
 	func _init(
 		life_,
@@ -260,7 +266,8 @@ class LifeDraw:
 		targets_,
 		edges_ = null,
 		manners_ = null,
-		strict_ = null
+		strict_ = null,
+		phrases_ = null
 	):
 		self.life = life_
 		self.track = track_
@@ -275,10 +282,17 @@ class LifeDraw:
 		self.edges = edges_ if edges_ != null else []
 		self.manners = manners_ if manners_ != null else []
 		self.strict = strict_ if strict_ != null else []
+		self.phrases = phrases_ if phrases_ != null else []
 
 	# Lay modes, moods and strict looks out in one row of segments.
 	func begin(cut):
 		self.cut = cut
+		for speech in self.track.speeches:
+			self.phrases.append(speech.start)
+		for change in self.track.modes:
+			if change.mode == "talking":
+				self.phrases.append(change.start)
+		self.phrases = Util.in_order(self.phrases)
 		var edges = Util.list(self.modes.times)
 		Util.extend(edges, self.moods.times)
 		for n in range(self.targets.size()):
@@ -350,6 +364,7 @@ class LifeDraw:
 			var key = self.key("breath", number)
 			var length = (BREATH + BREATH_CHANCE * Choice.chance_of(key, "length")) / rate
 			length *= 1.0 + 2.0 * self.life.stillness  # slower, too, but never halting
+			length = self.to_phrase(at, length) if begun else length
 			var depth = ways.breathing * (BREATH + BREATH_CHANCE * Choice.chance_of(key, "depth"))
 			if not begun:
 				at = -length * Choice.uniform(self.seed_, ["breath", "first"])
@@ -361,6 +376,14 @@ class LifeDraw:
 			at += length
 			number += 1
 		return lane.plus(times, rows)
+
+	# Return the length of a breath that begins at `at`, so that the next one begins right before the character speaks.
+	func to_phrase(at, length):
+		for phrase in self.phrases:
+			var wanted = phrase - BREATHES_IN - at
+			if Util.absolute(wanted - length) <= STRETCH * length:
+				return wanted
+		return length
 
 	# The eyes' small jumps.
 	func saccades(lane):
