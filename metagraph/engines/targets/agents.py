@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from metagraph.common.file_names import file_stems
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.common.xml_text import replaced_note
 from metagraph.engines.engine_machine import EngineState, Machine, animations, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
@@ -223,7 +223,14 @@ TARGETS = (
                 )
             ),
             Loss(phrase("blocks do not store when a request became known")),
-            Loss(phrase("{n} requests that are BML blocks themselves are skipped"), _unsaid),
+            Loss(
+                plural_phrase(
+                    "{count} request that is a BML block itself is skipped",
+                    "{count} requests that are BML blocks themselves are skipped",
+                    0,
+                ),
+                _unsaid,
+            ),
         ),
         group=phrase("Agents"),
     ),

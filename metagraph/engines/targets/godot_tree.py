@@ -34,7 +34,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.engine_machine import Arrow, EngineState, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
@@ -313,7 +313,14 @@ LOSSES: tuple[Loss, ...] = (
             "arms layer the arms, only the head layer head and face"
         )
     ),
-    Loss(phrase("{n} actions that can exit early play to their end"), _left_early),
+    Loss(
+        plural_phrase(
+            "{count} action that can exit early plays to its end",
+            "{count} actions that can exit early play to their end",
+            0,
+        ),
+        _left_early,
+    ),
     Loss(phrase("an action that already plays does not restart when you request it again")),
     Loss(phrase("if no transition joins two stances, the path between them can differ from the planner's")),
 )

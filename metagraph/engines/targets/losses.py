@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.targets.target import Loss
 from metagraph.graph.model import Project
 
@@ -54,35 +54,64 @@ MACHINE: tuple[Loss, ...] = (
     Loss(phrase("no life layers: no breathing, gaze, blinks or lip sync")),
     Loss(phrase("holds have the length they have in the clip, and preparations are never skipped")),
     Loss(
-        phrase("{n} stances have several loops: only the first plays automatically, the others on request"),
+        plural_phrase(
+            "{count} stance has several loops: only the first plays automatically, the others on request",
+            "{count} stances have several loops: only the first plays automatically, the others on request",
+            0,
+        ),
         _varied,
     ),
     Loss(
-        phrase(
-            "{n} transitions are not the first between their stances: each plays only if you "
-            "request that transition"
+        plural_phrase(
+            "{count} transition is not the first between its stances: it plays only if you request it",
+            "{count} transitions are not the first between their stances: each plays only if you request it",
+            0,
         ),
         _ways,
     ),
     Loss(
-        phrase(
-            "{n} actions move only a part of their layer: the rest holds the first pose of the "
-            "stance instead of playing on"
+        plural_phrase(
+            "{count} action moves only a part of its layer: the rest holds the first pose of the stance "
+            "instead of playing on",
+            "{count} actions move only a part of their layer: the rest holds the first pose of the stance "
+            "instead of playing on",
+            0,
         ),
         _masked,
     ),
     Loss(
-        phrase(
-            "{n} actions have partial joint weights: these are baked into the clips, relative to "
-            "the first pose of the stance, and cannot be changed there"
+        plural_phrase(
+            "{count} action has partial joint weights: these are baked into the clip, relative to the first "
+            "pose of the stance, and cannot be changed there",
+            "{count} actions have partial joint weights: these are baked into the clips, relative to the "
+            "first pose of the stance, and cannot be changed there",
+            0,
         ),
         _soft,
     ),
     Loss(
-        phrase("{n} actions repeat for as long as a request asks: there, each plays for its usual time"),
+        plural_phrase(
+            "{count} action repeats for as long as a request asks: there, it plays for its usual time",
+            "{count} actions repeat for as long as a request asks: there, each plays for its usual time",
+            0,
+        ),
         _repeating,
     ),
-    Loss(phrase("{n} loops blend their seam here but jump at the seam there"), _seams),
+    Loss(
+        plural_phrase(
+            "{count} loop blends its seam here but jumps at the seam there",
+            "{count} loops blend their seam here but jump at the seam there",
+            0,
+        ),
+        _seams,
+    ),
 )
-WEIGHTS = Loss(phrase("{n} layer weights other than 0 and 1 count as 1"), _weighted)
+WEIGHTS = Loss(
+    plural_phrase(
+        "{count} layer weight other than 0 and 1 counts as 1",
+        "{count} layer weights other than 0 and 1 count as 1",
+        0,
+    ),
+    _weighted,
+)
 CROSSFADE = Loss(phrase("blends are plain crossfades: they slow a clip down and then speed it up"))

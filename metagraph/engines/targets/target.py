@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from metagraph.common.wording import Phrase, phrase
+from metagraph.common.wording import Phrase, phrase, plural_phrase
 from metagraph.engines.export import Chosen, choose_nothing
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import CharacterMesh
@@ -18,8 +18,8 @@ Tell = Callable[[int, int, str], None]
 class Loss:
     """Something in a performance that a format cannot express.
 
-    `words` are for people. "{n}" in them is the number that `count` finds in a project; the loss is reported
-    only if that is not 0.
+    `words` are for people. Where `count` is given, they are a plural phrase of the number that it finds in a
+    project; the loss is reported only if that is not 0.
     """
 
     words: str
@@ -30,8 +30,9 @@ class Loss:
         number = 1 if self.count is None else self.count(project)
         if not number:
             return None
-        template = self.words.template if isinstance(self.words, Phrase) else self.words
-        return phrase(template, n=number) if "{n}" in template else self.words
+        if isinstance(self.words, Phrase) and self.words.plural:
+            return plural_phrase(self.words.template, self.words.plural, number)
+        return self.words
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 
 from metagraph.common.files import read_file
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
@@ -235,7 +235,11 @@ TARGETS = (
             Loss(phrase("no meta-graph: the avatar's program moves it and finds the clips by name")),
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
             Loss(
-                phrase("{n} clips that an action repeats play once: other actions use them, too"),
+                plural_phrase(
+                    "{count} clip that an action repeats plays once: other actions use it, too",
+                    "{count} clips that an action repeats play once: other actions use them, too",
+                    0,
+                ),
                 count_unrepeated,
             ),
         ),
