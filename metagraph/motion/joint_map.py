@@ -107,11 +107,14 @@ class JointMap:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Return the roles that must be mapped and are not, in words. A clip can be retargeted if there are
-        none.
-        """
+        """Return `missing_roles` in words."""
+        return tuple(f"no {role.replace('_', ' ')} in both" for role in self.missing_roles)
+
+    @property
+    def missing_roles(self) -> tuple[str, ...]:
+        """Return the roles that must be mapped and are not. A clip can be retargeted if there are none."""
         roles = {p.role for p in self.pairs}
-        return tuple(f"no {role.replace('_', ' ')} in both" for role in NEEDED if role not in roles)
+        return tuple(role for role in NEEDED if role not in roles)
 
     def to_json(self) -> dict[str, Any]:
         rows = [
@@ -174,7 +177,7 @@ def propose_joint_map(
                 other,
                 role,
                 sure,
-                "same role and name" if same else f"both are the {role.replace('_', ' ')}",
+                "same role and name" if same else "same part of the body",
             )
     tops = [[roles[r] for r in ("spine", "chest", "upper_chest") if r in roles] for roles in (ours, theirs)]
     if all(tops):

@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.jobs import WindowJob
-from app.translation import tr, tr_error, tr_noop, tr_plural
+from app.translation import format_number, tr, tr_error, tr_noop, tr_plural
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
@@ -55,7 +55,7 @@ class MimicDialog(QDialog):
         layout = QVBoxLayout(self)
         deep = tr("with depth") if keypoints.dims == 3 else tr("without depth")
         frames = tr_plural("{count:,} frame", "{count:,} frames", len(keypoints))
-        facts = QLabel(f"{name}: {frames}, {keypoints.seconds:.1f} s, {deep}", self)
+        facts = QLabel(f"{name}: {frames}, {format_number(keypoints.seconds, '.1f')} s, {deep}", self)
         facts.setWordWrap(True)
         layout.addWidget(facts)
         for note in keypoints.notes:

@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.look.joint_roles import describe_joint_role
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
 from app.translation import tr, tr_error, tr_noop, tr_plural
@@ -39,6 +40,12 @@ JOINT = Qt.ItemDataRole.UserRole
 NONE = tr_noop("– none –")
 AT_ONCE = 12  # rows that get their boxes in one go
 SHOWN = 150  # frames of a clip that are played
+# Why joints are paired, as `metagraph.motion.joint_map` says it.
+REASONS = (
+    *(tr_noop("same role and name"), tr_noop("same part of the body"), tr_noop("both carry the arms")),
+    *(tr_noop("both stand above the hips"), tr_noop("same name"), tr_noop("same words in the name")),
+    tr_noop("chosen by hand"),
+)
 
 
 class JointMapDialog(QDialog):
@@ -275,9 +282,9 @@ class JointMapDialog(QDialog):
             pair = self.map.of(name)
             if name in self.combos:
                 self.combos[name].setCurrentIndex(self._number(name))
-            item.setText(2, pair.role.replace("_", " ") if pair is not None else "")
+            item.setText(2, describe_joint_role(pair.role) if pair is not None else "")
             item.setText(3, f"{pair.sure:.0%}" if pair is not None else "")
-            item.setText(4, pair.why if pair is not None else tr("moves nothing"))
+            item.setText(4, tr(pair.why) if pair is not None else tr("moves nothing"))
             item.setToolTip(4, item.text(4))
             unsure = pair is not None and pair.sure < 0.7
             for column in range(5):
@@ -287,7 +294,7 @@ class JointMapDialog(QDialog):
                         look.dim if pair is None else look.warning if unsure and column == 3 else look.text
                     ),
                 )
-        missing = self.map.missing
+        missing = self.map.missing_roles
         free = len(self.target) - len({p.target for p in self.map.pairs})
         words = tr(
             "{mapped} of {joints} joints are mapped.", mapped=len(self.map.pairs), joints=len(self.source)
@@ -295,7 +302,7 @@ class JointMapDialog(QDialog):
         if free:
             words += tr(" {free} joints of your character follow their parents.", free=free)
         if missing:
-            parts = [m.removeprefix("no ").removesuffix(" in both") for m in missing]
+            parts = [describe_joint_role(role) for role in missing]
             more = tr(" and {count} more", count=len(parts) - 4) if len(parts) > 4 else ""
             words = tr(
                 "Still missing: {parts}{more}. Choose what moves them above. If your own "

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.look.joint_roles import describe_joint_role
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr
@@ -56,7 +57,7 @@ class SkeletonDialog(QDialog):
             role = ComboBox(self.tree, toolTip=tr("Which part of a human body this joint is"))
             role.addItem("-", None)
             for r in ROLES:
-                role.addItem(r.replace("_", " "), r)
+                role.addItem(describe_joint_role(r), r)
             role.activated.connect(lambda _, j=name, box=role: self._set_role(j, box.currentData()))
             part = ComboBox(self.tree, toolTip=tr("The body part decides which layers move the joint"))
             part.addItems(PARTS)
@@ -104,7 +105,7 @@ class SkeletonDialog(QDialog):
             found=len(found),
         )
         if missing:
-            words += tr(" Not detected: {roles}.", roles=", ".join(m.replace("_", " ") for m in missing))
+            words += tr(" Not detected: {roles}.", roles=", ".join(map(describe_joint_role, missing)))
         self.words.setText(words)
 
     def _chosen(self, joint: str) -> tuple[str, ...]:
