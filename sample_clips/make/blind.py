@@ -24,7 +24,7 @@ from metagraph.graph.requests import request_from
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.planning.mood import MOODS
 from metagraph.playback.planning.running_plan import plan_performance
-from preview.camera import Camera, close_up, frame_upper_body
+from preview.camera import close_up, frame_upper_body
 from preview.character_file import figure_from_file
 from preview.figure import MeshFigure
 from preview.offscreen import Offscreen
@@ -41,7 +41,8 @@ def feeling_rows(offscreen: Offscreen, figure: MeshFigure, project: Project, moo
     """Return the pictures of a character that talks in a mood: first its body, then its face."""
     valence, arousal = MOODS[mood]
     life = msgspec.structs.replace(project.life, valence=valence, arousal=arousal)
-    project = replace(project, life=life)
+    face = msgspec.structs.replace(project.face, morphs=tuple(figure.morphs))
+    project = replace(project, life=life, face=face)
     times = FROM + EACH * np.arange(COLUMNS)
     talking = request_from({"do": "mode", "mode": "talking", "id": "m", "at": 0.0})
     plan = plan_performance(project, [talking], float(times[-1]) + 1.0, PLAN_SEED, idle=True)
@@ -53,14 +54,11 @@ def feeling_rows(offscreen: Offscreen, figure: MeshFigure, project: Project, moo
         morphs = figure.morph_weights(evaluator.morphs_at(float(time)))
         scene = Scene((Actor(figure, rotations[i], places[i], morphs),))
         head = places[i, at("Head")]
-        body = frame_upper_body(places[0, at("Head")], SKELETON.height, aspect, 0.35)
-        for camera, out in ((_farther(body), far), (close_up(head, SKELETON.height, aspect, 0.15), near)):
+        body = frame_upper_body(places[0, at("Head")], SKELETON.height, aspect, 0.35).zoom(-2.0)
+        face = close_up(head + (0, 0.03, 0), SKELETON.height, aspect).zoom(2.5)
+        for camera, out in ((body, far), (face, near)):
             out.append(offscreen.render(scene, camera, LIGHT)[..., :3])
     return [*far, *near]
-
-
-def _farther(camera: Camera) -> Camera:
-    return camera.zoom(-2.0)
 
 
 def strips(folder: Path, key: Path, seed: int, names: list[str], clips: Path) -> None:
