@@ -281,12 +281,13 @@ class RigEye(Struct, forbid_unknown_fields=True):
 
 class RigShoulder(Struct, forbid_unknown_fields=True):
     """A joint that breathing lifts or tension turns. turn: its rotation vector at the top of a breath, in its
-    own space; tense: at full tension.
+    own space; tense: at full tension; closed: of arms kept close.
     """
 
     joint: Place
     turn: Radians
     tense: Radians = []
+    closed: Radians = []
 
 
 class RigLooker(Struct, forbid_unknown_fields=True):

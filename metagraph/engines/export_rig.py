@@ -34,8 +34,10 @@ def export_rig(project: Project) -> c.Rig | None:
         chain=body.chain.tolist(),
         breath=[[*axis, angle] for axis, angle in body.breath],
         shoulders=[
-            c.RigShoulder(joint, list(turn), list(tense))
-            for joint, turn, tense in zip(shoulders, body.shoulders, body.tense, strict=True)
+            c.RigShoulder(joint, list(turn), list(tense), list(closed))
+            for joint, turn, tense, closed in zip(
+                shoulders, body.shoulders, body.tense, body.closed, strict=True
+            )
         ],
         lookers=[c.RigLooker(x.place, x.share) for x in body.lookers],
         trunk=body.trunk,
@@ -112,7 +114,8 @@ def read_rig(rig: c.Rig) -> Body:
         joints=np.array(joints, int),
         read=np.array(read, int),
         shoulders=tuple(_three(s.turn) for s in rig.shoulders),
-        tense=tuple(_three(s.tense) for s in rig.shoulders),
+        tense=tuple(_three(s.tense or (0.0, 0.0, 0.0)) for s in rig.shoulders),
+        closed=tuple(_three(s.closed or (0.0, 0.0, 0.0)) for s in rig.shoulders),
         lookers=tuple(Looker(x.place, x.share) for x in rig.lookers),
         trunk=rig.trunk,
         trunk_ahead=_three(rig.trunk_ahead),

@@ -134,31 +134,27 @@ CLIPS = (
         "so_so",
         "rt",
         go(
-            0.42,
-            rt=over_elbow(0.06, 0.70, 0.71, turn=-66, bend=18, shape="spread"),
-            head=(2, 0, 3),
+            0.40,
+            rt=over_elbow(0.10, 0.62, 0.78, turn=-62, bend=16, shape="spread"),
+            head=(2, -1, 2),
             spine=(2, -1, 1),
             flow=0.06,
         ),
-        go(
-            0.20,
-            rt=over_elbow(0.08, 0.69, 0.72, turn=-34, bend=20, shape="spread"),
-            head=(2, 0, 5),
-            overshoot=0.0,
-            flow=0.05,
-        ),
-        go(
-            0.20,
-            rt=over_elbow(0.04, 0.69, 0.72, turn=-80, bend=16, shape="spread"),
-            head=(2, 0, 0),
-            overshoot=0.0,
-            flow=0.05,
+        *(
+            go(
+                0.20,
+                rt=over_elbow(out, 0.61, 0.79, turn=turn, bend=16, shape="spread"),
+                head=(2, -1, lean),
+                overshoot=0.0,
+                flow=0.04,
+            )
+            for out, turn, lean in ((0.15, -16, 7), (0.07, -86, -4), (0.15, -18, 7))
         ),
         go(
             0.22,
-            hold=0.24,
-            rt=over_elbow(0.07, 0.68, 0.73, turn=-50, bend=20, shape="spread"),
-            head=(2, 0, 4),
+            hold=0.20,
+            rt=over_elbow(0.11, 0.61, 0.79, turn=-56, bend=16, shape="spread"),
+            head=(2, -1, 4),
             overshoot=0.03,
         ),
         BACK,

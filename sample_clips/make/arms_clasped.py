@@ -184,7 +184,7 @@ CLIPS = (
             hold=0.40,
             lf=SHRUGGED.moved(-0.06, -0.04, 0.01),
             rt=SHRUGGED.moved(-0.05, -0.03, 0.01),
-            head=(-2, 2, -7),
+            head=(-3, 3, -11),
             spine=(-2, 0, 0),
             overshoot=0.05,
         ),

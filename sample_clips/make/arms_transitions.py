@@ -37,6 +37,8 @@ NEAR: dict[str, tuple[Hand, Hand]] = {
         arms_clasped.CLOSE.moved(0.026, 0.026, 0.040),
     ),
 }
+# Moods in which one comes to stand so: open and large, guarded, or small (Wallbott 1998).
+FELT = {"on_hips": ("happy",), "arms_crossed": ("tense",), "hands_clasped": ("sad",)}
 # (leaves, arrives): seconds out, across, in; and how the head goes along (pitch, turn, lean).
 WAYS: dict[tuple[str, str], tuple[float, float, float, tuple[float, float, float]]] = {
     ("hands_at_sides", "on_hips"): (0.34, 0.34, 0.40, (-1, 0, 0)),
@@ -107,6 +109,7 @@ def way(
         leaves,
         arrives,
         tuple(steps),
+        tags=FELT.get(arrives, ()),
         later="Left",
         over=over,
     )

@@ -16,6 +16,7 @@ from sample_clips.make.recipe import HOME, Recipe, go, home
 from sample_clips.make.stance_clips import BODY, STANCES
 
 NONE: Angles = (0.0, 0.0, 0.0)
+HEEL_TO_BALL = 0.150  # metres
 
 
 def off(
@@ -55,6 +56,11 @@ def lifted(foot: Foot, other: Foot, lift: float = 0.022, heel: float = 13.0) -> 
     return Foot(**mean, lift=lift, heel=heel)
 
 
+def on_its_heel(foot: Foot, degrees: float) -> Foot:
+    """Return a foot whose toes are raised while its heel stays."""
+    return replace(foot, heel=-degrees, lift=HEEL_TO_BALL * float(np.sin(np.radians(degrees))))
+
+
 LEFT, RIGHT = BODY["weight_left"], BODY["weight_right"]
 PLAIN = Foot()
 
@@ -66,11 +72,15 @@ BOTH = (
         "lean_in",
         go(
             0.42,
-            **off("weight_both", (0, 0.001, 0.004), (-1, 0, 0), (-1.5, 0, 0), (1, 0, 0)),
+            **off("weight_both", (0, 0.001, 0.006), (-1, 0, 0), (-2.5, 0, 0), (1.5, 0, 0)),
             overshoot=0.0,
             flow=0.14,
         ),
-        go(0.44, hold=0.55, **off("weight_both", (0.004, -0.004, 0.012), (4, 1, 0), (7, 1, -1), (-6, 0, 1))),
+        go(
+            0.48,
+            hold=0.60,
+            **off("weight_both", (0.004, -0.014, -0.030), (9, 1, 0), (14, 1, -1), (-13, 0, 1)),
+        ),
         home(0.85),
         tags="interest emphasis",
         likelihood=1.2,
@@ -116,7 +126,7 @@ BOTH = (
         "straighten",
         go(
             0.30,
-            **off("weight_both", (0, -0.012, 0.0), (1.5, 0, 0), (4, 0, 0), (2, 0, 0)),
+            **off("weight_both", (0, -0.024, -0.006), (2, 0, 0), (8, 0, 0), (4, 0, 0)),
             overshoot=0.0,
             flow=0.08,
         ),
@@ -125,12 +135,12 @@ BOTH = (
             hold=0.42,
             **off(
                 "weight_both",
-                (0, 0.0075, 0.012),
-                (-2, 0, 0),
-                (-5, 0, 0),
-                (1, 0, 0),
-                left_foot=replace(PLAIN, heel=3.0),
-                right_foot=replace(PLAIN, heel=2.4),
+                (0, 0.0240, 0.020),
+                (-2.5, 0, 0),
+                (-8, 0, 0),
+                (2, 0, 0),
+                left_foot=replace(PLAIN, heel=10.0),
+                right_foot=replace(PLAIN, heel=9.2),
             ),
             overshoot=0.04,
         ),
@@ -392,7 +402,7 @@ LEANING = (
         go(
             0.56,
             hold=0.55,
-            **off("weight_right", (-0.006, -0.004, 0.012), (-3, -2, -0.5), (-6, -4, 2), (5, 4, -2)),
+            **off("weight_right", (-0.010, -0.012, 0.030), (-6, -3, -0.5), (-12, -6, 3), (11, 6, -4)),
         ),
         home(0.95),
         tags="doubt negative",
@@ -419,18 +429,18 @@ LEANING = (
         "weight_right",
         "fidget",
         "tap_foot",
+        go(
+            0.30,
+            **off("weight_right", (-0.010, -0.002, 0), (0, -1, 0), (0, 0.5, 0), (4, 3, 0)),
+            overshoot=0.0,
+            flow=0.02,
+        ),
         *(
             step
-            for heel in (13, 11, 13)
+            for degrees in (17, 15, 18, 16)
             for step in (
-                go(
-                    0.18,
-                    left_foot=replace(RIGHT.left_foot, heel=heel),
-                    **off("weight_right", (-0.002, 0, 0), (0, -1.2, 0), (0, 0.8, 0), NONE),
-                    overshoot=0.0,
-                    flow=0.02,
-                ),
-                go(0.17, hold=0.06, left_foot=RIGHT.left_foot, **off("weight_right"), overshoot=0.0),
+                go(0.17, left_foot=on_its_heel(RIGHT.left_foot, degrees), overshoot=0.0, flow=0.02),
+                go(0.16, hold=0.07, left_foot=RIGHT.left_foot, overshoot=0.0),
             )
         ),
         home(0.5),
@@ -451,7 +461,7 @@ LEANING = (
         go(
             0.30,
             hold=0.40,
-            **off("lean_forward", (0.003, -0.008, 0.010), (3, 1, 0), (5, 2, 0), (-4, -1, 1)),
+            **off("lean_forward", (0.004, -0.014, 0.006), (4.5, 2, 0), (8, 3, 0), (-6, -1, 2)),
             peak=0.52,
             overshoot=0.06,
         ),
@@ -466,7 +476,7 @@ LEANING = (
         go(
             0.58,
             hold=0.50,
-            **off("lean_forward", (-0.005, 0.005, 0.016), (-5, -1, 0), (-7, -2, 1), (8, 2, -2)),
+            **off("lean_forward", (-0.006, 0.006, 0.034), (-8, -2, 0), (-12, -3, 1.5), (13, 3, -3)),
         ),
         home(0.95),
         tags="doubt",

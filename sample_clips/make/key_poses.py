@@ -74,7 +74,7 @@ class Hand:
 @dataclass(frozen=True)
 class Foot:
     """One foot: the ball's shift from rest (out, forwards; metres), lift (m), turn outwards and heel raise
-    (degrees).
+    (degrees; less than 0 raises the toes with the ball).
     """
 
     out: float = 0.012
@@ -187,5 +187,5 @@ def legs(rotations: Array, numbers: Array) -> tuple[Array, Array]:
         thigh, shin, foot_local = ik.leg(side, hips, root, ankle, knee, foot)
         for joint, q in (("UpperLeg", thigh), ("LowerLeg", shin), ("Foot", foot_local)):
             out[:, at(side + joint)] = q
-        out[:, at(side + "Toes")] = about((1, 0, 0), -heel)
+        out[:, at(side + "Toes")] = about((1, 0, 0), -np.maximum(heel, 0.0))
     return out, root

@@ -121,3 +121,37 @@ def measure(clip: Clip) -> Measures:
         turned=(float(np.max(turned)), float(-np.min(turned))),
         elbow=(float(np.min(elbow)), float(np.max(elbow))),
     )
+
+
+LATEST = 0.2  # seconds one hand may come after the other
+
+
+def likeness(clip: Clip) -> float:
+    """Return how alike the speeds of both hands are, -1..1: their correlation, one shifted to where it is
+    largest. Two hands that one program moves have 0.99 and more; recorded two-handed gestures have 0.97 on
+    average and 0.87 or less in one of ten (SmartBody's, of two actors).
+    """
+    _, places = SKELETON.globals(clip.poses())
+    hands = np.asarray(places, float)[:, [at("LeftHand"), at("RightHand")]]
+    left, right = (np.linalg.norm(np.diff(hands, axis=0), axis=-1) * FPS).T
+    found = []
+    for k in range(-round(LATEST * FPS), round(LATEST * FPS) + 1):
+        a = left[max(0, k) : len(left) + min(0, k)]
+        b = right[max(0, -k) : len(right) - max(0, k)]
+        found.append(float(np.corrcoef(a, b)[0, 1]))
+    return max(found)
+
+
+def head_ways(clip: Clip) -> tuple[float, float]:
+    """Return how far a clip turns the head to the sides and up or down, degrees from end to end."""
+    turns, _ = SKELETON.globals(clip.poses())
+    head = np.asarray(turns, float)[:, at("Head")]
+    ahead = rotation.rotate_vectors(head, np.broadcast_to(np.array([0.0, 0.0, 1.0]), (len(head), 3)))
+    sideways = np.degrees(np.arctan2(ahead[:, 0], ahead[:, 2]))
+    return float(np.ptp(sideways)), float(np.ptp(np.degrees(np.arcsin(ahead[:, 1]))))
+
+
+def way_of(clip: Clip, joint: str) -> Array:
+    """Return how far a joint gets about, (left, up, ahead) metres from end to end."""
+    _, places = SKELETON.globals(clip.poses())
+    return np.asarray(np.ptp(np.asarray(places, float)[:, at(joint)], axis=0))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
@@ -154,21 +154,44 @@ def lag_array(layer: str, later_side: str = "", later: float = 0.0) -> Array:
     return out
 
 
+def unlike(moves: Sequence[Move], seed: int) -> list[Move]:
+    """Return the moves of the arm that follows: each begins and ends a little later than the other arm's, and
+    is fastest at another moment. The last ends no later.
+    """
+    generator = np.random.default_rng(seed)
+    out = []
+    for n, move in enumerate(moves):
+        begins, ends, peak = generator.uniform((0.01, 0.03, -0.13), (0.08, 0.12, 0.13))
+        quick = min(1.0, move.step.seconds / 0.35)
+        begins, ends = begins * quick, ends * quick
+        if n == len(moves) - 1:
+            ends = -0.5 * ends
+        long = max(move.end + ends - move.start - begins, 0.6 * move.step.seconds)
+        step = replace(move.step, peak=float(np.clip(move.step.peak + peak, 0.32, 0.62)))
+        start = move.end + ends - long
+        out.append(Move(step, start, start + long, move.left_at + max(ends, 0.0)))
+    return out
+
+
 def blend(
-    postures: Sequence[key_poses.Posture], moves: Sequence[Move], times: Array, lags: Array
+    postures: Sequence[key_poses.Posture],
+    moves: Sequence[Move],
+    times: Array,
+    lags: Array,
+    others: Mapping[int, Sequence[Move]],
 ) -> tuple[Array, Array]:
     """Return rotations `[F, J, 4]` and channels `[F, 13]` of moves through postures (one more than there are
-    moves).
+    moves). others: the moves of joints that have their own.
     """
     keyed = np.stack([key_poses.solve(p) for p in postures])
     numbers = np.stack([key_poses.channels(p) for p in postures])
     turns = rotation.log(rotation.multiply(rotation.conjugate(keyed[:-1]), keyed[1:]))
     out = np.broadcast_to(keyed[0], (len(times), JOINTS, 4))
     plain = np.broadcast_to(numbers[0], (len(times), len(numbers[0]))).copy()
-    for move, turn, change in zip(moves, turns, np.diff(numbers, axis=0), strict=True):
+    for n, (move, turn, change) in enumerate(zip(moves, turns, np.diff(numbers, axis=0), strict=True)):
         moving = np.flatnonzero(np.abs(turn).max(-1) > 1e-9)
         if len(moving):
-            w = progress(move, times[:, None] - lags[moving])
+            w = np.stack([progress(others.get(j, moves)[n], times - lags[j]) for j in moving], -1)
             out = out.copy()
             out[:, moving] = rotation.multiply(out[:, moving], rotation.exp(w[..., None] * turn[moving]))
         plain += progress(move, times)[:, None] * change

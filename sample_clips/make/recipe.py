@@ -11,7 +11,7 @@ import numpy as np
 from metagraph.motion.clip import Clip
 from sample_clips.make import key_poses, motion_tracks, secondary
 from sample_clips.make.key_poses import Posture
-from sample_clips.make.mannequin_rig import FPS, REACH, REST, SIDES, SKELETON, Array, at
+from sample_clips.make.mannequin_rig import FPS, REACH, REST, SIDES, SKELETON, Array, arm_joints, at
 from sample_clips.make.motion_tracks import Step
 from sample_clips.make.stance_clips import BASE, PINS, STANCES
 
@@ -89,18 +89,49 @@ def postures_of(recipe: Recipe) -> list[Posture]:
     """Return the stance's posture and the one at the end of each step."""
     first, last = STANCES[recipe.layer][recipe.stance], STANCES[recipe.layer][recipe.end]
     now, out = first, [first]
+    follows = follower(recipe)
     for step in recipe.steps:
         change: Mapping[str, Any] = {k: getattr(last, k) if v is HOME else v for k, v in step.change.items()}
         now = replace(now, **change)
         is_home = now in (first, last)
         out.append(
-            counter(now, last if recipe.kind == "transition" else first)
+            counter(
+                _followed(now, first, follows, recipe, len(out)),
+                last if recipe.kind == "transition" else first,
+            )
             if recipe.layer == "arms" and not is_home
             else now
         )
     if now != last:
         raise ValueError(f"{recipe.name} does not end in its stance")
     return out
+
+
+def follower(recipe: Recipe) -> str:
+    """Return the side whose arm follows the other's in a gesture of both, "" for none: of two hands that
+    speak, one leads, and the other goes less far.
+    """
+    if recipe.layer != "arms" or recipe.kind != "gesture" or recipe.limb != "both" or recipe.together:
+        return ""
+    return recipe.later or ("Left" if motion_tracks.seed_of(recipe.name) % 2 else "Right")
+
+
+def _followed(now: Posture, stance: Posture, side: str, recipe: Recipe, number: int) -> Posture:
+    """Return a posture whose following hand is less far from its stance, and not quite where a mirror would
+    have it.
+    """
+    if not side:
+        return now
+    hand, rest = getattr(now, side.lower()), getattr(stance, side.lower())
+    if hand == rest:
+        return now
+    generator = np.random.default_rng(motion_tracks.seed_of(recipe.name) + number)
+    away = np.array(hand.at) - rest.at
+    size = float(np.linalg.norm(away))
+    aside = generator.uniform(-1, 1, 3) * (0.012, 0.014, 0.012) * min(1.0, size / 0.15)
+    moved = tuple((np.array(rest.at) + away * generator.uniform(0.88, 0.96) + aside).tolist())
+    turn = 4.0 * float(generator.uniform(-1, 1))
+    return replace(now, **{side.lower(): replace(hand, at=moved, turn=hand.turn + turn)})
 
 
 LIFE = {  # degrees of drift in a stance, by layer; gestures drift a little less
@@ -136,7 +167,7 @@ def drifts(recipe: Recipe) -> dict[str, float]:
         if recipe.stance in STILL_HANDS and recipe.kind == "stance":
             # All that moves a resting arm is its shoulder: the hands must stay where they lie.
             sizes = {k: v for k, v in sizes.items() if not k.endswith(("Arm", "Hand"))}
-            sizes |= {k: v * 0.5 for k, v in FINGER_LIFE.items() if k.endswith("1")}
+            sizes |= FINGER_LIFE
         elif recipe.kind == "stance":
             sizes |= FINGER_LIFE
         else:
@@ -171,7 +202,11 @@ def animate(recipe: Recipe) -> Clip:
         later,
         (0.02 + 0.04 * (seed % 97) / 97) if recipe.limb == "both" and not recipe.together else 0.0,
     )
-    rotations, numbers = motion_tracks.blend(postures, moves, times, lags)
+    follows = follower(recipe)
+    others = dict.fromkeys(
+        (at(name) for name in arm_joints(follows)) if follows else (), motion_tracks.unlike(moves, seed)
+    )
+    rotations, numbers = motion_tracks.blend(postures, moves, times, lags, others)
     rotations = secondary.life(rotations, seed, drifts(recipe), recipe.kind == "stance")
     if recipe.layer == "arms":
         rotations = _arms(recipe, rotations)

@@ -14,7 +14,7 @@ BIG_READY = Hand(at=(0.265, 1.275, 0.235), turn=-4, bend=-16, shape="open", elbo
 BIG_BEAT = Hand(at=(0.285, 1.085, 0.335), turn=18, bend=8, shape="flat", elbow=LOW)
 OPEN_PALM = Hand(at=(0.315, 1.105, 0.275), turn=64, bend=-10, side=-6, shape="open", elbow=LOW)
 SHRUGGED = Hand(
-    at=(0.345, 1.185, 0.205), turn=84, bend=-26, side=-8, shape="spread", elbow=(0.35, -0.85, -0.45), shrug=11
+    at=(0.345, 1.185, 0.205), turn=84, bend=-26, side=-8, shape="spread", elbow=(0.35, -0.85, -0.45), shrug=18
 )
 POINT_YOU = Hand(at=(0.145, 1.225, 0.425), turn=-38, bend=-4, shape="point", elbow=(0.6, -0.75, 0.0))
 POINT_COCKED = Hand(at=(0.205, 1.255, 0.235), turn=-20, bend=-18, shape="loose_point", elbow=LOW)
@@ -40,8 +40,10 @@ STOP_COCKED = Hand(at=(0.205, 1.235, 0.240), turn=-50, bend=-30, shape="open", e
 OFFERING = Hand(at=(0.205, 1.120, 0.365), turn=72, bend=-6, side=-4, shape="open", elbow=LOW)
 SWEEP_IN = Hand(at=(0.035, 1.155, 0.300), turn=-72, bend=4, shape="flat", elbow=WIDE)
 SWEEP_OUT = Hand(at=(0.365, 1.125, 0.265), turn=-66, bend=-14, side=-10, shape="flat", elbow=WIDE)
-FLICK_READY = Hand(at=(0.205, 1.225, 0.225), turn=-46, bend=34, shape="relaxed", elbow=(0.6, -0.75, -0.2))
-FLICKED = Hand(at=(0.330, 1.240, 0.300), turn=-58, bend=-22, side=-8, shape="spread", elbow=(0.7, -0.7, -0.2))
+FLICK_READY = Hand(at=(0.130, 1.235, 0.245), turn=-46, bend=42, shape="relaxed", elbow=(0.6, -0.75, -0.2))
+FLICKED = Hand(
+    at=(0.415, 1.225, 0.285), turn=-52, bend=-34, side=-12, shape="spread", elbow=(0.7, -0.7, -0.2)
+)
 THUMB_UP = Hand(at=(0.155, 1.185, 0.335), turn=4, bend=2, side=6, shape="thumbs_up", elbow=LOW)
 PRECISE = Hand(at=(0.190, 1.275, 0.290), turn=-46, bend=-24, side=6, shape="ring", elbow=(0.5, -0.85, -0.1))
 WIDE_APART = Hand(at=(0.400, 1.165, 0.255), turn=4, bend=-14, shape="spread", elbow=WIDE)

@@ -13,8 +13,9 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from sample_clips.make.catalogue import BASE, RECIPES, Entry, catalogue
 from sample_clips.make.mannequin_rig import FPS, REACH, SKELETON, at
-from sample_clips.make.measure import Measures, measure
-from sample_clips.make.recipe import animate
+from sample_clips.make.measure import Measures, head_ways, likeness, measure, way_of
+from sample_clips.make.recipe import animate, follower
+from sample_clips.make.shapes import MOUTH_Y
 from tests.sample_clips.unchanged import only_when_changed
 
 pytestmark = only_when_changed()
@@ -198,3 +199,59 @@ def test_making_a_clip_twice_gives_the_same_numbers_as_on_disk(name: str) -> Non
     assert np.array_equal(once.root, twice.root)
     turns = rotation.angle_between(once.rotations.astype(float), on_disk(name).rotations.astype(float))
     assert np.degrees(turns.max()) < 0.1
+
+
+LED = [r.name for r in RECIPES if follower(r)]
+
+
+def test_two_hands_that_speak_are_no_twins() -> None:
+    found = [likeness(on_disk(name)) for name in LED]
+    assert len(found) > 8
+    assert np.median(found) < 0.96
+    assert max(found) < 0.99
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if "__shrug_" in n])
+def test_a_shrug_lifts_the_shoulders_so_that_it_is_seen(name: str) -> None:
+    assert 0.04 < way_of(on_disk(name), "LeftUpperArm")[1] < 0.06
+
+
+def test_what_the_body_says_is_large_enough_to_be_read() -> None:
+    assert way_of(on_disk("body_weight_both__lean_in_01"), "Head")[2] > 0.13
+    assert way_of(on_disk("body_weight_right__lean_back_01"), "Head")[2] > 0.08
+    assert way_of(on_disk("body_weight_both__straighten_01"), "Head")[1] > 0.04
+    assert way_of(on_disk("body_weight_right__tap_foot_01"), "LeftToes")[1] > 0.035
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if "__glance_" in n])
+def test_a_glance_goes_to_the_side_and_is_no_nod(name: str) -> None:
+    sideways, upright = head_ways(on_disk(name))
+    assert sideways > 25
+    assert upright < 3
+
+
+@pytest.mark.parametrize("stance", ["hands_at_sides", "on_hips", "arms_crossed", "hand_to_chin"])
+def test_the_fingers_of_a_resting_hand_differ_and_stir(stance: str) -> None:
+    clip = on_disk(f"{stance}__stance")
+    curls = [
+        sum(
+            rotation.angle_between(clip.rotations[0, at(f"Right{finger}{bone}")].astype(float), rest)
+            for bone in (1, 2, 3)
+        )
+        for finger in ("Index", "Little")
+        for rest in (rotation.identity_rotations(()),)
+    ]
+    assert np.degrees(curls[1] - curls[0]) > 14, "the little finger curls more than the index"
+    knuckle = clip.rotations[:, at("RightMiddle2")].astype(float)
+    assert np.degrees(rotation.angle_between(knuckle, knuckle[0]).max()) > 1
+
+
+def test_a_hand_at_the_chin_leaves_the_lips_free() -> None:
+    clip = on_disk("hand_to_chin__stance")
+    turns, places = SKELETON.globals(clip.poses())
+    head = at("Head")
+    rest = SKELETON.globals(SKELETON.rest)[1][head]
+    for finger in ("Thumb", "Index", "Middle", "Ring", "Little"):
+        away = places[:, at(f"Right{finger}3")] - places[:, head]
+        seen = rest + rotation.rotate_vectors(rotation.conjugate(turns[:, head]), away)
+        assert seen[:, 1].max() < MOUTH_Y - 0.01, finger

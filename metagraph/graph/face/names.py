@@ -36,7 +36,7 @@ _MOODS: dict[str, tuple[Weights, tuple[str, ...]]] = {
     "smile": ((("mouthsmile#", 0.9),), ("happy", "joy", "fun", "smile")),
     "frown": ((("mouthfrown#", 1.0), ("mouthshruglower", 0.3)), ("sad", "sorrow", "frown")),
     "brow_down": (
-        (("browdown#", 1.0), ("eyesquint#", 0.35), ("nosesneer#", 0.25)),
+        (("browdown#", 1.0), ("eyesquint#", 0.35), ("nosesneer#", 0.25), ("mouthpress#", 0.4)),
         ("angry", "browdown", "browsdown"),
     ),
     "brow_up": ((("browinnerup", 1.0),), ("browinnerup", "browsup", "browup")),

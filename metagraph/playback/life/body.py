@@ -16,7 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.joint_map import NEEDED, find_known_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.motion.standing import is_standing
-from metagraph.playback.life.tension import find_tension
+from metagraph.playback.life.tension import CLOSED, TENSE, find_tension
 
 Array = NDArray[Any]
 
@@ -25,9 +25,10 @@ Array = NDArray[Any]
 BREATH = {"spine": -0.2, "chest": -0.9, "upper_chest": -0.7, "neck": 0.75, "head": 0.85}
 SHOULDERS = 1.3
 # Degrees a bowed posture bends each forwards (`mood.Bearing.droop` of 1): the head most; ours.
-BOWED = {"spine": 3.0, "chest": 4.0, "upper_chest": 4.0, "neck": 4.0, "head": 9.0}
-# The same of a body that leans into it (`mood.Bearing.thrust` of 1): trunk ahead, face level.
-THRUST = {"spine": 4.0, "chest": 4.0, "upper_chest": 3.0, "neck": 7.0, "head": -18.0}
+BOWED = {"spine": 4.0, "chest": 5.0, "upper_chest": 5.0, "neck": 5.0, "head": 11.0}
+# The same of a body that leans into it (`mood.Bearing.thrust` of 1; below 0 it draws back): trunk ahead, face
+# nearly level.
+THRUST = {"spine": 6.0, "chest": 6.0, "upper_chest": 4.0, "neck": 6.0, "head": -20.0}
 # Who takes how much of a turn towards what is looked at; what a skeleton lacks, the others take. The turn
 # grows with the square of small angles, so a glance moves the trunk by a degree, and a look far aside turns
 # it along.
@@ -78,7 +79,7 @@ class Body:
     many in a bowed posture, thrust: in one that leans into it. joints: all that life may turn: the chain,
     then shoulders and what else tightens, eyes that are joints, the face's. read: whose rotations it must
     know: the chain, eyes that are joints, lids. shoulders: their rotation vectors at the top of a breath;
-    tense: those of the same joints at full tension.
+    tense: those of the same joints at full tension; closed: of arms kept close.
     lookers: empty where there is no head, from the root upwards. trunk: its place in the chain; trunk_ahead,
     head_ahead: ahead in their own space. eyes: left, right. partner: where "user" is; eyes_at_rest: between
     the eyes in the base pose.
@@ -95,6 +96,7 @@ class Body:
     read: Array
     shoulders: tuple[Vector, ...]
     tense: tuple[Vector, ...]
+    closed: tuple[Vector, ...]
     lookers: tuple[Looker, ...]
     trunk: int
     trunk_ahead: Vector
@@ -164,7 +166,8 @@ def find_body(project: Project) -> Body:
         if f"{s}_shoulder" in roles
     ]
     lifts = {j: np.radians(SHOULDERS) * sign * local(j, ahead) for j, sign in collars}
-    tight = find_tension(find_known_roles(skeleton, roles), at, axes, local)
+    known = find_known_roles(skeleton, roles)
+    tight, closed = (find_tension(known, at, axes, local, amounts) for amounts in (TENSE, CLOSED))
     seen = {*chain, *(e.joint for e in face.eyes), *face.joints.tolist()}
     rising = [*lifts, *(j for j in tight if j not in lifts and j not in seen)]
     none = np.zeros(3)
@@ -191,6 +194,7 @@ def find_body(project: Project) -> Body:
         np.array(read),
         tuple(_vector(lifts.get(j, none)) for j in rising),
         tuple(_vector(tight.get(j, none)) for j in rising),
+        tuple(_vector(closed.get(j, none)) for j in rising),
         tuple(lookers),
         chain.index(trunk),
         _vector(local(trunk, ahead)),
@@ -252,6 +256,7 @@ def _lifeless() -> Body:
         (0.0,),
         first,
         first,
+        (),
         (),
         (),
         (),

@@ -41,7 +41,7 @@ from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow, solve_life
 from metagraph.playback.life.track import Track
-from metagraph.playback.planning.mood import Bearing, bearing
+from metagraph.playback.planning.mood import Bearing, bearing, shut_in
 from metagraph.playback.planning.mood import shown as mood_shown
 
 Array = NDArray[Any]
@@ -188,8 +188,9 @@ def happening(schedule: Schedule, life: Life, time: float) -> tuple[LifeNow, Bea
     full = breath_at(schedule.breaths, life, time)
     mood = mood_shown(schedule.moods.times, schedule.moods.rows, time)
     bears = UNMOVED if mood.neutral else bearing(mood)
-    blink = max(blink_at(schedule.blinks, life, time), bears.lids)
-    return LifeNow(full, bears.droop, bears.thrust, full + bears.lift, bears.tension, blink), bears
+    blink = shut_in(blink_at(schedule.blinks, life, time), bears.lids)
+    now = LifeNow(full, bears.droop, bears.thrust, full + bears.lift, bears.tension, bears.closed, blink)
+    return now, bears
 
 
 NO_MOVES = Moves((), (0.0, 0.0), (0.0, 0.0))

@@ -29,7 +29,7 @@ SWELL_GAP = 3.5  # seconds between two, on average
 SHORTEST_SWELL = 0.9
 LONGEST_SWELL = 4.0
 SWELL_RISES = 0.35  # of its length
-KEPT = 0.6  # of a mood's face between swells
+KEPT = 0.75  # of a mood's face between swells
 WARMTH = 0.35  # of a smile that a listener's swell is
 # Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 EARLY = 0.06  # seconds a raise begins before its syllable
@@ -168,7 +168,7 @@ def shown_face(
     face.frown = share * bears.frown
     face.brow_down = share * bears.brow_down
     face.brow_up = share * bears.brow_up
-    face.brows = much * brows
+    face.brows = share * bears.brows + much * brows
 
 
 def answer(

@@ -34,7 +34,8 @@ WIDEST = -0.8  # how far lids open beyond rest, of their shutting turn
 
 class LifeNow(NamedTuple):
     """What happens at a time. full: how full the chest is. droop, thrust: of the posture. lift, tight: of
-    what rises and tightens, breath and mood together. blink: how far a blink has shut the eyes.
+    what rises and tightens, breath and mood together. closed: how close the arms are kept. blink: how far a
+    blink has shut the eyes, below 0 open wide.
     """
 
     full: float
@@ -42,6 +43,7 @@ class LifeNow(NamedTuple):
     thrust: float
     lift: float
     tight: float
+    closed: float
     blink: float
 
 
@@ -93,7 +95,9 @@ def solve_life(
             turn[looker.place] = towards[k]
     for k, shoulder in enumerate(body.shoulders):
         rises = _scaled(shoulder, now.lift)
-        turn.append(_plus(rises, _scaled(body.tense[k], now.tight)) if now.tight != 0.0 else rises)
+        if now.tight != 0.0:
+            rises = _plus(rises, _scaled(body.tense[k], now.tight))
+        turn.append(_plus(rises, _scaled(body.closed[k], now.closed)) if now.closed != 0.0 else rises)
     down = [-eyes[0][1], -eyes[1][1]]
     place = long
     for side, eye in enumerate(body.eyes):

@@ -265,12 +265,13 @@ class Life:
             start, length, amount, listening = self.events["swells"][n]
             s = amount * bump(t - start, 0.35 * length, length)
         out = {
-            name: value * (1.0 - 0.4 * self.calm * min(1.0, wide) * (1.0 - s)) for name, value in felt.items()
+            name: value * (1.0 - 0.25 * self.calm * min(1.0, wide) * (1.0 - s))
+            for name, value in felt.items()
         }
         out["smile"] += 0.35 * k * listening * s * (1.0 - felt["frown"])
         recent = [each for each in self.events["emphases"] if 0.0 <= t - each[0] < 1.5]
         lifts = [amount * bump(t - start, rise, length) for start, length, amount, rise in recent]
-        out["brows"] = k * max(lifts, default=0.0)
+        out["brows"] += k * max(lifts, default=0.0)
         for plan in self.layers.values():
             cue = playing(plan, t)
             if cue is None or not cue["start"] < t < min(cue["end"], cue["start"] + 1.8):
@@ -295,17 +296,22 @@ class Life:
         up, down_, well, ill = max(0.0, a), max(0.0, -a), max(0.0, v), max(0.0, -v)
         droop = clamp(i * (-0.7 * v - 0.5 * a), -0.4, 1.0)
         bowed, thrusts = (self.rig.get(name) or [0.0] * len(chain) for name in ("bowed", "thrust"))
-        thrust = clamp(i * 2.2 * up * max(0.0, 0.3 - v), 0.0, 1.0)
-        tension = clamp(i * 1.2 * up * max(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
+        excited = min(1.0, 1.25 * up)
+        fear = excited * ease((-v - 0.15) / 0.18)
+        anger = excited * ease((-v - 0.02) / 0.1) - fear
+        thrust = clamp(i * (0.3 * up * max(0.0, 0.3 - v) + 0.9 * anger - 0.7 * fear), -1.0, 1.0)
+        tension = clamp(i * 1.2 * up * max(0.0, 1.0 - 2.0 * well) * (1.0 - 0.8 * fear), 0.0, 1.0)
+        close = clamp(i * (0.5 * fear + 0.4 * ill * (1.0 - up)), 0.0, 1.0)
         for joint, (*axis, angle), bow, lean in zip(chain, self.rig["breath"], bowed, thrusts, strict=True):
             turn = full * angle + droop * bow + thrust * lean
             rotations[joint] = times(rotations[joint], about(turn * np.array(axis)))
-        full += clamp(i * (2.0 * up * (1.0 - well) - down_), -1.0, 2.0)
+        lift = 2.0 * up * (1.0 - well) + 4.5 * fear - 1.5 * down_ - ill * (1.0 - up)
+        full += clamp(i * lift, -2.0, 6.0)
         for shoulder in self.rig["shoulders"]:
             joint = shoulder["joint"]
-            turn = full * np.array(shoulder["turn"]) + tension * np.array(
-                shoulder.get("tense") or [0.0, 0, 0]
-            )
+            turn = full * np.array(shoulder["turn"])
+            for name, much in (("tense", tension), ("closed", close)):
+                turn = turn + much * np.array(shoulder.get(name) or [0.0, 0, 0])
             rotations[joint] = times(rotations[joint], about(turn))
         ij = [np.zeros(2), np.zeros(2)]
         if self.rig["lookers"] and self.events["targets"]:
@@ -320,7 +326,9 @@ class Life:
                 down[side] += along(eye["down"], composed[0][joint])
                 turn = ij[side][0] * np.array(eye["turn_left"]) + ij[side][1] * np.array(eye["turn_up"])
                 rotations[joint] = times(rotations[joint], about(turn))
-        face, blink = self.rig["face"], max(self.blink(t), clamp(0.3 * i * down_, 0.0, 0.5))
+        face, blink = self.rig["face"], self.blink(t)
+        lids = clamp(i * (0.5 * down_ - 0.5 * fear - 0.15 * anger), -0.6, 0.5)
+        blink = max(blink, lids) if lids > 0.0 else blink + lids * (1.0 - blink)
         any_lid = max(face["lid_joints"]) >= 0
         follows = face["follows"] if any_lid else [0.6 / radians(40.0)] * 2 + [0.0, 0.0]
         shut, own = [], []
@@ -337,10 +345,11 @@ class Life:
             rotations[joint] = times(rotations[joint], about(turn))
             translations[joint] += values @ np.array(face["shifts"])[:, place]
         feels = {
-            "smile": i * well,
-            "frown": i * ill,
-            "brow_down": 1.8 * i * up * max(0.0, 0.4 - v),
-            "brow_up": i * ill * max(0.0, 0.6 - a),
+            "smile": i * well * (1.2 + 0.3 * up - 0.6 * down_),
+            "frown": i * (1.4 * ill * (1.0 - up) * (1.0 - 0.6 * down_) + 0.35 * anger + 0.4 * fear),
+            "brow_down": i * (0.5 * up * max(0.0, 0.4 - v) + 0.8 * anger) * (1.0 - fear),
+            "brow_up": i * (2.0 * ill * (1.0 - up) * (1.0 - down_) + 0.9 * fear),
+            "brows": i * (0.6 * fear + 0.3 * up * well),
         }
         named = self.face(t, {name: clamp(value, 0.0, 1.0) for name, value in feels.items()})
         named |= dict(zip(CHANNELS, values, strict=True)) | {"blink": max(blink, (shut[0] + shut[1]) / 2.0)}

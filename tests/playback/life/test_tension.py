@@ -48,11 +48,21 @@ def test_in_anger_hands_close_elbows_bend_and_the_trunk_goes_ahead(sample: Proje
 
 
 @pytest.mark.parametrize("name", ["thrust", "tension"])
-def test_both_grow_with_arousal_fall_with_valence_and_are_none_at_rest(name: str) -> None:
+def test_both_grow_with_arousal_fall_with_pleasure_and_are_none_at_rest(name: str) -> None:
     steps = np.linspace(-1, 1, 21)
-    for other in steps:
+    for other in steps[9:]:  # beyond, fear draws back
         up = [getattr(bearing(Mood(float(other), float(x), 1.0)), name) for x in steps]
-        across = [getattr(bearing(Mood(float(x), float(other), 1.0)), name) for x in steps]
+        across = [getattr(bearing(Mood(float(x), float(other), 1.0)), name) for x in steps[10:]]
         assert (np.diff(up) >= 0).all()
         assert (np.diff(across) <= 0).all()
         assert max(up[:11]) == 0
+
+
+def test_in_fear_the_trunk_draws_back_and_shoulders_come_up_and_forward(sample: Project) -> None:
+    roles, calm = standing(sample, 0.0, 0.0)
+    _, afraid = standing(sample, *MOODS["afraid"])
+    ahead = [at[roles["neck"], 2] - at[roles["hips"], 2] for at in (calm, afraid)]
+    assert ahead[1] < ahead[0] - 0.03
+    for side in ("left", "right"):
+        away = [at[roles[f"{side}_upper_arm"]] - at[roles["neck"]] for at in (calm, afraid)]
+        assert away[1][1] > away[0][1] + 0.015

@@ -33,6 +33,7 @@ from metagraph.playback.planning.mood import (
     mood_at,
     mood_edges,
     shown,
+    shut_in,
     tempo,
     turn_extent,
 )
@@ -100,6 +101,28 @@ def test_sadness_bows_and_joy_lifts() -> None:
     assert bearing(Mood(*MOODS["sad"], 0.0)) == bearing(Mood()), "with no intensity nothing shows"
 
 
+def test_fear_draws_back_small_and_wide_eyed_where_anger_goes_ahead_and_large() -> None:
+    angry, afraid = (Mood(*MOODS[name]) for name in ("angry", "afraid"))
+    assert bearing(angry).thrust > 0.8 and bearing(afraid).thrust < -0.4
+    assert extent(angry) > 1.1 and extent(afraid) < 0.8 and tempo(afraid) > 1.1 and tempo(angry) > 1.1
+    assert bearing(afraid).lift > 2 * bearing(angry).lift and bearing(afraid).closed > 0.4
+    assert bearing(afraid).lids < -0.4 and bearing(afraid).brow_up > 0.7 and bearing(afraid).brows > 0.5
+    assert bearing(angry).brow_down > 0.9 and bearing(angry).brow_up < 0.1 and bearing(angry).brows == 0
+    assert bearing(afraid).brow_down < 0.1
+
+
+def test_the_sad_are_slower_and_smaller_and_the_happy_livelier_than_others() -> None:
+    sad, happy = Mood(*MOODS["sad"]), Mood(*MOODS["happy"])
+    assert tempo(sad) < 0.8 and extent(sad) < 0.75 and favour(sad, (), 1.0) < 0.5
+    assert tempo(happy) > 1.1 and extent(happy) > 1.1 and favour(happy, (), 1.0) > 1.5
+
+
+@pytest.mark.parametrize("blink", [0.0, 0.4, 1.0])
+def test_a_blink_shuts_eyes_that_are_open_wide_and_those_that_hang(blink: float) -> None:
+    assert shut_in(blink, 0.0) == blink and shut_in(1.0, -0.5) == 1.0
+    assert shut_in(blink, 0.3) == max(blink, 0.3) and shut_in(0.0, -0.5) == -0.5
+
+
 def test_actions_made_for_a_mood_are_preferred_in_it_and_rarer_in_others() -> None:
     sad, excited = Mood(*MOODS["sad"]), Mood(*MOODS["excited"])
     assert favour(sad, ("sad",), 0.0) > 4 and favour(excited, ("sad",), 0.0) < 0.25
@@ -163,7 +186,7 @@ def test_a_line_is_said_in_its_mood_and_what_it_asks_for_with_it(sample: Project
     plan = performed(project, {"do": "say", "id": "s", "at": 5.0, "line": "t"})
     said = plan.track.speeches[0]
     assert plan.track.moods == (MoodFrom("s", said.start, -0.03, -0.8, 0.5, said.end),)
-    assert [c.tempo for c in plan.layers["arms"].cues] == [pytest.approx(0.84)]
+    assert [c.tempo for c in plan.layers["arms"].cues] == [pytest.approx(0.7546)]
     louder = performed(project, {"do": "say", "id": "s", "at": 5.0, "line": "t", "mood": "angry"})
     assert louder.track.moods[0].arousal == 0.79, "what is asked for goes before the line's own"
 

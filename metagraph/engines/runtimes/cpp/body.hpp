@@ -24,10 +24,10 @@ struct Looker {
 };
 
 /// A shoulder that rises with the breath, or another joint that tightens. turn: rotation vector at the top of a breath; tense: at full
-/// tension.
+/// tension; closed: of arms kept close.
 struct Shoulder {
     int joint = 0;
-    Vec turn, tense;
+    Vec turn, tense, closed;
 };
 
 /// Part of a morph target that shows a value of the face: its place among `Face::SHOWN`, the target's among the graph's.
@@ -141,8 +141,9 @@ inline Body read(const Node& json, int joints, List<std::string>& morphs) {
     for (const Node& one : json["chain"].items()) out.chain.push_back(joint(one, joints, 0));
     for (const Node& one : json["breath"].items()) out.breath.push_back(quaternion(one));
     for (const Node& one : json["shoulders"].items()) {
-        const Node tense = one.maybe("tense");
-        out.shoulders.push_back({joint(one["joint"], joints, 0), vector(one["turn"]), tense.empty() ? Vec{} : vector(tense)});
+        const Node tense = one.maybe("tense"), closed = one.maybe("closed");
+        out.shoulders.push_back({joint(one["joint"], joints, 0), vector(one["turn"]), tense.empty() ? Vec{} : vector(tense),
+            closed.empty() ? Vec{} : vector(closed)});
     }
     const int count = lang::len(out.chain);
     if (count == 0 || lang::len(out.breath) != count) json.wrong("should have a chain of joints, and a breath for each");

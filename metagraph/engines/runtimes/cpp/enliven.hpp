@@ -47,7 +47,7 @@ public:
         } else {
             solver_.rest();
         }
-        lids(pose, std::max(blink(*schedule.blinks, time), bears_.lids));
+        lids(pose, mood::shut_in(blink(*schedule.blinks, time), bears_.lids));
         const lips::Shown said = life.lips > 0 ? lips::at(graph_, track, time) : lips::Shown{};
         for (std::size_t k = 0; k < said.size(); k++) channels_[life::FIRST_SHAPE + k] = said[k] * life.lips;
     }
@@ -64,7 +64,7 @@ public:
         }
         std::size_t place = chained;
         for (const Shoulder& shoulder : body_.shoulders) {
-            turn(place++, shoulder.turn * (full_ + bears_.lift) + shoulder.tense * bears_.tension);
+            turn(place++, shoulder.turn * (full_ + bears_.lift) + shoulder.tense * bears_.tension + shoulder.closed * bears_.closed);
         }
         for (std::size_t n = 0; n < 2; n++) {
             const Eye& eye = body_.eyes[n];

@@ -32,7 +32,7 @@ inline constexpr double SWELL_GAP = 3.5; // seconds between two, on average
 inline constexpr double SHORTEST_SWELL = 0.9;
 inline constexpr double LONGEST_SWELL = 4.0;
 inline constexpr double SWELL_RISES = 0.35; // of its length
-inline constexpr double KEPT = 0.6; // of a mood's face between swells
+inline constexpr double KEPT = 0.75; // of a mood's face between swells
 inline constexpr double WARMTH = 0.35; // of a smile that a listener's swell is
 // Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 inline constexpr double EARLY = 0.06; // seconds a raise begins before its syllable
@@ -284,7 +284,7 @@ inline void shown_face(
     face->frown = share * bears->frown;
     face->brow_down = share * bears->brow_down;
     face->brow_up = share * bears->brow_up;
-    face->brows = much * brows;
+    face->brows = share * bears->brows + much * brows;
 }
 
 /// Add what a cue with these tags, from `start` to `end`, shows on a face at a time.

@@ -3,12 +3,16 @@
 //
 // A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; beside
 // it an intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and every
-// offset 0 there. All below rises or falls monotonically with what it depends on.
+// offset 0 there.
 //
 // What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et al.
 // 2001, of arms that knock and drink); elated joy and hot anger are expansive and full of movement, sadness and boredom
-// neither (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). By how much
-// - the numbers below - is ours, chosen so that every clip still looks as if it was made so.
+// neither (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). Anger and
+// fear lie close together here, at 99 and 116 degrees; people tell them apart by power (Fontaine et al. 2007). So of
+// unpleasant excitement the milder is anger here, the stronger fear: it draws back (Coulson 2004), the shoulders up and
+// the arms close. Faces follow the prototypes of FACS (Ekman and Friesen 1978): fear 1+2+4+5+20, anger 4+5+7+23, joy
+// 6+12, sadness 1+4+15. By how much - the numbers below - is ours, chosen so that every clip still looks as if it was
+// made so.
 //
 // Translated from metagraph/playback/planning/mood.py; change that, and translate anew.
 #pragma once
@@ -29,11 +33,15 @@ namespace mood {
 inline constexpr double FADE = 1.5; // seconds in which posture and face go from one mood to the next
 inline constexpr double LEAST_EXTENT = 0.6;
 inline constexpr double MOST_EXTENT = 1.25;
-inline constexpr double LEAST_TEMPO = 0.8;
+inline constexpr double LEAST_TEMPO = 0.75;
 inline constexpr double MOST_TEMPO = 1.25;
 inline constexpr double CLOSE = 0.5; // an action that is tagged with a mood no farther away than this was made for it
 inline const std::string PLEASANT = "positive"; // tags
 inline const std::string UNPLEASANT = "negative";
+inline constexpr double ANGRY_FROM = 0.02; // unpleasantness from which an excited mood is angry
+inline constexpr double ANGRY_WIDE = 0.1; // and by how much more it is altogether
+inline constexpr double FEAR_FROM = 0.15; // the same of fear
+inline constexpr double FEAR_WIDE = 0.18;
 inline const std::string HELD = "contact"; // tag of actions that touch something: smaller or larger they would miss it
 // Named moods: valence, arousal. Directions are Russell's (1980, table of 28 words, by circular scaling): calm
 // 316.2, content 323, happy 7.8, excited 48.6, tense 92.8, angry 99, afraid 116, sad 207.5, bored 242 and
@@ -66,6 +74,9 @@ inline double faded(double x);
 inline Ref<Mood> shown(const List<double>& starts, const List<List<double>>& values, double seconds);
 inline double within(double x, double low, double high);
 inline double leaning(double x, double most);
+inline double drive(const Ref<Mood>& mood);
+inline double fear(const Ref<Mood>& mood);
+inline double anger(const Ref<Mood>& mood);
 inline double extent(const Ref<Mood>& mood);
 inline double tempo(const Ref<Mood>& mood);
 inline double drag(double seconds, double speed);
@@ -76,6 +87,7 @@ inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, doubl
 inline bool stirs(const Ref<Mood>& mood, std::uint32_t seed, const std::string& key);
 inline Ref<LifeMood> life_of(const Ref<Mood>& mood);
 inline Ref<Bearing> bearing(const Ref<Mood>& mood);
+inline double shut_in(double blink, double lids);
 
 }  // namespace mood
 
@@ -142,8 +154,9 @@ struct LifeMood {
 };
 
 /// Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they
-/// hang, 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it,
-/// 0..1. tension: of shoulders, arms and hands, 0..1.
+/// hang, 0..1, or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of the face, 0..1. thrust:
+/// how far the body leans into it, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed:
+/// how close the arms are kept, 0..1.
 struct Bearing {
     double droop;
     double lift;
@@ -154,6 +167,8 @@ struct Bearing {
     double brow_up;
     double thrust;
     double tension;
+    double brows;
+    double closed;
 
     explicit Bearing(
         double droop_ = 0.0,
@@ -164,7 +179,9 @@ struct Bearing {
         double brow_down_ = 0.0,
         double brow_up_ = 0.0,
         double thrust_ = 0.0,
-        double tension_ = 0.0
+        double tension_ = 0.0,
+        double brows_ = 0.0,
+        double closed_ = 0.0
     )
         : droop(droop_),
             lift(lift_),
@@ -174,7 +191,9 @@ struct Bearing {
             brow_down(brow_down_),
             brow_up(brow_up_),
             thrust(thrust_),
-            tension(tension_) {}
+            tension(tension_),
+            brows(brows_),
+            closed(closed_) {}
 };
 
 inline bool Mood::neutral() const {
@@ -304,10 +323,31 @@ inline double leaning(double x, double most) {
     return (1 + y) / (1 - y);
 }
 
+/// Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
+/// unpleasant and does not excite.
+inline double drive(const Ref<Mood>& mood) {
+    double well = std::max(0.0, mood->valence);
+    double ill = std::max(0.0, -mood->valence);
+    double calm = 1 - std::max(0.0, mood->arousal);
+    return mood::within(mood->arousal + 0.5 * well - 0.6 * ill * calm, -1.0, 1.0);
+}
+
+/// Return how afraid a mood is, 0..1.
+inline double fear(const Ref<Mood>& mood) {
+    double much = std::min(1.0, 1.25 * std::max(0.0, mood->arousal));
+    return much * mood::faded((-mood->valence - mood::FEAR_FROM) / mood::FEAR_WIDE);
+}
+
+/// Return how angry a mood is, 0..1.
+inline double anger(const Ref<Mood>& mood) {
+    double much = std::min(1.0, 1.25 * std::max(0.0, mood->arousal));
+    return much * mood::faded((-mood->valence - mood::ANGRY_FROM) / mood::ANGRY_WIDE) - mood::fear(mood);
+}
+
 /// Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
 inline double extent(const Ref<Mood>& mood) {
-    double drive = mood::within(mood->arousal + 0.25 * mood->valence, -1.0, 1.0);
-    double by_mood = drive > 0 ? 1 + 0.25 * drive : 1 + 0.4 * drive;
+    double size = mood::within(mood::drive(mood) - 1.5 * mood::fear(mood), -1.0, 1.0);
+    double by_mood = size > 0 ? 1 + 0.25 * size : 1 + 0.4 * size;
     double dial = mood->intensity - 1;
     double by_dial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
     return mood::within(by_mood * by_dial, mood::LEAST_EXTENT, mood::MOST_EXTENT);
@@ -315,7 +355,8 @@ inline double extent(const Ref<Mood>& mood) {
 
 /// Return how fast actions are played: a factor of their own speed.
 inline double tempo(const Ref<Mood>& mood) {
-    double by_mood = mood->arousal > 0 ? 1 + 0.25 * mood->arousal : 1 + 0.2 * mood->arousal;
+    double pace = mood::drive(mood);
+    double by_mood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
     return mood::within(by_mood, mood::LEAST_TEMPO, mood::MOST_TEMPO);
 }
 
@@ -354,7 +395,7 @@ inline double distance(const Ref<Mood>& mood, const std::string& name) {
 /// -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they
 /// are against it.
 inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, double vigour) {
-    double out = mood::leaning(vigour * mood::within(mood->arousal + (mood->intensity - 1), -1.0, 1.0), 4.0);
+    double out = mood::leaning(vigour * mood::within(mood::drive(mood) + (mood->intensity - 1), -1.0, 1.0), 4.0);
     if (lang::contains(tags, mood::PLEASANT)) {
         out *= mood::leaning(mood->valence, 4.0);
     }
@@ -373,9 +414,10 @@ inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, doubl
     return out;
 }
 
-/// Whether something a model wrote is performed in a mood: the less aroused, the less of it, down to 0.6.
+/// Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
 inline bool stirs(const Ref<Mood>& mood, std::uint32_t seed, const std::string& key) {
-    return mood->arousal >= 0 || choice::uniform(seed, List<std::string>{key, "mood"}) < 1 + 0.4 * mood->arousal;
+    double lively = mood::drive(mood);
+    return lively >= 0 || choice::uniform(seed, List<std::string>{key, "mood"}) < 1 + 0.4 * lively;
 }
 
 /// Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and blink more; who
@@ -393,7 +435,8 @@ inline Ref<LifeMood> life_of(const Ref<Mood>& mood) {
 }
 
 /// Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
-/// shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
+/// shoulders rise, fists close and the body goes ahead with arousal that is not joy; fear draws back (Coulson 2004);
+/// the amounts are ours.
 inline Ref<Bearing> bearing(const Ref<Mood>& mood) {
     double v = mood->valence;
     double a = mood->arousal;
@@ -402,17 +445,27 @@ inline Ref<Bearing> bearing(const Ref<Mood>& mood) {
     double down = std::max(0.0, -a);
     double well = std::max(0.0, v);
     double ill = std::max(0.0, -v);
+    double scared = mood::fear(mood);
+    double cross = mood::anger(mood);
     return lang::made<Bearing>(
         mood::within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
-        mood::within(i * (2.0 * up * (1 - well) - down), -1.0, 2.0),
-        mood::within(i * 0.3 * down, 0.0, 0.5),
-        mood::within(i * well, 0.0, 1.0),
-        mood::within(i * ill, 0.0, 1.0),
-        mood::within(i * 1.8 * up * std::max(0.0, 0.4 - v), 0.0, 1.0),
-        mood::within(i * ill * std::max(0.0, 0.6 - a), 0.0, 1.0),
-        mood::within(i * 2.2 * up * std::max(0.0, 0.3 - v), 0.0, 1.0),
-        mood::within(i * 1.2 * up * std::max(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
+        mood::within(i * (2.0 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2.0, 6.0),
+        mood::within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+        mood::within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0.0, 1.0),
+        mood::within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0.0, 1.0),
+        mood::within(i * (0.5 * up * std::max(0.0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0.0, 1.0),
+        mood::within(i * (2.0 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0.0, 1.0),
+        mood::within(i * (0.3 * up * std::max(0.0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1.0, 1.0),
+        mood::within(i * 1.2 * up * std::max(0.0, 1.0 - 2.0 * well) * (1 - 0.8 * scared), 0.0, 1.0),
+        mood::within(i * (0.6 * scared + 0.3 * up * well), 0.0, 1.0),
+        mood::within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0.0, 1.0)
     );
+}
+
+/// Return how far lids are shut: as far as a blink shuts them or, if they hang farther, as far as they do; below 0
+/// where they are open wide.
+inline double shut_in(double blink, double lids) {
+    return lids > 0 ? std::max(blink, lids) : blink + lids * (1 - blink);
 }
 
 }  // namespace mood

@@ -22,7 +22,7 @@ export const SWELL_GAP = 3.5; // seconds between two, on average
 export const SHORTEST_SWELL = 0.9;
 export const LONGEST_SWELL = 4;
 export const SWELL_RISES = 0.35; // of its length
-export const KEPT = 0.6; // of a mood's face between swells
+export const KEPT = 0.75; // of a mood's face between swells
 export const WARMTH = 0.35; // of a smile that a listener's swell is
 // Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 export const EARLY = 0.06; // seconds a raise begins before its syllable
@@ -211,7 +211,7 @@ export function shownFace(face, life, swells, emphases, bears, seconds) {
   face.frown = share * bears.frown;
   face.browDown = share * bears.browDown;
   face.browUp = share * bears.browUp;
-  face.brows = much * brows;
+  face.brows = share * bears.brows + much * brows;
 }
 
 /**

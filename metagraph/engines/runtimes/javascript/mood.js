@@ -4,12 +4,15 @@
  *
  * A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; beside it
  * an intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and every offset 0
- * there. All below rises or falls monotonically with what it depends on.
+ * there.
  *
  * What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et al. 2001, of
  * arms that knock and drink); elated joy and hot anger are expansive and full of movement, sadness and boredom neither
- * (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). By how much - the
- * numbers below - is ours, chosen so that every clip still looks as if it was made so.
+ * (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). Anger and fear lie close
+ * together here, at 99 and 116 degrees; people tell them apart by power (Fontaine et al. 2007). So of unpleasant excitement
+ * the milder is anger here, the stronger fear: it draws back (Coulson 2004), the shoulders up and the arms close. Faces
+ * follow the prototypes of FACS (Ekman and Friesen 1978): fear 1+2+4+5+20, anger 4+5+7+23, joy 6+12, sadness 1+4+15. By how
+ * much - the numbers below - is ours, chosen so that every clip still looks as if it was made so.
  *
  * Translated from metagraph/playback/planning/mood.py; change that, and translate anew.
  */
@@ -20,11 +23,15 @@ import { sorted } from "./basics.js";
 export const FADE = 1.5; // seconds in which posture and face go from one mood to the next
 export const LEAST_EXTENT = 0.6;
 export const MOST_EXTENT = 1.25;
-export const LEAST_TEMPO = 0.8;
+export const LEAST_TEMPO = 0.75;
 export const MOST_TEMPO = 1.25;
 export const CLOSE = 0.5; // an action that is tagged with a mood no farther away than this was made for it
 export const PLEASANT = "positive"; // tags
 export const UNPLEASANT = "negative";
+export const ANGRY_FROM = 0.02; // unpleasantness from which an excited mood is angry
+export const ANGRY_WIDE = 0.1; // and by how much more it is altogether
+export const FEAR_FROM = 0.15; // the same of fear
+export const FEAR_WIDE = 0.18;
 export const HELD = "contact"; // tag of actions that touch something: smaller or larger they would miss it
 // Named moods: valence, arousal. Directions are Russell's (1980, table of 28 words, by circular scaling): calm
 // 316.2, content 323, happy 7.8, excited 48.6, tense 92.8, angry 99, afraid 116, sad 207.5, bored 242 and
@@ -113,14 +120,27 @@ export class LifeMood {
 
 /**
  * Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
- * 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it, 0..1. tension:
- * of shoulders, arms and hands, 0..1.
+ * 0..1, or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of the face, 0..1. thrust: how far the
+ * body leans into it, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed: how close the arms
+ * are kept, 0..1.
  *
  * droop: number; lift: number; lids: number; smile: number; frown: number; browDown: number; browUp: number; thrust: number;
- * tension: number.
+ * tension: number; brows: number; closed: number.
  */
 export class Bearing {
-  constructor(droop = 0, lift = 0, lids = 0, smile = 0, frown = 0, browDown = 0, browUp = 0, thrust = 0, tension = 0) {
+  constructor(
+    droop = 0,
+    lift = 0,
+    lids = 0,
+    smile = 0,
+    frown = 0,
+    browDown = 0,
+    browUp = 0,
+    thrust = 0,
+    tension = 0,
+    brows = 0,
+    closed = 0,
+  ) {
     this.droop = droop;
     this.lift = lift;
     this.lids = lids;
@@ -130,6 +150,8 @@ export class Bearing {
     this.browUp = browUp;
     this.thrust = thrust;
     this.tension = tension;
+    this.brows = brows;
+    this.closed = closed;
   }
 }
 
@@ -288,13 +310,46 @@ export function leaning(x, most) {
 }
 
 /**
+ * Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
+ * unpleasant and does not excite.
+ * @param {Mood} mood
+ * @returns {number}
+ */
+export function drive(mood) {
+  const well = Math.max(0, mood.valence);
+  const ill = Math.max(0, -mood.valence);
+  const calm = 1 - Math.max(0, mood.arousal);
+  return within(mood.arousal + 0.5 * well - 0.6 * ill * calm, -1, 1);
+}
+
+/**
+ * Return how afraid a mood is, 0..1.
+ * @param {Mood} mood
+ * @returns {number}
+ */
+export function fear(mood) {
+  const much = Math.min(1, 1.25 * Math.max(0, mood.arousal));
+  return much * faded((-mood.valence - FEAR_FROM) / FEAR_WIDE);
+}
+
+/**
+ * Return how angry a mood is, 0..1.
+ * @param {Mood} mood
+ * @returns {number}
+ */
+export function anger(mood) {
+  const much = Math.min(1, 1.25 * Math.max(0, mood.arousal));
+  return much * faded((-mood.valence - ANGRY_FROM) / ANGRY_WIDE) - fear(mood);
+}
+
+/**
  * Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
  * @param {Mood} mood
  * @returns {number}
  */
 export function extent(mood) {
-  const drive = within(mood.arousal + 0.25 * mood.valence, -1, 1);
-  const byMood = drive > 0 ? 1 + 0.25 * drive : 1 + 0.4 * drive;
+  const size = within(drive(mood) - 1.5 * fear(mood), -1, 1);
+  const byMood = size > 0 ? 1 + 0.25 * size : 1 + 0.4 * size;
   const dial = mood.intensity - 1;
   const byDial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
   return within(byMood * byDial, LEAST_EXTENT, MOST_EXTENT);
@@ -306,7 +361,8 @@ export function extent(mood) {
  * @returns {number}
  */
 export function tempo(mood) {
-  const byMood = mood.arousal > 0 ? 1 + 0.25 * mood.arousal : 1 + 0.2 * mood.arousal;
+  const pace = drive(mood);
+  const byMood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
   return within(byMood, LEAST_TEMPO, MOST_TEMPO);
 }
 
@@ -364,7 +420,7 @@ export function distance(mood, name) {
  * @returns {number}
  */
 export function favour(mood, tags, vigour) {
-  let out = leaning(vigour * within(mood.arousal + (mood.intensity - 1), -1, 1), 4);
+  let out = leaning(vigour * within(drive(mood) + (mood.intensity - 1), -1, 1), 4);
   if (tags.includes(PLEASANT)) {
     out *= leaning(mood.valence, 4);
   }
@@ -381,14 +437,15 @@ export function favour(mood, tags, vigour) {
 }
 
 /**
- * Whether something a model wrote is performed in a mood: the less aroused, the less of it, down to 0.6.
+ * Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
  * @param {Mood} mood
  * @param {number} seed
  * @param {string} key
  * @returns {boolean}
  */
 export function stirs(mood, seed, key) {
-  return mood.arousal >= 0 || uniform(seed, key, "mood") < 1 + 0.4 * mood.arousal;
+  const lively = drive(mood);
+  return lively >= 0 || uniform(seed, key, "mood") < 1 + 0.4 * lively;
 }
 
 /**
@@ -411,7 +468,8 @@ export function lifeOf(mood) {
 
 /**
  * Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
- * shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
+ * shoulders rise, fists close and the body goes ahead with arousal that is not joy; fear draws back (Coulson 2004); the
+ * amounts are ours.
  * @param {Mood} mood
  * @returns {Bearing}
  */
@@ -423,15 +481,30 @@ export function bearing(mood) {
   const down = Math.max(0, -a);
   const well = Math.max(0, v);
   const ill = Math.max(0, -v);
+  const scared = fear(mood);
+  const cross = anger(mood);
   return new Bearing(
     within(i * (-0.7 * v - 0.5 * a), -0.4, 1),
-    within(i * (2 * up * (1 - well) - down), -1, 2),
-    within(i * 0.3 * down, 0, 0.5),
-    within(i * well, 0, 1),
-    within(i * ill, 0, 1),
-    within(i * 1.8 * up * Math.max(0, 0.4 - v), 0, 1),
-    within(i * ill * Math.max(0, 0.6 - a), 0, 1),
-    within(i * 2.2 * up * Math.max(0, 0.3 - v), 0, 1),
-    within(i * 1.2 * up * Math.max(0, 1 - 2 * well), 0, 1),
+    within(i * (2 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2, 6),
+    within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+    within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0, 1),
+    within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0, 1),
+    within(i * (0.5 * up * Math.max(0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0, 1),
+    within(i * (2 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0, 1),
+    within(i * (0.3 * up * Math.max(0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1, 1),
+    within(i * 1.2 * up * Math.max(0, 1 - 2 * well) * (1 - 0.8 * scared), 0, 1),
+    within(i * (0.6 * scared + 0.3 * up * well), 0, 1),
+    within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0, 1),
   );
+}
+
+/**
+ * Return how far lids are shut: as far as a blink shuts them or, if they hang farther, as far as they do; below 0 where they
+ * are open wide.
+ * @param {number} blink
+ * @param {number} lids
+ * @returns {number}
+ */
+export function shutIn(blink, lids) {
+  return lids > 0 ? Math.max(blink, lids) : blink + lids * (1 - blink);
 }

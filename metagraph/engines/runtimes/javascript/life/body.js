@@ -22,7 +22,7 @@ export function readBody(rig) {
     left: rig.left, up: rig.up, ahead: rig.ahead,
     chain: rig.chain, breath: Float64Array.from(rig.breath.flat()),
     bowed: Float64Array.from(rig.chain, (_, n) => rig.bowed?.[n] ?? 0), thrust: Float64Array.from(rig.chain, (_, n) => rig.thrust?.[n] ?? 0),
-    shoulders: rig.shoulders.map((s) => ({ ...s, tense: s.tense ?? [0, 0, 0] })), lookers: rig.lookers,
+    shoulders: rig.shoulders.map((s) => ({ ...s, tense: s.tense ?? [0, 0, 0], closed: s.closed ?? [0, 0, 0] })), lookers: rig.lookers,
     trunk: rig.trunk, trunkAhead: rig.trunk_ahead, headAhead: rig.head_ahead, eyes,
     partner: rig.partner, eyesAtRest: rig.eyes_at_rest, face, turned: turned.length, joints: Int32Array.from([...turned, ...face.joints]),
   };

@@ -9,7 +9,7 @@
 
 import { bisect } from "../basics.js";
 import { FaceShown, answer, settle, shownFace } from "../expressions.js";
-import { Bearing, bearing, shown } from "../mood.js";
+import { Bearing, bearing, shown, shutIn } from "../mood.js";
 import { fromVector, multiply } from "../rotation.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
 import { Gaze, ease } from "./gaze.js";
@@ -84,7 +84,7 @@ export class Enlivener {
       solver.turns.fill(0);
       solver.eyes.fill(0);
     }
-    this.lids(rotations, Math.max(blinkAt(plan.life.blinks, life, time), this.bears.lids));
+    this.lids(rotations, shutIn(blinkAt(plan.life.blinks, life, time), this.bears.lids));
     channels.fill(0, VISEME);
     this.said.fill(0);
     if (life.lips > 0 && mouthAt(graph, plan.track.speeches, time, this.said)) {
@@ -112,7 +112,7 @@ export class Enlivener {
   apply(rotations, translations) {
     const { body, results, solver } = this;
     const full = this.full + this.bears.lift;
-    const tight = this.bears.tension;
+    const { tension: tight, closed: close } = this.bears;
     const { chain, eyes } = solver;
     const count = body.joints.length;
     const chained = body.chain.length;
@@ -124,8 +124,9 @@ export class Enlivener {
     }
     let place = chained;
     for (let n = 0; n < body.shoulders.length; n++) {
-      const { turn, tense } = body.shoulders[n];
-      this.add(place++, full * turn[0] + tight * tense[0], full * turn[1] + tight * tense[1], full * turn[2] + tight * tense[2]);
+      const { turn, tense, closed } = body.shoulders[n];
+      const [x, y, z] = [0, 1, 2].map((k) => full * turn[k] + tight * tense[k] + close * closed[k]);
+      this.add(place++, x, y, z);
     }
     for (let n = 0; n < 2; n++) {
       const { isJoint, turnLeft: a, turnUp: b } = body.eyes[n];

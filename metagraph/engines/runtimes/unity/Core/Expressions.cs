@@ -43,7 +43,7 @@ namespace Metagraph
         public const double ShortestSwell = 0.9;
         public const double LongestSwell = 4.0;
         public const double SwellRises = 0.35; // of its length
-        public const double Kept = 0.6; // of a mood's face between swells
+        public const double Kept = 0.75; // of a mood's face between swells
         public const double Warmth = 0.35; // of a smile that a listener's swell is
         // Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
         public const double Early = 0.06; // seconds a raise begins before its syllable
@@ -218,7 +218,7 @@ namespace Metagraph
             face.Frown = share * bears.Frown;
             face.BrowDown = share * bears.BrowDown;
             face.BrowUp = share * bears.BrowUp;
-            face.Brows = much * brows;
+            face.Brows = share * bears.Brows + much * brows;
         }
 
         /// <summary>Add what a cue with these tags, from `start` to `end`, shows on a face at a time.</summary>

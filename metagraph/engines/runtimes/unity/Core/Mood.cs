@@ -100,8 +100,9 @@ namespace Metagraph
 
     /// <summary>
     /// Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
-    /// 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it, 0..1. tension:
-    /// of shoulders, arms and hands, 0..1.
+    /// 0..1, or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of the face, 0..1. thrust: how far the
+    /// body leans into it, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed: how close the arms
+    /// are kept, 0..1.
     /// </summary>
     public sealed class Bearing
     {
@@ -114,6 +115,8 @@ namespace Metagraph
         public readonly double BrowUp;
         public readonly double Thrust;
         public readonly double Tension;
+        public readonly double Brows;
+        public readonly double Closed;
 
         public Bearing(
             double droop = 0.0,
@@ -124,7 +127,9 @@ namespace Metagraph
             double browDown = 0.0,
             double browUp = 0.0,
             double thrust = 0.0,
-            double tension = 0.0
+            double tension = 0.0,
+            double brows = 0.0,
+            double closed = 0.0
         )
         {
             Droop = droop;
@@ -136,6 +141,8 @@ namespace Metagraph
             BrowUp = browUp;
             Thrust = thrust;
             Tension = tension;
+            Brows = brows;
+            Closed = closed;
         }
     }
 
@@ -144,11 +151,15 @@ namespace Metagraph
         public const double Fade = 1.5; // seconds in which posture and face go from one mood to the next
         public const double LeastExtent = 0.6;
         public const double MostExtent = 1.25;
-        public const double LeastTempo = 0.8;
+        public const double LeastTempo = 0.75;
         public const double MostTempo = 1.25;
         public const double Close = 0.5; // an action that is tagged with a mood no farther away than this was made for it
         public const string Pleasant = "positive"; // tags
         public const string Unpleasant = "negative";
+        public const double AngryFrom = 0.02; // unpleasantness from which an excited mood is angry
+        public const double AngryWide = 0.1; // and by how much more it is altogether
+        public const double FearFrom = 0.15; // the same of fear
+        public const double FearWide = 0.18;
         public const string Held = "contact"; // tag of actions that touch something: smaller or larger they would miss it
         // Named moods: valence, arousal. Directions are Russell's (1980, table of 28 words, by circular scaling): calm
         // 316.2, content 323, happy 7.8, excited 48.6, tense 92.8, angry 99, afraid 116, sad 207.5, bored 242 and
@@ -303,12 +314,38 @@ namespace Metagraph
         }
 
         /// <summary>
+        /// Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
+        /// unpleasant and does not excite.
+        /// </summary>
+        public static double Drive(Mood mood)
+        {
+            var well = Math.Max(0.0, mood.Valence);
+            var ill = Math.Max(0.0, -mood.Valence);
+            var calm = 1 - Math.Max(0.0, mood.Arousal);
+            return Within(mood.Arousal + 0.5 * well - 0.6 * ill * calm, -1.0, 1.0);
+        }
+
+        /// <summary>Return how afraid a mood is, 0..1.</summary>
+        public static double Fear(Mood mood)
+        {
+            var much = Math.Min(1.0, 1.25 * Math.Max(0.0, mood.Arousal));
+            return much * Faded((-mood.Valence - FearFrom) / FearWide);
+        }
+
+        /// <summary>Return how angry a mood is, 0..1.</summary>
+        public static double Anger(Mood mood)
+        {
+            var much = Math.Min(1.0, 1.25 * Math.Max(0.0, mood.Arousal));
+            return much * Faded((-mood.Valence - AngryFrom) / AngryWide) - Fear(mood);
+        }
+
+        /// <summary>
         /// Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
         /// </summary>
         public static double Extent(Mood mood)
         {
-            var drive = Within(mood.Arousal + 0.25 * mood.Valence, -1.0, 1.0);
-            var byMood = drive > 0 ? 1 + 0.25 * drive : 1 + 0.4 * drive;
+            var size = Within(Drive(mood) - 1.5 * Fear(mood), -1.0, 1.0);
+            var byMood = size > 0 ? 1 + 0.25 * size : 1 + 0.4 * size;
             var dial = mood.Intensity - 1;
             var byDial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
             return Within(byMood * byDial, LeastExtent, MostExtent);
@@ -317,7 +354,8 @@ namespace Metagraph
         /// <summary>Return how fast actions are played: a factor of their own speed.</summary>
         public static double Tempo(Mood mood)
         {
-            var byMood = mood.Arousal > 0 ? 1 + 0.25 * mood.Arousal : 1 + 0.2 * mood.Arousal;
+            var pace = Drive(mood);
+            var byMood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
             return Within(byMood, LeastTempo, MostTempo);
         }
 
@@ -362,7 +400,7 @@ namespace Metagraph
         /// </summary>
         public static double Favour(Mood mood, List<string> tags, double vigour)
         {
-            var out_ = Leaning(vigour * Within(mood.Arousal + (mood.Intensity - 1), -1.0, 1.0), 4.0);
+            var out_ = Leaning(vigour * Within(Drive(mood) + (mood.Intensity - 1), -1.0, 1.0), 4.0);
             if (tags.Contains(Pleasant))
             {
                 out_ *= Leaning(mood.Valence, 4.0);
@@ -383,11 +421,12 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Whether something a model wrote is performed in a mood: the less aroused, the less of it, down to 0.6.
+        /// Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
         /// </summary>
         public static bool Stirs(Mood mood, uint seed, string key)
         {
-            return mood.Arousal >= 0 || ChoiceRules.Uniform(seed, key, "mood") < 1 + 0.4 * mood.Arousal;
+            var lively = Drive(mood);
+            return lively >= 0 || ChoiceRules.Uniform(seed, key, "mood") < 1 + 0.4 * lively;
         }
 
         /// <summary>
@@ -409,7 +448,8 @@ namespace Metagraph
 
         /// <summary>
         /// Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
-        /// shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
+        /// shoulders rise, fists close and the body goes ahead with arousal that is not joy; fear draws back (Coulson 2004); the
+        /// amounts are ours.
         /// </summary>
         public static Bearing Bearing(Mood mood)
         {
@@ -420,17 +460,30 @@ namespace Metagraph
             var down = Math.Max(0.0, -a);
             var well = Math.Max(0.0, v);
             var ill = Math.Max(0.0, -v);
+            var scared = Fear(mood);
+            var cross = Anger(mood);
             return new Bearing(
                 Within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
-                Within(i * (2.0 * up * (1 - well) - down), -1.0, 2.0),
-                Within(i * 0.3 * down, 0.0, 0.5),
-                Within(i * well, 0.0, 1.0),
-                Within(i * ill, 0.0, 1.0),
-                Within(i * 1.8 * up * Math.Max(0.0, 0.4 - v), 0.0, 1.0),
-                Within(i * ill * Math.Max(0.0, 0.6 - a), 0.0, 1.0),
-                Within(i * 2.2 * up * Math.Max(0.0, 0.3 - v), 0.0, 1.0),
-                Within(i * 1.2 * up * Math.Max(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
+                Within(i * (2.0 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2.0, 6.0),
+                Within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+                Within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0.0, 1.0),
+                Within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0.0, 1.0),
+                Within(i * (0.5 * up * Math.Max(0.0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0.0, 1.0),
+                Within(i * (2.0 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0.0, 1.0),
+                Within(i * (0.3 * up * Math.Max(0.0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1.0, 1.0),
+                Within(i * 1.2 * up * Math.Max(0.0, 1.0 - 2.0 * well) * (1 - 0.8 * scared), 0.0, 1.0),
+                Within(i * (0.6 * scared + 0.3 * up * well), 0.0, 1.0),
+                Within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0.0, 1.0)
             );
+        }
+
+        /// <summary>
+        /// Return how far lids are shut: as far as a blink shuts them or, if they hang farther, as far as they do; below 0 where
+        /// they are open wide.
+        /// </summary>
+        public static double ShutIn(double blink, double lids)
+        {
+            return lids > 0 ? Math.Max(blink, lids) : blink + lids * (1 - blink);
         }
     }
 }

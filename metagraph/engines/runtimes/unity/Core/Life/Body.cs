@@ -78,13 +78,14 @@ namespace Metagraph
     /// <summary>
     /// What of the character breathes and looks. Directions Left, Up, Ahead are the character's; metres. Chain: joints from the root
     /// to the head. Breath: for each the axis it turns about in its own space, Angles: radians at the top of a breath, Bowed: of a bowed
-    /// posture, Thrust: of one that leans into it. ShoulderTenses: how the same joints as of ShoulderTurns turn at full tension.
+    /// posture, Thrust: of one that leans into it. ShoulderTenses: how the same joints as of ShoulderTurns turn at full tension,
+    /// ShoulderCloses: where the arms are kept close.
     /// </summary>
     public sealed class Body
     {
         public Vec Left, Up, Ahead, TrunkAhead, HeadAhead, Partner, EyesAtRest;
         public int[] Chain, Shoulders;
-        public Vec[] Breath, ShoulderTurns, ShoulderTenses;
+        public Vec[] Breath, ShoulderTurns, ShoulderTenses, ShoulderCloses;
         public double[] Angles, Bowed, Thrust;
         public Looker[] Lookers;
         public int Trunk;

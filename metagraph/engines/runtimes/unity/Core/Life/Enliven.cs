@@ -98,7 +98,8 @@ namespace Metagraph
             }
             for (int n = 0; n < shoulders.Length; n++)
             {
-                Vec turn = body.ShoulderTurns[n] * (full + bears.Lift) + body.ShoulderTenses[n] * bears.Tension;
+                Vec turn = body.ShoulderTurns[n] * (full + bears.Lift) + body.ShoulderTenses[n] * bears.Tension
+                    + body.ShoulderCloses[n] * bears.Closed;
                 (shoulders[n] * Quat.Turn(turn)).Write(rotations, body.Shoulders[n]);
             }
             for (int n = 0; n < 2; n++)
@@ -220,7 +221,7 @@ namespace Metagraph
                 Array.Copy(solve.EyesLeft, eyeLeft, 2);
                 Array.Copy(solve.EyesUp, eyeUp, 2);
             }
-            blink = Math.Max(BlinkAt(plan.Life.Blinks, life, time), bears.Lids);
+            blink = MoodRules.ShutIn(BlinkAt(plan.Life.Blinks, life, time), bears.Lids);
             FindLids(life, rotations);
             if (life.Lips > 0)
             {

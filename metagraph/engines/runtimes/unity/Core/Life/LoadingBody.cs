@@ -16,7 +16,8 @@ namespace Metagraph
                 Angles = breath.ConvertAll(row => row.Numbers(4)[3]).ToArray(),
                 Shoulders = shoulders.ConvertAll(one => Index(one["joint"], 0)).ToArray(),
                 ShoulderTurns = shoulders.ConvertAll(one => Vector(one["turn"])).ToArray(),
-                ShoulderTenses = shoulders.ConvertAll(Tense).ToArray(),
+                ShoulderTenses = shoulders.ConvertAll(one => Turned(one, "tense")).ToArray(),
+                ShoulderCloses = shoulders.ConvertAll(one => Turned(one, "closed")).ToArray(),
                 Lookers = lookers.ConvertAll(one => new Looker { Place = one["place"].Count, Share = one["share"].Number }).ToArray(),
                 Trunk = json["trunk"].Count, TrunkAhead = Vector(json["trunk_ahead"]), HeadAhead = Vector(json["head_ahead"]),
                 Partner = Vector(json["partner"]), EyesAtRest = Vector(json["eyes_at_rest"]),
@@ -34,10 +35,10 @@ namespace Metagraph
             return body;
         }
 
-        private static Vec Tense(Node json)
+        private static Vec Turned(Node json, string name)
         {
-            Node tense;
-            return json.Maybe("tense", out tense) ? Vector(tense) : new Vec(0, 0, 0);
+            Node turn;
+            return json.Maybe(name, out turn) ? Vector(turn) : new Vec(0, 0, 0);
         }
 
         private EyeAt ReadEye(Node json)

@@ -31,7 +31,7 @@ const RIG = {
 	trunk_ahead = "3", head_ahead = "3", eyes = "list", partner = "3", eyes_at_rest = "3", face = "record", bowed = "list?", thrust = "list?"
 }
 const EYE = {at = "3", left = "3", up = "3", ahead = "3", joint = "number", turn_left = "3", turn_up = "3", down = "4"}
-const SHOULDER = {joint = "number", turn = "3", tense = "3?"}
+const SHOULDER = {joint = "number", turn = "3", tense = "3?", closed = "3?"}
 const LOOKER = {place = "number", share = "number"}
 const FACE = {joints = "list", turns = "list", shifts = "list", follows = "4", lid_joints = "4", shut_by = "list", morphs = "record"}
 const CONTACT_RIG = {contacts = "switch", guard = "switch", joints = "list", parents = "list", arms = "list", capsules = "list"}

@@ -32,6 +32,7 @@ static func enliven(graph, plan, time, pose, cues = []):
 	for n in range(rig.shoulders.size()):
 		var joint = rig.shoulders[n].joint
 		var turn = rig.shoulders[n].turn * (found.full + found.bears.lift) + rig.shoulders[n].tense * found.bears.tension
+		turn += rig.shoulders[n].closed * found.bears.closed
 		rotations[joint] = pose.rotations[joint] * Turns.of(turn, rig.one)
 	for n in range(2):
 		var eye = rig.eyes[n]
@@ -81,7 +82,7 @@ static func _found(graph, plan, time, pose):
 	for n in range(2):
 		if rig.eyes[n].joint >= 0:
 			down[n] += Solve.part_along(pose.rotations[rig.eyes[n].joint], rig.eyes[n].down)
-	var blink = Util.most(blink_at(schedule.blinks, life, time), bears.lids)
+	var blink = Mood.shut_in(blink_at(schedule.blinks, life, time), bears.lids)
 	var lids = rig.face.lid_joints
 	var follows = rig.face.follows
 	if lids.max() < 0:

@@ -19,7 +19,7 @@ const SWELL_GAP = 3.5  # seconds between two, on average
 const SHORTEST_SWELL = 0.9
 const LONGEST_SWELL = 4.0
 const SWELL_RISES = 0.35  # of its length
-const KEPT = 0.6  # of a mood's face between swells
+const KEPT = 0.75  # of a mood's face between swells
 const WARMTH = 0.35  # of a smile that a listener's swell is
 # Emphases: brows raised in speech, and where somebody reacts to something; rows: length s, amount, rise s.
 const EARLY = 0.06  # seconds a raise begins before its syllable
@@ -179,7 +179,7 @@ static func shown_face(face, life, swells, emphases, bears, seconds):
 	face.frown = share * bears.frown
 	face.brow_down = share * bears.brow_down
 	face.brow_up = share * bears.brow_up
-	face.brows = much * brows
+	face.brows = share * bears.brows + much * brows
 
 
 # Add what a cue with these tags, from `start` to `end`, shows on a face at a time.

@@ -3,12 +3,14 @@
 #
 # A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; beside it an
 # intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and every offset 0 there.
-# All below rises or falls monotonically with what it depends on.
 #
 # What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et al. 2001, of arms
 # that knock and drink); elated joy and hot anger are expansive and full of movement, sadness and boredom neither (Wallbott 1998);
-# the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). By how much - the numbers below - is ours,
-# chosen so that every clip still looks as if it was made so.
+# the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). Anger and fear lie close together here, at 99
+# and 116 degrees; people tell them apart by power (Fontaine et al. 2007). So of unpleasant excitement the milder is anger here,
+# the stronger fear: it draws back (Coulson 2004), the shoulders up and the arms close. Faces follow the prototypes of FACS (Ekman
+# and Friesen 1978): fear 1+2+4+5+20, anger 4+5+7+23, joy 6+12, sadness 1+4+15. By how much - the numbers below - is ours, chosen
+# so that every clip still looks as if it was made so.
 #
 # Translated from metagraph/playback/planning/mood.py; change that, and translate anew.
 
@@ -17,11 +19,15 @@ const Util = preload("util.gd")
 const FADE = 1.5  # seconds in which posture and face go from one mood to the next
 const LEAST_EXTENT = 0.6
 const MOST_EXTENT = 1.25
-const LEAST_TEMPO = 0.8
+const LEAST_TEMPO = 0.75
 const MOST_TEMPO = 1.25
 const CLOSE = 0.5  # an action that is tagged with a mood no farther away than this was made for it
 const PLEASANT = "positive"  # tags
 const UNPLEASANT = "negative"
+const ANGRY_FROM = 0.02  # unpleasantness from which an excited mood is angry
+const ANGRY_WIDE = 0.1  # and by how much more it is altogether
+const FEAR_FROM = 0.15  # the same of fear
+const FEAR_WIDE = 0.18
 const HELD = "contact"  # tag of actions that touch something: smaller or larger they would miss it
 # Named moods: valence, arousal. Directions are Russell's (1980, table of 28 words, by circular scaling): calm
 # 316.2, content 323, happy 7.8, excited 48.6, tense 92.8, angry 99, afraid 116, sad 207.5, bored 242 and
@@ -105,9 +111,9 @@ class LifeMood:
 		self.blinks = blinks_
 
 
-# Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang, 0..1.
-# smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it, 0..1. tension: of
-# shoulders, arms and hands, 0..1.
+# Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang, 0..1,
+# or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of the face, 0..1. thrust: how far the body leans
+# into it, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed: how close the arms are kept, 0..1.
 class Bearing:
 	var droop
 	var lift
@@ -118,6 +124,8 @@ class Bearing:
 	var brow_up
 	var thrust
 	var tension
+	var brows
+	var closed
 
 	func _init(
 		droop_ = 0.0,
@@ -128,7 +136,9 @@ class Bearing:
 		brow_down_ = 0.0,
 		brow_up_ = 0.0,
 		thrust_ = 0.0,
-		tension_ = 0.0
+		tension_ = 0.0,
+		brows_ = 0.0,
+		closed_ = 0.0
 	):
 		self.droop = droop_
 		self.lift = lift_
@@ -139,6 +149,8 @@ class Bearing:
 		self.brow_up = brow_up_
 		self.thrust = thrust_
 		self.tension = tension_
+		self.brows = brows_
+		self.closed = closed_
 
 
 # Return a mood with what is told of it changed, each within its range.
@@ -238,10 +250,31 @@ static func leaning(x, most):
 	return (1 + y) / (1 - y)
 
 
+# Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is unpleasant
+# and does not excite.
+static func drive(mood):
+	var well = Util.most(0.0, mood.valence)
+	var ill = Util.most(0.0, -mood.valence)
+	var calm = 1 - Util.most(0.0, mood.arousal)
+	return within(mood.arousal + 0.5 * well - 0.6 * ill * calm, -1.0, 1.0)
+
+
+# Return how afraid a mood is, 0..1.
+static func fear(mood):
+	var much = Util.least(1.0, 1.25 * Util.most(0.0, mood.arousal))
+	return much * faded((-mood.valence - FEAR_FROM) / FEAR_WIDE)
+
+
+# Return how angry a mood is, 0..1.
+static func anger(mood):
+	var much = Util.least(1.0, 1.25 * Util.most(0.0, mood.arousal))
+	return much * faded((-mood.valence - ANGRY_FROM) / ANGRY_WIDE) - fear(mood)
+
+
 # Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
 static func extent(mood):
-	var drive = within(mood.arousal + 0.25 * mood.valence, -1.0, 1.0)
-	var by_mood = 1 + 0.25 * drive if drive > 0 else 1 + 0.4 * drive
+	var size = within(drive(mood) - 1.5 * fear(mood), -1.0, 1.0)
+	var by_mood = 1 + 0.25 * size if size > 0 else 1 + 0.4 * size
 	var dial = mood.intensity - 1
 	var by_dial = 1 + 0.25 * dial if dial > 0 else 1 + 0.4 * dial
 	return within(by_mood * by_dial, LEAST_EXTENT, MOST_EXTENT)
@@ -249,7 +282,8 @@ static func extent(mood):
 
 # Return how fast actions are played: a factor of their own speed.
 static func tempo(mood):
-	var by_mood = 1 + 0.25 * mood.arousal if mood.arousal > 0 else 1 + 0.2 * mood.arousal
+	var pace = drive(mood)
+	var by_mood = 1 + 0.25 * pace if pace > 0 else 1 + 0.3 * pace
 	return within(by_mood, LEAST_TEMPO, MOST_TEMPO)
 
 
@@ -287,7 +321,7 @@ static func distance(mood, name):
 # Return how much likelier than usual an action is. vigour: how energetic it is beside others of its layer and kind, -1..1. Up to
 # 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they are against it.
 static func favour(mood, tags, vigour):
-	var out = leaning(vigour * within(mood.arousal + (mood.intensity - 1), -1.0, 1.0), 4.0)
+	var out = leaning(vigour * within(drive(mood) + (mood.intensity - 1), -1.0, 1.0), 4.0)
 	if tags.has(PLEASANT):
 		out *= leaning(mood.valence, 4.0)
 	if tags.has(UNPLEASANT):
@@ -299,9 +333,10 @@ static func favour(mood, tags, vigour):
 	return out
 
 
-# Whether something a model wrote is performed in a mood: the less aroused, the less of it, down to 0.6.
+# Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
 static func stirs(mood, seed_, key):
-	return mood.arousal >= 0 or Choice.uniform(seed_, [key, "mood"]) < 1 + 0.4 * mood.arousal
+	var lively = drive(mood)
+	return lively >= 0 or Choice.uniform(seed_, [key, "mood"]) < 1 + 0.4 * lively
 
 
 # Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and blink more; who feels bad
@@ -319,7 +354,7 @@ static func life_of(mood):
 
 
 # Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009); shoulders
-# rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
+# rise, fists close and the body goes ahead with arousal that is not joy; fear draws back (Coulson 2004); the amounts are ours.
 static func bearing(mood):
 	var v = mood.valence
 	var a = mood.arousal
@@ -328,14 +363,24 @@ static func bearing(mood):
 	var down = Util.most(0.0, -a)
 	var well = Util.most(0.0, v)
 	var ill = Util.most(0.0, -v)
+	var scared = fear(mood)
+	var cross = anger(mood)
 	return Bearing.new(
 		within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
-		within(i * (2.0 * up * (1 - well) - down), -1.0, 2.0),
-		within(i * 0.3 * down, 0.0, 0.5),
-		within(i * well, 0.0, 1.0),
-		within(i * ill, 0.0, 1.0),
-		within(i * 1.8 * up * Util.most(0.0, 0.4 - v), 0.0, 1.0),
-		within(i * ill * Util.most(0.0, 0.6 - a), 0.0, 1.0),
-		within(i * 2.2 * up * Util.most(0.0, 0.3 - v), 0.0, 1.0),
-		within(i * 1.2 * up * Util.most(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
+		within(i * (2.0 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2.0, 6.0),
+		within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+		within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0.0, 1.0),
+		within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0.0, 1.0),
+		within(i * (0.5 * up * Util.most(0.0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0.0, 1.0),
+		within(i * (2.0 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0.0, 1.0),
+		within(i * (0.3 * up * Util.most(0.0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1.0, 1.0),
+		within(i * 1.2 * up * Util.most(0.0, 1.0 - 2.0 * well) * (1 - 0.8 * scared), 0.0, 1.0),
+		within(i * (0.6 * scared + 0.3 * up * well), 0.0, 1.0),
+		within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0.0, 1.0)
 	)
+
+
+# Return how far lids are shut: as far as a blink shuts them or, if they hang farther, as far as they do; below 0 where they are
+# open wide.
+static func shut_in(blink, lids):
+	return Util.most(blink, lids) if lids > 0 else blink + lids * (1 - blink)

@@ -20,7 +20,8 @@ static func rig_of(data, shim):
 		out.thrust.append(Util.vector(data.breath[n]) * thrust)
 	for each in data.shoulders:
 		var tense = Util.vector(each.tense) if each.tense != null else Vector3()
-		out.shoulders.append({joint = int(each.joint), turn = Util.vector(each.turn), tense = tense})
+		var closed = Util.vector(each.closed) if each.get("closed") != null else Vector3()
+		out.shoulders.append({joint = int(each.joint), turn = Util.vector(each.turn), tense = tense, closed = closed})
 	for each in data.lookers:
 		out.lookers.append({place = int(each.place), share = each.share})
 	for eye in data.eyes:
