@@ -19,6 +19,7 @@ from app.project.learned import Learned
 from app.project.watching import EVERY, Watcher
 from app.shell.workspace_keeper import Tab
 from app.shell.workspaces import ALL, FIRST
+from app.widgets.painting import PaintingHold
 from metagraph.graph.model import Project
 from tests.app.window_state import differences, state_of
 
@@ -116,7 +117,7 @@ def empty(window: Any) -> None:
     """Close what lies over a window, end what goes on in it, and let go of its project. It is not painted
     until it is reset.
     """
-    window.setUpdatesEnabled(False)
+    hold_of(window).begin()
     shell = window.shell
     while QApplication.activePopupWidget() is not None:
         QApplication.activePopupWidget().close()
@@ -132,6 +133,14 @@ def empty(window: Any) -> None:
     shell.document.load(Project(), None)
     settle(window)
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+
+
+def hold_of(window: Any) -> PaintingHold:
+    """Return what keeps a window from painting between two tests, the same each time."""
+    found: PaintingHold | None = getattr(window, "_hold_between_tests", None)
+    if found is None:
+        found = window._hold_between_tests = PaintingHold(window)
+    return found
 
 
 def settle(window: Any) -> None:
@@ -194,7 +203,8 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     """Take a window back to how it begins, on a new project. stood: how its docks stood then; where they still
     do, they are not put there once more, which takes as long as all the rest.
     """
-    window.setUpdatesEnabled(False)
+    hold = hold_of(window)
+    hold.begin()
     shell = window.shell
     services, session = shell.services, shell.stage.session
     services[Files].closed = ""
@@ -230,8 +240,8 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     QSettings().clear()
     window.setFocus()
     window.refresh()
-    window.setUpdatesEnabled(True)
-    window.repaint()  # Qt drops what became of a window that was shown meanwhile
+    hold.end()
+    QCoreApplication.sendPostedEvents(window, QEvent.Type.UpdateRequest)
 
 
 def reset_panels(window: Any) -> None:
