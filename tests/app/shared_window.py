@@ -21,7 +21,7 @@ from app.shell.workspace_keeper import Tab
 from app.shell.workspaces import ALL, FIRST
 from app.widgets.painting import PaintingHold
 from metagraph.graph.model import Project
-from tests.app.window_state import differences, state_of
+from tests.app.window_state import differences, is_ours, state_of
 
 SETTLED = 60.0  # seconds; a slow machine takes its time over jobs
 
@@ -130,7 +130,8 @@ def empty(window: Any) -> None:
     for job in list(shell.jobs.running):
         job.cancel()
     shell.stage.performance.live.end()
-    shell.document.load(Project(), None)
+    begin_again(window)
+    window._emptied_to = shell.document.project
     settle(window)
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
 
@@ -206,26 +207,19 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     hold = hold_of(window)
     hold.begin()
     shell = window.shell
-    services, session = shell.services, shell.stage.session
+    document, services = shell.document, shell.services
     services[Files].closed = ""
     services[Learned].paused = False
     services[Watcher]._timer.setInterval(EVERY)
     services[Watcher].set_on(True)
     shell.actions.allowed = None
-    session.set_mode("meta")
-    session.onstage.set_performance(None)
-    session.onstage.set_conversation(None)
-    session.onstage.set_side(0)
-    session.place.set_layer("arms")
-    session.place.forget()
-    session.selection.clear()
-    session.selection.copied = None
-    session.look.choose("dark")
-    session.watch.forget()
     shell.stage.sound.set_muted(False)
     shell.stage.sound._silent = False
-    session.transport.set_playing(True)
-    shell.document.load(Project(), None)
+    if document.project is getattr(window, "_emptied_to", None) and not document.undo_stack.count():
+        document.autosave.begin(document.project)  # in the folders of this test
+        document.loaded.emit()
+    else:
+        begin_again(window)
     shell.files.opened.emit()
     for panel in window.places.panels.values():
         if panel.place == "beside":
@@ -242,6 +236,24 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     window.refresh()
     hold.end()
     QCoreApplication.sendPostedEvents(window, QEvent.Type.UpdateRequest)
+
+
+def begin_again(window: Any) -> None:
+    """Take back what a window's parts share, and begin a new project."""
+    shell = window.shell
+    session = shell.stage.session
+    session.set_mode("meta")
+    session.onstage.set_performance(None)
+    session.onstage.set_conversation(None)
+    session.onstage.set_side(0)
+    session.place.set_layer("arms")
+    session.place.forget()
+    session.selection.clear()
+    session.selection.copied = None
+    session.look.choose("dark")
+    session.watch.forget()
+    session.transport.set_playing(True)
+    shell.document.load(Project(), None)
 
 
 def reset_panels(window: Any) -> None:
@@ -270,7 +282,8 @@ def reset_panels(window: Any) -> None:
     preview.speed_box.activated.emit(normal)
     lanes.each, lanes.first, lanes.follow = 44.0, 0.0, True
     for widget in window.findChildren(QWidget):
-        if widget.hasMouseTracking() and type(widget).__module__.startswith("app."):
-            QCoreApplication.sendEvent(widget, QEvent(QEvent.Type.Leave))
+        if is_ours(type(widget)):
+            if widget.hasMouseTracking():
+                QCoreApplication.sendEvent(widget, QEvent(QEvent.Type.Leave))
         elif isinstance(widget, QScrollBar):
             widget.setValue(widget.minimum())
