@@ -26,7 +26,7 @@ from metagraph.speech import pitch, sound
 from sample_clips.make.numbered_ids import numbered_ids as counting_ids
 from tests import kernels
 from tests.browsing import browse
-from tests.once import heard_once, read_once
+from tests.once import fitted_once, heard_once, read_once
 from tests.run_notes import KEY, NOTES
 from tests.thorough import THOROUGH
 
@@ -412,6 +412,7 @@ def sample_clips_read_once() -> None:
     """A process decodes each sample clip once, wherever a copy of it lies: opening the sample project a
     hundred times cost more than most of what is tested on it. Files that differ in a byte are read.
     """
+    from metagraph.formats import store
     from metagraph.formats.gltf import reader as gltf
 
     read = gltf.read_gltf_clips
@@ -428,6 +429,7 @@ def sample_clips_read_once() -> None:
         return [copy.copy(clip) for clip in known[key]]  # each reader has clips of its own to lose
 
     gltf.read_gltf_clips = read_once
+    store._Loading._fitted = fitted_once(store._Loading._fitted)  # type: ignore[method-assign]
 
 
 @pytest.fixture(scope="session")
