@@ -9,6 +9,7 @@ import math
 import os
 import sys
 from collections.abc import Collection, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from metagraph.speech import pitch, sound
 from sample_clips.make.numbered_ids import numbered_ids as counting_ids
 from tests import kernels
 from tests.browsing import browse
-from tests.once import heard_once, read_once
+from tests.once import fitted_once, heard_once, read_once
 from tests.run_notes import KEY, NOTES
 from tests.thorough import THOROUGH
 
@@ -173,12 +174,31 @@ def pytest_report_header() -> str:
     return "" if THOROUGH else "nightly tests run with METAGRAPH_THOROUGH=1, or when their file is named"
 
 
+@cache
+def named_files(words: tuple[str, ...]) -> frozenset[Path]:
+    """Return the files that were named when pytest was started."""
+    return frozenset(Path(word.partition("::")[0]).resolve() for word in words if word.partition("::")[0])
+
+
+def is_for_the_night(node: pytest.Item | pytest.Collector, obj: object = None) -> bool:
+    """Return whether something is marked `nightly` and left out now: its file was not named."""
+    if THOROUGH or node.path in named_files(tuple(node.config.args)):
+        return False
+    marks = getattr(obj, "pytestmark", ())
+    return any(m.name == "nightly" for m in marks) or node.get_closest_marker("nightly") is not None
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pycollect_makeitem(collector: pytest.Collector, obj: object) -> list[pytest.Item] | None:
+    """Make no tests that are left out: there are as many cases of them as of all others."""
+    return [] if callable(obj) and is_for_the_night(collector, obj) else None
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave nightly tests out, but those whose file is named. Put the files that take longest first; the
-    others keep their order.
+    """Leave out single cases that are marked nightly. Put the files that take longest first; the others keep
+    their order.
     """
-    named = {Path(word.partition("::")[0]).resolve() for word in config.args if word.partition("::")[0]}
-    left = [] if THOROUGH else [x for x in items if x.get_closest_marker("nightly") and x.path not in named]
+    left = [item for item in items if is_for_the_night(item)]
     if left:
         config.hook.pytest_deselected(items=left)
         later = set(left)
@@ -392,6 +412,7 @@ def sample_clips_read_once() -> None:
     """A process decodes each sample clip once, wherever a copy of it lies: opening the sample project a
     hundred times cost more than most of what is tested on it. Files that differ in a byte are read.
     """
+    from metagraph.formats import store
     from metagraph.formats.gltf import reader as gltf
 
     read = gltf.read_gltf_clips
@@ -408,6 +429,7 @@ def sample_clips_read_once() -> None:
         return [copy.copy(clip) for clip in known[key]]  # each reader has clips of its own to lose
 
     gltf.read_gltf_clips = read_once
+    store._Loading._fitted = fitted_once(store._Loading._fitted)  # type: ignore[method-assign]
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.util import find_spec
 
 from app.translation import tr
@@ -28,6 +29,11 @@ class Load:
 
 def describe_readable_formats() -> str:
     """Return the formats of clips that can be read here, in words."""
-    if find_spec("ufbx") is None:
+    if not _is_fbx_readable():
         return tr("BVH, GLB, glTF, VRM animation\n(FBX needs the extra 'fbx')")
     return tr("BVH, FBX, GLB, glTF, VRM animation")
+
+
+@cache  # each look takes as long as a panel's update
+def _is_fbx_readable() -> bool:
+    return find_spec("ufbx") is not None

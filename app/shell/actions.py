@@ -76,6 +76,14 @@ class Command:
         return self.words.replace("&", "").rstrip("…")
 
 
+class _Shown:
+    """A command's action, and what it was last set to; nothing else sets these."""
+
+    def __init__(self, command: Command, action: QAction) -> None:
+        self.command, self.action, self.text = command, action, command.text
+        self.enabled, self.words = action.isEnabled(), action.text()
+
+
 def _run(command: Command) -> None:
     faults.note(command.id)
     command.run()
@@ -91,7 +99,6 @@ class Actions:
 
     def __init__(self, parent: QWidget, commands: Iterable[Command], mode: Callable[[], str]) -> None:
         self.commands = _in_order(tuple(commands))
-        self._by_menu = [tuple(group) for _, group in groupby(self.commands, lambda command: command.menu)]
         self.allowed: Callable[[Command], bool] | None = None
         self._mode = mode
         self._soon = Soon(self.refresh, parent)
@@ -118,6 +125,8 @@ class Actions:
             action.triggered.connect(lambda _=False, c=command: _run(c))
             parent.addAction(action)
             self._made[command.id] = action
+        self._shown = [_Shown(command, self._made[command.id]) for command in self.commands]
+        self._by_menu = [tuple(group) for _, group in groupby(self._shown, lambda shown: shown.command.menu)]
 
     @property
     def by_id(self) -> dict[str, QAction]:
@@ -163,20 +172,24 @@ class Actions:
     def refresh(self) -> None:
         """Update every command now."""
         self._soon.done()
-        mode = self._mode()
-        for command in self.commands:
-            action = self._made[command.id]
-            allowed = (self.allowed is None or self.allowed(command)) and command.when in ("any", mode)
-            action.setEnabled(allowed and (command.enabled is None or command.enabled()))
+        mode, allowed = self._mode(), self.allowed
+        for shown in self._shown:
+            command, action = shown.command, shown.action
+            usable = command.when in ("any", mode) and (allowed is None or allowed(command))
+            enabled = usable and (command.enabled is None or command.enabled())
+            if enabled != shown.enabled:
+                shown.enabled = enabled
+                action.setEnabled(enabled)
             if command.checked is not None:
-                action.setChecked(command.checked())
+                action.setChecked(command.checked())  # a click changes it, too
             if command.visible is not None:
                 action.setVisible(command.visible())
-        for commands in self._by_menu:
-            for command, text in zip(
-                commands, with_distinct_keys(tuple(c.words for c in commands)), strict=True
-            ):
-                self._made[command.id].setText(text)
+        for menu in self._by_menu:
+            texts = tuple([s.text if isinstance(s.text, str) else s.text() for s in menu])
+            for shown, text in zip(menu, with_distinct_keys(texts), strict=True):
+                if text != shown.words:
+                    shown.words = text
+                    shown.action.setText(text)
 
 
 def _in_order(commands: tuple[Command, ...]) -> tuple[Command, ...]:

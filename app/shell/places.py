@@ -26,6 +26,7 @@ from app.shell.context import Panel
 from app.shell.proportions import Proportions
 from app.shell.workspaces import ALL, Workspace
 from app.stage.session import StageSession
+from app.widgets.painting import PaintingHold
 from app.widgets.soon import Soon
 
 ARRANGED = (
@@ -80,6 +81,7 @@ class PanelPlaces:
         self.fetch = fetch_now
         self._in_sight: dict[str, bool] = {}  # docks
         self._soon = Soon(self._fill, window)
+        self._hold = PaintingHold(window)
         self._made: dict[str, QWidget] = {}
         self._beside: set[str] = set()  # what should be visible beside the centre
         self._before: QByteArray | None = None  # the arrangement before one panel had the whole window
@@ -389,7 +391,7 @@ class PanelPlaces:
     def _quietly(self) -> Iterator[None]:
         """Draw nothing before everything is in place, and keep the window's size."""
         window, size = self.window, self.window.size()
-        window.setUpdatesEnabled(False)
+        self._hold.begin()
         window.setAnimated(False)
         try:
             yield
@@ -399,7 +401,7 @@ class PanelPlaces:
             if layout is not None and not window.isMaximized() and not window.isFullScreen():
                 layout.activate()
                 window.resize(size)
-            window.setUpdatesEnabled(True)
+            self._hold.end()
 
     def state(self) -> tuple[QByteArray, str]:
         """Return where the docks are now, and their shares of the window."""

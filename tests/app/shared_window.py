@@ -19,8 +19,9 @@ from app.project.learned import Learned
 from app.project.watching import EVERY, Watcher
 from app.shell.workspace_keeper import Tab
 from app.shell.workspaces import ALL, FIRST
+from app.widgets.painting import PaintingHold
 from metagraph.graph.model import Project
-from tests.app.window_state import differences, state_of
+from tests.app.window_state import differences, is_ours, state_of
 
 SETTLED = 60.0  # seconds; a slow machine takes its time over jobs
 
@@ -116,7 +117,7 @@ def empty(window: Any) -> None:
     """Close what lies over a window, end what goes on in it, and let go of its project. It is not painted
     until it is reset.
     """
-    window.setUpdatesEnabled(False)
+    hold_of(window).begin()
     shell = window.shell
     while QApplication.activePopupWidget() is not None:
         QApplication.activePopupWidget().close()
@@ -129,9 +130,18 @@ def empty(window: Any) -> None:
     for job in list(shell.jobs.running):
         job.cancel()
     shell.stage.performance.live.end()
-    shell.document.load(Project(), None)
+    begin_again(window)
+    window._emptied_to = shell.document.project
     settle(window)
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+
+
+def hold_of(window: Any) -> PaintingHold:
+    """Return what keeps a window from painting between two tests, the same each time."""
+    found: PaintingHold | None = getattr(window, "_hold_between_tests", None)
+    if found is None:
+        found = window._hold_between_tests = PaintingHold(window)
+    return found
 
 
 def settle(window: Any) -> None:
@@ -143,10 +153,10 @@ def settle(window: Any) -> None:
         return [t for t in soon if isValid(t) and t.isActive()]
 
     QTest.qWait(1)
-    while jobs.at_work or waiting():
-        for timer in waiting():
+    while (due := waiting()) or jobs.at_work:
+        for timer in due:
             timer.start(0)
-        QTest.qWait(1)
+        QTest.qWait(1 if due else 5)  # to ask jobs often only keeps them from work
         assert time.monotonic() < deadline, f"at work: {[j.title for j in jobs.at_work]}"
     for timer, pause in soon.items():
         if isValid(timer):
@@ -194,28 +204,22 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     """Take a window back to how it begins, on a new project. stood: how its docks stood then; where they still
     do, they are not put there once more, which takes as long as all the rest.
     """
-    window.setUpdatesEnabled(False)
+    hold = hold_of(window)
+    hold.begin()
     shell = window.shell
-    services, session = shell.services, shell.stage.session
+    document, services = shell.document, shell.services
     services[Files].closed = ""
     services[Learned].paused = False
     services[Watcher]._timer.setInterval(EVERY)
     services[Watcher].set_on(True)
     shell.actions.allowed = None
-    session.set_mode("meta")
-    session.onstage.set_performance(None)
-    session.onstage.set_conversation(None)
-    session.onstage.set_side(0)
-    session.place.set_layer("arms")
-    session.place.forget()
-    session.selection.clear()
-    session.selection.copied = None
-    session.look.choose("dark")
-    session.watch.forget()
     shell.stage.sound.set_muted(False)
     shell.stage.sound._silent = False
-    session.transport.set_playing(True)
-    shell.document.load(Project(), None)
+    if document.project is getattr(window, "_emptied_to", None) and not document.undo_stack.count():
+        document.autosave.begin(document.project)  # in the folders of this test
+        document.loaded.emit()
+    else:
+        begin_again(window)
     shell.files.opened.emit()
     for panel in window.places.panels.values():
         if panel.place == "beside":
@@ -230,8 +234,26 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     QSettings().clear()
     window.setFocus()
     window.refresh()
-    window.setUpdatesEnabled(True)
-    window.repaint()  # Qt drops what became of a window that was shown meanwhile
+    hold.end()
+    QCoreApplication.sendPostedEvents(window, QEvent.Type.UpdateRequest)
+
+
+def begin_again(window: Any) -> None:
+    """Take back what a window's parts share, and begin a new project."""
+    shell = window.shell
+    session = shell.stage.session
+    session.set_mode("meta")
+    session.onstage.set_performance(None)
+    session.onstage.set_conversation(None)
+    session.onstage.set_side(0)
+    session.place.set_layer("arms")
+    session.place.forget()
+    session.selection.clear()
+    session.selection.copied = None
+    session.look.choose("dark")
+    session.watch.forget()
+    session.transport.set_playing(True)
+    shell.document.load(Project(), None)
 
 
 def reset_panels(window: Any) -> None:
@@ -260,7 +282,8 @@ def reset_panels(window: Any) -> None:
     preview.speed_box.activated.emit(normal)
     lanes.each, lanes.first, lanes.follow = 44.0, 0.0, True
     for widget in window.findChildren(QWidget):
-        if widget.hasMouseTracking() and type(widget).__module__.startswith("app."):
-            QCoreApplication.sendEvent(widget, QEvent(QEvent.Type.Leave))
+        if is_ours(type(widget)):
+            if widget.hasMouseTracking():
+                QCoreApplication.sendEvent(widget, QEvent(QEvent.Type.Leave))
         elif isinstance(widget, QScrollBar):
             widget.setValue(widget.minimum())

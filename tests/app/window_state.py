@@ -4,9 +4,10 @@ behind them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,8 @@ from PySide6.QtWidgets import (
 )
 
 PLAIN = (bool, int, float, str, bytes, Path, Enum, type(None))
+SIMPLE = frozenset((bool, int, float, str, bytes, type(None)))  # most values are of these very classes
+CONTAINERS = (list, tuple, set, frozenset, dict)
 # What differs without a difference: what is counted, kept for speed, or drawn from it when there is occasion.
 PASSING = frozenset(
     """common frames owner painted pictures seconds sounds _beat _bodies _by_keys _came _clips _counted _curves
@@ -42,20 +45,15 @@ PASSING = frozenset(
 def state_of(window: Any) -> dict[str, str]:
     """Return by where it stands in the window everything that a test could have changed, in words."""
     out: dict[str, str] = {}
-    seen: set[int] = set()
     window.shell.actions.settle()
     parts = _parts(window, "window")
+    seen = {id(part) for _, part in parts}
     for place, part in parts:
-        seen.add(id(part))
-        if isinstance(part, QWidget):
-            out.update((f"{place}.{key}", repr(value)) for key, value in _shown(part))
-        elif isinstance(part, QAction):
-            what = (part.isEnabled(), part.isChecked(), part.isVisible(), part.text())
-            out[f"{place}:{part.objectName() or part.text()}"] = repr(what)
-        elif isinstance(part, QTimer) and not part.isSingleShot():
-            out[place] = f"{part.isActive()}, every {part.interval()} ms"
+        for kind in _kinds(type(part)):
+            kind(part, place, out)
     for place, part in parts:
-        out.update(_values(part, place, seen))
+        if _ours(part):
+            _values(part, place, seen, out)
     settings = QSettings()
     out["settings"] = repr({k: settings.value(k) for k in settings.allKeys()})
     return out
@@ -70,21 +68,24 @@ def differences(before: Mapping[str, str], after: Mapping[str, str]) -> list[str
     ]
 
 
-def _parts(window: QObject, name: str) -> list[tuple[str, QObject]]:
+def _parts(window: QObject, name: str) -> list[tuple[str, Any]]:
     """Return an object and what belongs to it, each with its place; siblings of a class are counted. What is in
     a widget that is hidden is left out: it is filled when it is shown. So is a field's button, which fades.
     """
-    out, todo = [], [(name, window)]
+    out: list[tuple[str, Any]] = []
+    todo: list[tuple[str, Any]] = [(name, window)]
     while todo:
         place, part = todo.pop()
         out.append((place, part))
-        if isinstance(part, QWidget) and (
-            isinstance(part, QLineEdit) or (part.isHidden() and not part.isWindow())
-        ):
+        widget, field, main = _nature(type(part))
+        if field or (widget and part.isHidden() and not part.isWindow()):
+            continue
+        children = part.children()
+        if not children:
             continue
         count: dict[str, int] = {}
-        for child in part.children():
-            if isinstance(child, QTabBar) and isinstance(part, QMainWindow):
+        for child in children:
+            if main and isinstance(child, QTabBar):
                 continue  # Qt hands them out anew; docks tell which is in front
             name = child.objectName() or type(child).__name__
             if name.startswith("qt_scrollarea_") and name.endswith("container"):
@@ -94,60 +95,100 @@ def _parts(window: QObject, name: str) -> list[tuple[str, QObject]]:
     return out
 
 
-def _shown(w: QWidget) -> Iterator[tuple[str, object]]:
-    yield "hidden", w.isHidden()
-    if w.isHidden():
-        return
-    yield "enabled", w.isEnabled()
-    if isinstance(w, QDockWidget):
-        behind = w.visibleRegion().isEmpty()  # its tab is: it is laid out when it comes to the front
-        yield "place", (w.isFloating(), None if behind else w.size().toTuple())
-    if isinstance(w, QLabel | QLineEdit | QAbstractButton):
-        yield "text", w.text()
-    if isinstance(w, QAbstractButton):
-        yield "checked", w.isChecked()
-    if isinstance(w, QAbstractSpinBox):
-        yield "text", w.text()
-    if isinstance(w, QAbstractSlider):
-        yield "value", w.value()
-    if isinstance(w, QComboBox):
-        yield "entries", (w.currentIndex(), [w.itemText(n) for n in range(w.count())])
-    if isinstance(w, QStackedWidget | QTabWidget | QTabBar):
-        yield "current", w.currentIndex()
-    if isinstance(w, QStatusBar):
-        yield "says", w.currentMessage()
+@cache
+def _nature(of: type) -> tuple[bool, bool, bool]:
+    return issubclass(of, QWidget), issubclass(of, QLineEdit), issubclass(of, QMainWindow)
+
+
+def _tell_action(action: QAction, place: str, out: dict[str, str]) -> None:
+    what = (action.isEnabled(), action.isChecked(), action.isVisible(), action.text())
+    out[f"{place}:{action.objectName() or what[-1]}"] = repr(what)
+
+
+def _tell_timer(timer: QTimer, place: str, out: dict[str, str]) -> None:
+    if not timer.isSingleShot():
+        out[place] = f"{timer.isActive()}, every {timer.interval()} ms"
+
+
+def _tell_widget(w: QWidget, place: str, out: dict[str, str]) -> None:
+    hidden = w.isHidden()
+    out[f"{place}.hidden"] = repr(hidden)
+    if not hidden:
+        out[f"{place}.enabled"] = repr(w.isEnabled())
+
+
+def _dock_place(dock: QDockWidget) -> object:
+    behind = dock.visibleRegion().isEmpty()  # its tab is: it is laid out when it comes to the front
+    return (dock.isFloating(), None if behind else dock.size().toTuple())
+
+
+# What is told of a widget that is not hidden, by its class.
+SHOWN: tuple[tuple[type | tuple[type, ...], str, Callable[[Any], object]], ...] = (
+    (QDockWidget, "place", _dock_place),
+    ((QLabel, QLineEdit, QAbstractButton), "text", lambda w: w.text()),
+    (QAbstractButton, "checked", lambda w: w.isChecked()),
+    (QAbstractSpinBox, "text", lambda w: w.text()),
+    (QAbstractSlider, "value", lambda w: w.value()),
+    (QComboBox, "entries", lambda w: (w.currentIndex(), [w.itemText(n) for n in range(w.count())])),
+    ((QStackedWidget, QTabWidget, QTabBar), "current", lambda w: w.currentIndex()),
+    (QStatusBar, "says", lambda w: w.currentMessage()),
+)
+Tell = Callable[[Any, str, dict[str, str]], None]
+
+
+@cache
+def _kinds(of: type) -> tuple[Tell, ...]:
+    """Return what tells the values of a class of widgets, actions or timers."""
+    if issubclass(of, QAction):
+        return (_tell_action,)
+    if issubclass(of, QTimer):
+        return (_tell_timer,)
+    if not issubclass(of, QWidget):
+        return ()
+
+    def one(key: str, get: Callable[[Any], object]) -> Tell:
+        def tell(w: QWidget, place: str, out: dict[str, str]) -> None:
+            if not w.isHidden():
+                out[f"{place}.{key}"] = repr(get(w))
+
+        return tell
+
+    return (_tell_widget, *(one(key, get) for kind, key, get in SHOWN if issubclass(of, kind)))
+
+
+@cache
+def is_ours(of: type) -> bool:
+    return of.__module__.startswith("app.")
 
 
 def _ours(value: object) -> bool:
-    return type(value).__module__.startswith("app.")
+    return is_ours(type(value))
 
 
-def _values(part: object, place: str, seen: set[int]) -> Iterator[tuple[str, str]]:
-    """Give the plain values an object of ours holds, and those of the objects of ours that it alone holds."""
-    if not _ours(part):
-        return
+def _values(part: object, place: str, seen: set[int], out: dict[str, str]) -> None:
+    """Note the plain values an object of ours holds, and those of the objects of ours that it alone holds."""
     held = (
         {f.name: getattr(part, f.name) for f in fields(part)}
         if is_dataclass(part)
-        else dict(getattr(part, "__dict__", {}))
+        else getattr(part, "__dict__", {})
     )
     for name, value in held.items():
-        if name in PASSING:
-            continue
-        if isinstance(value, QObject):
+        if name in PASSING or isinstance(value, QObject):
             continue
         if _plain(value):
-            yield f"{place}.{name}", repr(value)
-        elif _ours(value) and id(value) not in seen:
-            seen.add(id(value))
-            yield from _values(value, f"{place}.{name}", seen)
-        elif isinstance(value, list | tuple | set | frozenset | dict):
-            yield f"{place}.{name}", f"{len(value)} of {type(value).__name__}"
+            out[f"{place}.{name}"] = repr(value)
+        elif _ours(value):
+            if id(value) not in seen:
+                seen.add(id(value))
+                _values(value, f"{place}.{name}", seen, out)
+        elif isinstance(value, CONTAINERS):
+            out[f"{place}.{name}"] = f"{len(value)} of {type(value).__name__}"
 
 
 def _plain(value: object) -> bool:
-    if isinstance(value, PLAIN):
+    of = type(value)
+    if of in SIMPLE or isinstance(value, PLAIN):
         return True
     if isinstance(value, dict):
         return all(_plain(k) and _plain(v) for k, v in value.items())
-    return isinstance(value, list | tuple | set | frozenset) and all(map(_plain, value))
+    return isinstance(value, CONTAINERS) and all(map(_plain, value))

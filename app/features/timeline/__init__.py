@@ -24,7 +24,7 @@ def contribute(shell: Shell) -> Contribution:
     verbs.offer("remove", with_marker, timeline.remove_marker, rank=1)
     verbs.offer("rename", with_marker, timeline.rename_marker, rank=1)
     # Whether there is something to remove is asked when something else is selected.
-    timeline.noted.changed.connect(lambda: shell.actions["delete"].setEnabled(verbs.can("remove")))
+    timeline.noted.changed.connect(lambda: shell.actions.refresh_soon())  # there are none yet
     return Contribution(
         panels=(
             Panel(

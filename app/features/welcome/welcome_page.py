@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import (
     QAbstractButton,
     QGridLayout,
@@ -26,10 +26,12 @@ from app.project.files import Files
 from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.making import make_widget
+from app.widgets.memo import Once
 
 LEAST = QSize(400, 270)  # pixels of a room in which all of it is whole
 CARD = QSize(188, 92)  # at least
 LARGEST = QSize(400, 250)
+LEAST_PICTURE = 44  # pixels; with less room, a card has its words alone
 RECENT = 3  # projects that a card names
 
 
@@ -49,6 +51,7 @@ class WelcomeCard(QAbstractButton):
     def __init__(self, choice: WelcomeChoice, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.choice, self.session = choice, session
+        self._drawn: Once[QPixmap] = Once()
         self.setText(choice.title)
         self.setAccessibleName(choice.title)
         self.setAccessibleDescription(choice.what)
@@ -71,11 +74,6 @@ class WelcomeCard(QAbstractButton):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         t, painter = theme(self.session.look.name), QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        lit = self.isEnabled() and (self.underMouse() or self.hasFocus())
-        painter.setPen(QPen(QColor(t.text if self.hasFocus() else t.line), 1.2))
-        painter.setBrush(QColor(t.hover if lit else t.card))
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 8, 8)
         words = QRectF(self.rect()).adjusted(14, 0, -14, -12)
         bold, flags = QFont(self.font()), Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
         bold.setWeight(QFont.Weight.DemiBold)
@@ -83,18 +81,40 @@ class WelcomeCard(QAbstractButton):
         painter.setFont(bold)
         title = painter.boundingRect(words, flags, self.text())
         top = self.height() - 12 - what.height() - title.height() - 3
-        if top >= 44:  # else there is room for the words alone
-            painter.setOpacity(1.0 if self.isEnabled() else 0.45)
-            PICTURES[self.choice.id](painter, t, QRectF(14, 10, self.width() - 28, top - 16))
-        else:
+        painter.drawPixmap(0, 0, self._picture_above(top))
+        if top < LEAST_PICTURE:
             top = (self.height() - what.height() - title.height() - 3) / 2
-        painter.setOpacity(1.0)
         painter.setPen(QColor(t.text if self.isEnabled() else t.dim))
         painter.drawText(words.adjusted(0, top, 0, 0), flags, self.text())
         painter.setFont(self.font())
         painter.setPen(QColor(t.dim))
         painter.drawText(words.adjusted(0, top + title.height() + 3, 0, 12), flags, self.toolTip())
         painter.end()
+
+    def _picture_above(self, top: float) -> QPixmap:
+        """Return the card without its words, which begin at `top`. It takes as long to draw as a panel, so it
+        is drawn when it changes.
+        """
+        lit = self.isEnabled() and (self.underMouse() or self.hasFocus())
+        look, size, ratio = self.session.look.name, self.size(), self.devicePixelRatioF()
+        state = (top, look, lit, self.hasFocus(), self.isEnabled(), size.toTuple(), ratio)
+
+        def draw() -> QPixmap:
+            t, out = theme(look), QPixmap(size * ratio)
+            out.setDevicePixelRatio(ratio)
+            out.fill(Qt.GlobalColor.transparent)
+            painter = QPainter(out)
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.setPen(QPen(QColor(t.text if self.hasFocus() else t.line), 1.2))
+            painter.setBrush(QColor(t.hover if lit else t.card))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 8, 8)
+            if top >= LEAST_PICTURE:
+                painter.setOpacity(1.0 if self.isEnabled() else 0.45)
+                PICTURES[self.choice.id](painter, t, QRectF(14, 10, self.width() - 28, top - 16))
+            painter.end()
+            return out
+
+        return self._drawn.of(state, (), draw)
 
 
 class WelcomePage(QWidget):

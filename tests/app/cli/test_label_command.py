@@ -33,7 +33,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.mark.gl
 def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["label", str(folder), "--json"]) == 0
+    assert main(["label", str(folder), "--play", "10", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     project = open_project(Path(data["project"])).project
     assert (

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
 
 from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
@@ -65,6 +64,8 @@ def volume(points: np.ndarray, triangles: np.ndarray) -> float:
 
 def apart(points: np.ndarray, others: np.ndarray) -> float:
     """How far one surface is from another, metres."""
+    from scipy.spatial import cKDTree
+
     return float(cKDTree(others).query(points)[0].max())
 
 
@@ -79,6 +80,8 @@ def owners(body: DefaultBody) -> np.ndarray:
 
 def opposite() -> np.ndarray:
     """The mirror image of each sculpted point `[V]`."""
+    from scipy.spatial import cKDTree
+
     points = sculpture().character.positions
     return cKDTree(points).query(points * [-1, 1, 1])[1]
 

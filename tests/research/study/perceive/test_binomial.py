@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from scipy.stats import binomtest, fisher_exact
 
 from metagraph.research.study.perceive import binomial
 
@@ -13,6 +12,8 @@ from metagraph.research.study.perceive import binomial
 )
 @pytest.mark.parametrize("share", [0.5, 0.2])
 def test_p_values_and_intervals_are_those_of_scipy(k: int, n: int, share: float) -> None:
+    from scipy.stats import binomtest
+
     theirs = binomtest(k, n, share)
     assert binomial.two_sided_p(k, n, share) == pytest.approx(theirs.pvalue, abs=1e-10)
     interval, ours = theirs.proportion_ci(), binomial.exact_share(k, n)
@@ -40,6 +41,8 @@ def test_nothing_has_no_p_and_no_share_and_impossible_counts_are_refused() -> No
 
 @pytest.mark.parametrize("table", [(8, 10, 3, 12), (0, 5, 5, 5), (1, 1, 0, 1), (20, 40, 21, 40)])
 def test_two_shares_are_compared_as_scipy_does(table: tuple[int, int, int, int]) -> None:
+    from scipy.stats import fisher_exact
+
     a, n, b, m = table
     assert binomial.fisher(*table) == pytest.approx(fisher_exact([[a, n - a], [b, m - b]])[1], abs=1e-12)
 
@@ -48,7 +51,7 @@ def test_two_shares_are_compared_as_scipy_does(table: tuple[int, int, int, int])
     ("n", "share", "alpha"), [(1, 0.9, 0.05), (6, 0.99, 0.05), (54, 0.7, 0.05), (80, 0.4, 0.01)]
 )
 def test_power_is_the_sum_over_all_counts_that_are_shown(n: int, share: float, alpha: float) -> None:
-    from scipy.stats import binom
+    from scipy.stats import binom, binomtest
 
     found = sum(binom.pmf(k, n, share) for k in range(n + 1) if binomtest(k, n).pvalue <= alpha)
     assert binomial.share_power(n, share, alpha) == pytest.approx(found, abs=1e-9)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
 
 from metagraph.research.study.perceive.crossed import Crossed, fit_crossed, overall
 from tests.thorough import many
@@ -52,6 +51,8 @@ def fitted(rows: tuple[list[float], list[float], list[int], list[int]]) -> Cross
 
 
 def test_crossed_deviations_are_those_that_a_plain_minimiser_finds() -> None:
+    from scipy.optimize import minimize
+
     chosen, sides, who, what = drawn(3, 14, 9, 0.4, (0.9, 0.8), 0.5)
     y, s, a, b = np.array(chosen), np.array(sides), np.array(who), np.array(what)
 

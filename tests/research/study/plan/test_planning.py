@@ -6,7 +6,6 @@ from math import exp, log, sqrt
 
 import numpy as np
 import pytest
-from scipy import stats as scipy
 
 from metagraph.research.study.plan.planning import (
     assume_without_pilot,
@@ -72,6 +71,8 @@ def test_equivalence_happens_as_often_as_its_power_says() -> None:
 
 
 def test_intervals_are_as_narrow_as_planned_as_often_as_planned() -> None:
+    from scipy import stats as scipy
+
     n = sample_size(assume_without_pilot(2.0, 0.4), 1.25, within=1.25).precise
     assert n is not None and half_width(n, 0.4) < log(1.25)
     rng = np.random.default_rng(2)
@@ -82,6 +83,8 @@ def test_intervals_are_as_narrow_as_planned_as_often_as_planned() -> None:
 
 
 def test_a_pilot_is_reckoned_with_as_less_sure_than_it_looks() -> None:
+    from scipy import stats as scipy
+
     found = from_pilot([2.0, 2.5, 1.8, 3.0, 2.2])
     logs = np.log([2.0, 2.5, 1.8, 3.0, 2.2])
     assert found.ratio == pytest.approx(np.exp(logs.mean())) and found.spread == pytest.approx(
@@ -101,6 +104,8 @@ def test_verdicts_say_what_the_interval_allows() -> None:
 
 
 def test_the_two_one_sided_tests_are_those_of_scipy() -> None:
+    from scipy import stats as scipy
+
     x = [0.05, 0.12, -0.03, 0.2, 0.01, 0.08]
     found = equivalence(x, 1.25)
     theirs = max(
@@ -111,6 +116,8 @@ def test_the_two_one_sided_tests_are_those_of_scipy() -> None:
 
 
 def test_chi_squared_is_that_of_scipy() -> None:
+    from scipy import stats as scipy
+
     for df in (1, 2, 7, 40, 400):
         for share in (0.01, 0.2, 0.5, 0.99):
             at = chi_squared_quantile(share, df)

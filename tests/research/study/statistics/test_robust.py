@@ -6,7 +6,6 @@ from math import inf
 
 import numpy as np
 import pytest
-from scipy import stats as scipy
 
 from metagraph.research.study.statistics.robust import censored_mean, hodges_lehmann, leave_one_out, odd_ones
 from metagraph.research.study.statistics.small_samples import mean
@@ -61,6 +60,8 @@ def test_without_censored_values_the_interval_is_students() -> None:
 
 
 def test_censored_values_agree_with_scipy() -> None:
+    from scipy import stats as scipy
+
     drawn = np.random.default_rng(3).normal(1, 0.5, 30)
     exact, above = [v for v in drawn if -0.1 < v < 1.3], [1.3] * int((drawn >= 1.3).sum())
     below = [-0.1] * int((drawn <= -0.1).sum())
