@@ -259,25 +259,42 @@ class _Findings:
         words = phrase('the loop of "{stance}" plays', stance=stance)
         return _Cause((rest.stance, "loop"), words, layer, False, rest.action.id, rest.stance)
 
-    def _likely_cause(self, part: str, time: float) -> _Cause:
-        """Return the cause of what a part does: what blends on its own layer, else on another, else what
-        plays on its own.
+    def _likely_cause(self, part: str, time: float, value: float = 0.0, rank: int = 0) -> _Cause:
+        """Return the cause of what a part does, among the layers that move it: the clip that does nearly as
+        much by itself, else what blends on the part's own layer, else on another, else what plays on its own.
+
+        value: the part's speed, m/s, or with rank 1 how it changes, m/s2; 0 where that says nothing.
         """
         own = _LAYER_OF.get(part, "body")
-        causes = [self._cause(layer, time) for layer in (own, *(x for x in LAYERS if x != own))]
+        every = (own, *(x for x in LAYERS if x != own))
+        layers = [x for x in every if self._moves(x, part)] or [own]
+        causes = [self._cause(layer, time) for layer in layers]
         playing = [c for c in causes if c.key[0]]
+        if value > 0 and len(playing) > 1:
+            alone = [c for c in playing if OWN * value <= self._own_moves(part, time, c)[rank]]
+            if alone:
+                return alone[0]
         return next((c for c in causes if c.blending), next(iter(playing), causes[0]))
 
-    def _worst(self, values: Array, limits: Array, part: int) -> Iterator[tuple[int, float, _Cause, int]]:
+    def _moves(self, layer: Layer, part: str) -> bool:
+        """Return whether a layer moves a part: the hips and what stands on them only with the legs."""
+        return (
+            part not in ("hips", "left_foot", "right_foot") or self.project.graphs[layer].weight("legs") > 0
+        )
+
+    def _worst(
+        self, values: Array, limits: Array, part: int, rank: int = 0
+    ) -> Iterator[tuple[int, float, _Cause, int]]:
         """Yield, for each cause, the frame where values `[F]` are largest of those above a limit, the value,
-        and how often it happens.
+        and how often it happens. The values are speeds, or with rank 1 how they change by the next frame.
         """
         over = np.flatnonzero(values > limits[part])
         events = np.split(over, np.flatnonzero(np.diff(over) > 0.3 * RATE) + 1) if len(over) else []
         best: dict[tuple[str, str], tuple[int, float, _Cause, int]] = {}
         for event in events:
             n = int(event[np.argmax(values[event])])
-            cause = self._likely_cause(self.seen.parts[part], float(self.seen.times[n]))
+            time = float(self.seen.times[n + rank])
+            cause = self._likely_cause(self.seen.parts[part], time, float(values[n]), rank)
             known = best.get(cause.key)
             count = known[3] + 1 if known else 1
             if known is None or values[n] > known[1]:
@@ -314,10 +331,10 @@ class _Findings:
         changes = np.linalg.norm(np.diff(places, 2, axis=0), axis=-1) * RATE**2
         limits = np.maximum(USUAL * self.changes, JUMP * self.size)
         for part, name in enumerate(self.seen.parts):
-            for frame, value, cause, count in self._worst(changes[:, part], limits, part):
+            for frame, value, cause, count in self._worst(changes[:, part], limits, part, 1):
                 near = places[frame : frame + 3, part]
                 far = 100 * float(np.linalg.norm(np.diff(near, axis=0), axis=-1).max())
-                if OWN * value <= self._own_moves(name, frame + 1, cause)[1]:
+                if OWN * value <= self._own_moves(name, float(self.seen.times[frame + 1]), cause)[1]:
                     ways = np.linalg.norm(
                         np.diff(places[max(0, frame - 3) : frame + 6, part], axis=0), axis=-1
                     )
@@ -337,10 +354,9 @@ class _Findings:
                 )
                 yield self._problem("play-jump", words, remedy, frame + 1, cause)
 
-    def _own_moves(self, part: str, frame: int, cause: _Cause) -> tuple[float, float]:
-        """Return what a part does at a frame in the clip that the cause plays, as `own_moves`."""
+    def _own_moves(self, part: str, time: float, cause: _Cause) -> tuple[float, float]:
+        """Return what a part does at a time in the clip that the cause plays, as `own_moves`."""
         joint = anatomy.project_roles(self.project)[part]
-        time = float(self.seen.times[frame])
         return own_moves(self.project, self.plan, cause.layer, joint, time)
 
     def _own_jump(self, part: str, far: float, frame: int, cause: _Cause, alone: bool) -> Problem:
@@ -382,7 +398,8 @@ class _Findings:
             if name == "hips":
                 continue
             for frame, value, cause, _ in self._worst(speeds[:, part], limits, part):
-                if not cause.blending or OWN * value <= self._own_moves(name, frame, cause)[0]:
+                own = self._own_moves(name, float(self.seen.times[frame]), cause)[0]
+                if not cause.blending or OWN * value <= own:
                     continue
                 words = phrase(
                     "{part} goes {speed:.1f} m/s, and at most {usual:.1f} m/s in the clips",
@@ -403,7 +420,8 @@ class _Findings:
         for frame, value, cause, _ in self._worst(speeds, limits, part):
             some = level[max(0, frame - round(RATE)) : frame + round(RATE)]
             far = float(np.linalg.norm(np.ptp(some, axis=0)))
-            if not cause.blending or far < GLIDES * self.size:
+            own = self._own_moves("hips", float(self.seen.times[frame]), cause)[0]
+            if not cause.blending or far < GLIDES * self.size or OWN * value <= own:
                 continue
             words = phrase("the body slides {length:.1f} m at {speed:.1f} m/s", length=far, speed=value)
             if self._can_stay(cause.action):
