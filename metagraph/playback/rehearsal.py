@@ -45,6 +45,7 @@ OWN = 0.8  # share of what is seen that a clip must do by itself to be the reaso
 GLIDE, GLIDES = 0.6, 0.15  # m/s that the hips may go over the floor in a blend; metres that are seen
 UNDER = 0.05  # metres below the floor
 ABOVE = 0.20  # metres of the lowest joint above it
+LEVEL = 0.6  # of a thigh's length: its ends differ less in height where somebody sits
 INSIDE = 0.03  # metres of an arm within the body
 LONG = 0.5  # seconds that a foot is under the floor, or an arm within the body, before it is reported
 LASTING = 0.1  # of the time, from which on a figure off the floor is an error
@@ -76,14 +77,16 @@ _NAMES = {
 @dataclass(frozen=True, eq=False)
 class PlayedPoses:
     """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
-    `[F]`: how high the lowest joint of the body is. inside `[F]`: how deep an arm is within the body, metres.
-    added: by stage, what it adds on the way to each frame, `[4, F]`, as `AddedMoves.worst` returns it.
+    `[F]`: how high the lowest joint of the body is. sits `[F]`: whether its thighs are level. inside `[F]`:
+    how deep an arm is within the body, metres. added: by stage, what it adds on the way to each frame,
+    `[4, F]`, as `AddedMoves.worst` returns it.
     """
 
     times: Array
     parts: tuple[str, ...]
     places: Array
     lowest: Array
+    sits: Array
     inside: Array
     added: Mapping[str, Array]
 
@@ -177,7 +180,12 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     contacts = rigs_of(project).contacts
     evaluator = Evaluator(plan, project)
     times = np.arange(round(seconds * RATE)) / RATE
-    places, lowest, inside = [], [], []
+    thighs = [
+        [roles[f"{side}_{part}_leg"] for part in ("upper", "lower")]
+        for side in ("left", "right")
+        if {f"{side}_upper_leg", f"{side}_lower_leg"} <= roles.keys()
+    ]
+    places, lowest, sits, inside = [], [], [], []
     law = ContinuityLaw(project)
     added: dict[str, list[Array]] = {name: [] for name in _ADDED}
     for some in np.array_split(times, _chunks(seconds)):
@@ -191,6 +199,8 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         _, at = skeleton.globals(pose)
         places.append(at[:, joints].astype(np.float64))
         lowest.append(at[:, body, 1].min(1))
+        ways = np.diff(at[:, thighs], axis=2) if thighs else np.zeros((len(some), 1, 1, 3))
+        sits.append((np.abs(ways[..., 1]) < LEVEL * np.linalg.norm(ways, axis=-1)).all((1, 2)))
         inside.append(
             contact_depths(contacts, pose).max(-1, initial=0.0)
             if contacts is not None
@@ -199,8 +209,8 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         if step():
             return None
     worst = {name: np.concatenate(rows, 1) for name, rows in added.items()}
-    found = [np.concatenate(rows) for rows in (places, lowest, inside)]
-    return PlayedPoses(times, parts, found[0], found[1], found[2], worst)
+    at, low, level, deep = (np.concatenate(rows) for rows in (places, lowest, sits, inside))
+    return PlayedPoses(times, parts, at, low, level, deep, worst)
 
 
 def _own_limits(project: Project) -> tuple[Array, Array]:
@@ -445,7 +455,12 @@ class _Findings:
 
     def _floor(self) -> Iterator[Problem]:
         under, above = self.seen.lowest < -UNDER * self.size, self.seen.lowest > ABOVE * self.size
-        for code, over in (("play-under-floor", under), ("play-in-air", above)):
+        sits = self.seen.sits
+        for code, over in (
+            ("play-under-floor", under),
+            ("play-in-air", above & ~sits),
+            ("play-no-seat", above & sits),
+        ):
             frames = np.flatnonzero(over)
             if len(frames) < LONG * RATE:
                 continue
@@ -473,6 +488,12 @@ class _Findings:
             )
             remedy = phrase("Set the height of the clip in the program it is from, or skip the clip.")
             severity: Severity = "error" if share > LASTING else "warning"
+            if code == "play-no-seat":
+                words = phrase("the character sits with its feet {length:.0f} cm above the floor", length=far)
+                remedy = phrase(
+                    "Put a seat under it in your scene, or lower the clip in the program it is from."
+                )
+                severity = "hint"
             yield self._problem(code, words, remedy, worst, causes[key], severity)
 
     def _arms_inside(self) -> Iterator[Problem]:

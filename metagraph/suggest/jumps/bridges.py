@@ -64,8 +64,8 @@ def bridge_all(project: Project) -> tuple[Project, tuple[Bridge, ...]]:
     """
     out: list[Bridge] = []
     for layer in LAYERS:
-        poses = _poses(project, project.graphs[layer])
         start = project.graphs[layer].start
+        poses = _without_far_rests(project, layer, _poses(project, project.graphs[layer]))
         if start not in poses:
             continue
         for there in (True, False):
@@ -141,14 +141,42 @@ def describe_unbridged(project: Project) -> list[str]:
         if graph.start not in poses:
             continue
         home = [s for s in poses if _joined(project, layer, s)]
+        wanted = _without_far_rests(project, layer, poses)
         for stance in (s for s in poses if s not in home):
             lost = poses[stance]
             near = sorted((poses[s] for s in home), key=lambda one: _metres(one, lost))
             reasons = [_refusal(project, one, lost) for one in near]
+            if stance not in wanted:
+                far = phrase(
+                    "nothing but its loop plays there, {length:.0f} cm away. Add a clip that leads there, "
+                    "or bridge it under Problems.",
+                    length=100 * _metres(near[0], lost),
+                )
+                reasons = [reasons[0] or far]
             why = reasons[0] if reasons and None not in reasons else None
             if why is not None:
                 name = graph.stances[stance].name
                 out.append(phrase('"{name}" is not joined to the others: {why}', name=name, why=why))
+    return out
+
+
+def _without_far_rests(project: Project, layer: Layer, poses: Mapping[str, _Rest]) -> dict[str, _Rest]:
+    """Return the poses without those of stances in which no gesture or fidget plays, nor in any that
+    transitions join to them, and which are so far from the others that a blend shows: nothing is lost where
+    nobody stands in them.
+    """
+    graph, most = project.graphs[layer], NOTICED * _size(project)
+    groups = {s: {s} for s in poses}
+    for one in poses:
+        for other in reachable(graph, one) & poses.keys():
+            joined = groups[one] | groups[other]
+            groups.update(dict.fromkeys(joined, joined))
+    out = {}
+    for stance, mine in groups.items():
+        used = any(graph.of(s, kind) for s in mine for kind in ("gesture", "fidget"))
+        near = any(_metres(poses[a], poses[b]) <= most for a in mine for b in poses.keys() - mine)
+        if graph.start in mine or used or near:
+            out[stance] = poses[stance]
     return out
 
 
