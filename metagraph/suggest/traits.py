@@ -32,6 +32,7 @@ SMOOTH = 0.06  # seconds: standard deviation of the filter on speeds
 RESTING = 0.05  # heights a second: slower is rest
 _BACK = np.array([-1.0, 1.0])  # turns a facing direction into its inverse
 NEAR_SEAM = 0.1  # seconds on either side of a loop's seam
+JERKY = 1.2  # times the greatest change of velocity within the loop, the same
 JERKS = 0.5  # of the greatest speed: a change of velocity at a loop's seam that is seen as a jerk
 TOUCH = 0.12  # heights from a wrist to what its hand touches, at most
 PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
@@ -280,7 +281,8 @@ def _flow(tracks: Array, times: Array) -> tuple[float, float]:
     speed = np.linalg.norm(velocity, axis=-1)
     point = int(np.argmax(speed.max(0)))
     fastest, jump = speed[:, point].max(), np.linalg.norm(velocity[0, point] - velocity[-1, point])
-    if fastest < 1e-4 or jump > JERKS * fastest:
+    usual = np.linalg.norm(np.diff(velocity[:, point], axis=0), axis=-1).max()  # in one frame, where few are
+    if fastest < 1e-4 or jump > max(JERKS * fastest, JERKY * usual):
         return 0.0, 0.0
     count = max(1, int(NEAR_SEAM / float(times[1] - times[0]) + 0.5))
     sides = speed[:count, point].mean(), speed[-count:, point].mean()

@@ -171,13 +171,19 @@ def _without_far_rests(project: Project, layer: Layer, poses: Mapping[str, _Rest
         for other in reachable(graph, one) & poses.keys():
             joined = groups[one] | groups[other]
             groups.update(dict.fromkeys(joined, joined))
-    out = {}
-    for stance, mine in groups.items():
-        used = any(graph.of(s, kind) for s in mine for kind in ("gesture", "fidget"))
-        near = any(_metres(poses[a], poses[b]) <= most for a in mine for b in poses.keys() - mine)
-        if graph.start in mine or used or near:
-            out[stance] = poses[stance]
-    return out
+    kept = {
+        s
+        for s, mine in groups.items()
+        if graph.start in mine or any(graph.of(x, kind) for x in mine for kind in ("gesture", "fidget"))
+    }
+    while near := {
+        s
+        for one in poses.keys() - kept
+        if any(_metres(poses[one], poses[s]) <= most for s in kept)
+        for s in groups[one]
+    }:
+        kept |= near
+    return {s: rest for s, rest in poses.items() if s in kept}
 
 
 def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -> tuple[list[str], list[str]]:
