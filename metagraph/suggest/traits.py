@@ -90,7 +90,9 @@ class Traits:
     and down. `face` is, for a clip in which nothing else moves, how much joints of the face do, 0..2; 0 for
     other clips. `contact` is that with its own body. `shrug` is how far the shoulders rise more than the
     trunk. `sway` is how far the hips go to a side. `front` and `lifted` say how far before the chest, and
-    above the hips, the hand that goes farthest is when it is farthest. `tremble` has the energies that all
+    above the hips, the hand that goes farthest is when it is farthest. `held` is how far away it stays, from
+    when it is half as far for the first time until it is for the last, relative to that: 1 for a hand that is
+    held out, 0 for one that comes back in between. `tremble` has the energies that all
     clips of its set have (see `with_tremble`).
     """
 
@@ -114,6 +116,7 @@ class Traits:
     sway: float = 0.0
     front: float = 0.0
     lifted: float = 0.0
+    held: float = 0.0
     tremble: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -360,7 +363,7 @@ def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Ar
     left, right = hands
     out, near = _reach(world)
     touch = _touch(world)
-    front, lifted = _gesture_space(points, world)
+    front, lifted, held = _gesture_space(points, world)
     ground = world["hips"][:, [0, 2]]
     return Traits(
         figure.height,
@@ -382,6 +385,7 @@ def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Ar
         sway=float(np.ptp(points["hips"][:, 0])) if "hips" in points else 0.0,
         front=front,
         lifted=lifted,
+        held=held,
     )
 
 
@@ -394,9 +398,11 @@ def _shrug(points: Mapping[str, Array]) -> float:
     return min(rises, default=0.0)
 
 
-def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> tuple[float, float]:
-    """Return where the hand that goes farthest is: before the chest and above the hips."""
-    best, out = 0.0, (0.0, 0.0)
+def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> tuple[float, float, float]:
+    """Return where the hand that goes farthest is: before the chest and above the hips; and how far away it
+    stays in between, relative to the farthest.
+    """
+    best, out = 0.0, (0.0, 0.0, 0.0)
     for name in ("left_hand", "right_hand"):
         if name not in points:
             continue
@@ -405,7 +411,9 @@ def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> t
         if away[far] > best:
             best = float(away[far])
             height = world[name][far, 1] - world["hips"][far, 1]
-            out = float(points[name][far, 2]), float(height)
+            half = np.flatnonzero(away >= best / 2)
+            stays = float(away[half[0] : half[-1] + 1].min()) / best
+            out = float(points[name][far, 2]), float(height), stays
     return out
 
 

@@ -131,13 +131,14 @@ def blended(*parts: tuple[Pose, Array | float], frames: int) -> Move:
 @dataclass
 class MadeFault:
     """A set with a fault. draw: what varies. figure: who does it. moves: clip -> what it does, in files of
-    these names, with `/` in folders.
+    these names, with `/` in folders. unnamed: whether names say nothing.
     """
 
     draw: np.random.Generator
     folder: Path
     figure: Animal = field(init=False)
     moves: dict[str, Move] = field(default_factory=dict)
+    unnamed: bool = False
     said: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -250,7 +251,7 @@ class MadeFault:
 
     @cached_property
     def found(self) -> Proposals:
-        return propose(self.project, sources=("name", "motion"))
+        return propose(self.project, sources=("motion",) if self.unnamed else ("name", "motion"))
 
     @cached_property
     def taken(self) -> AcceptedProposals:
@@ -546,6 +547,54 @@ def nobody_falls_while_talking(made: MadeFault) -> None:
         led = [a for a in graph.actions.values() if a.end_stance == action.stance]
         made.expect(action.kind != "stance" or not led, f"{word} is a {action.kind} that is led to")
         made.expect(made.is_told(word), f"{word} is placed as a {action.kind} without a word")
+
+
+LAP = added(SIT, _both((-24, 0, -68), (0, -62, 0)))
+
+
+@fault
+def small_gestures_of_one_who_sits(made: MadeFault) -> None:
+    """Beats of a few centimetres out of the lap are gestures; rubbing, tapping and shifting are fidgets."""
+    made.unnamed = True
+    down = np.array([0.0, -0.41 * made.figure.legs, 0.0])
+
+    def add(name: str, move: Move) -> None:
+        made.moves[name] = move.going(down)
+
+    def small(goal: Pose, low: float, high: float) -> Move:
+        frames = made.seconds(1.6, 3.6)
+        t = np.linspace(0, 1, frames)
+        up, back = made.draw.uniform(0.2, 0.3), made.draw.uniform(0.65, 0.8)
+        held = smooth(t / up) * (1 - smooth((t - back) / (1 - back)))
+        beats = int(made.draw.integers(1, 5))
+        beat = 1 + 0.25 * np.sin(2 * np.pi * beats * (t - up) / (back - up)) * held
+        nod = {"head": (made.draw.uniform(0.5, 3.0), 0.0, 0.0)}
+        return blended(
+            (LAP, 1.0), (times(goal, made.draw.uniform(low, high)), held * beat), (nod, held), frames=frames
+        )
+
+    def busy(goal: Pose, cycles: float) -> Move:
+        frames = made.seconds(1.8, 4.0)
+        t = np.arange(frames) / made.figure.fps
+        ease = smooth(np.linspace(0, 5, frames)) * smooth(np.linspace(5, 0, frames))
+        swing = 0.5 - 0.5 * np.cos(2 * np.pi * cycles * t)
+        return blended((LAP, 1.0), (goal, swing * ease), frames=frames)
+
+    add("a", made.idle(LAP, 4, 7, wave=0.6))
+    right: Pose = {"right_upper_arm": (-14, 0, 0), "right_lower_arm": (0, 24, 0)}
+    left: Pose = {"left_upper_arm": (-14, 0, 0), "left_lower_arm": (0, -24, 0)}
+    for n in range(6):
+        add(f"g{n}", small((right, left, added(right, left))[n % 3], 0.3, 1.0))
+    rub: Pose = {"right_upper_arm": (-7, 0, 0), "right_lower_arm": (0, -9, 0)}
+    add("f0", busy(rub, made.draw.uniform(0.8, 1.4)))
+    add("f1", busy(added(rub, {"left_upper_arm": (-7, 0, 0), "left_lower_arm": (0, 9, 0)}), 1.0))
+    add("f2", busy({"right_hand": (0, 0, 14)}, made.draw.uniform(2, 3)))
+    add("f3", busy({"hips": (0, 0, 5), "spine": (0, 0, -6)}, 0.4))
+    add("f4", busy({"left_lower_leg": (-9, 0, 0), "left_upper_leg": (6, 0, 0)}, made.draw.uniform(1.5, 3)))
+    made.write()
+    for name in made.moves:
+        kinds = {"a": ("stance",), "g": ("gesture",), "f": ("fidget", "stance")}[name[0]]
+        made.expect_kind(name, *kinds)
 
 
 # -- names and poses
