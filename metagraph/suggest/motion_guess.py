@@ -385,7 +385,7 @@ def _hands_telling(traits: Traits) -> float:
     hands = traits.energy["left_arm"] + traits.energy["right_arm"]
     busy = traits.energy["fingers"] / max(hands, 1e-6) - 0.3  # fingers that play while the hand hangs
     before = _clipped((traits.front - 0.05) / 0.05, 0, 1)
-    leaves = _clipped((traits.out - 0.02) / 0.04, 0, 1) * before  # crossed or clasped arms that open
+    leaves = _clipped((traits.out - 0.03) / 0.03, 0, 1) * before  # crossed or clasped arms that open
     # A hand that goes out before the body, stays there for its beats and comes back, makes a gesture however
     # small: preparation, stroke and retraction (Kendon, Gesture, 2004).
     shaped = (
