@@ -11,7 +11,6 @@ import pytest
 from tests.label_zoo.faults import FAULTS, complaints
 from tests.thorough import many
 
-
 SELDOM = 0.03  # of the variants, in which a guess from motion may be wrong without a word
 
 
