@@ -77,7 +77,7 @@ _NAMES = {
 @dataclass(frozen=True, eq=False)
 class PlayedPoses:
     """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
-    `[F]`: how high the lowest joint of the body is. sits `[F]`: whether its thighs are level. inside `[F]`:
+    `[F]`: how high the lowest joint of the body is. sits `[F]`: whether it sits. inside `[F]`:
     how deep an arm is within the body, metres. added: by stage, what it adds on the way to each frame,
     `[4, F]`, as `AddedMoves.worst` returns it.
     """
@@ -183,7 +183,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     thighs = [
         [roles[f"{side}_{part}_leg"] for part in ("upper", "lower")]
         for side in ("left", "right")
-        if {f"{side}_upper_leg", f"{side}_lower_leg"} <= roles.keys()
+        if {f"{side}_upper_leg", f"{side}_lower_leg", "hips", "head"} <= roles.keys()
     ]
     places, lowest, sits, inside = [], [], [], []
     law = ContinuityLaw(project)
@@ -199,8 +199,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         _, at = skeleton.globals(pose)
         places.append(at[:, joints].astype(np.float64))
         lowest.append(at[:, body, 1].min(1))
-        ways = np.diff(at[:, thighs], axis=2) if thighs else np.zeros((len(some), 1, 1, 3))
-        sits.append((np.abs(ways[..., 1]) < LEVEL * np.linalg.norm(ways, axis=-1)).all((1, 2)))
+        sits.append(_is_sitting(at, thighs, [roles["hips"], roles["head"]] if thighs else []))
         inside.append(
             contact_depths(contacts, pose).max(-1, initial=0.0)
             if contacts is not None
@@ -211,6 +210,17 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     worst = {name: np.concatenate(rows, 1) for name, rows in added.items()}
     at, low, level, deep = (np.concatenate(rows) for rows in (places, lowest, sits, inside))
     return PlayedPoses(times, parts, at, low, level, deep, worst)
+
+
+def _is_sitting(at: Array, thighs: list[list[int]], trunk: list[int]) -> Array:
+    """Return `[F]` whether thighs are level and the trunk is upright, of places `[F, J, 3]` and pairs of
+    joints; never where none are known.
+    """
+    if not thighs:
+        return np.zeros(len(at), bool)
+    ways = np.diff(at[:, [*thighs, trunk]], axis=2)[:, :, 0]
+    rise = ways[..., 1] / np.maximum(np.linalg.norm(ways, axis=-1), 1e-9)
+    return np.asarray((np.abs(rise[:, :-1]) < LEVEL).all(1) & (rise[:, -1] > LEVEL))
 
 
 def _own_limits(project: Project) -> tuple[Array, Array]:
