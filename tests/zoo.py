@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -269,13 +269,29 @@ def clip_of(name: str, take: str = "calisthenics") -> Clip:
     included.
     """
     animal = ANIMALS[name]
-    joints = joints_of(animal)
     t = np.arange(round(SECONDS * animal.fps) + 1) / animal.fps
+    clip = clip_doing(animal, take, {joint: _moves(joint, t, TAKES[take]) for joint in joints_of(animal)})
+    if not animal.bind:
+        return clip
+    turns = np.concatenate([clip.skeleton.rest_rotations[None], clip.rotations])
+    return replace(
+        clip, rotations=turns, translations=clip.translations[[0, *range(clip.frames)]], weights=None
+    )
+
+
+def clip_doing(animal: Animal, name: str, turns: Mapping[str, Array], way: Array | None = None) -> Clip:
+    """Return a clip of a character in the units and axes of its file.
+
+    turns: joint -> how it is turned away from the T-pose, `[F, 4]`, in the world. way: `[F, 3]` metres that
+    the hips are from where they are in the T-pose.
+    """
+    joints = joints_of(animal)
+    count = len(turns["hips"])
     resting, moving = {}, {}
     for joint in joints:
         axes = _axes(animal, joint)
         resting[joint] = rotation.multiply(_drop(joint, animal.arms), axes)
-        moving[joint] = rotation.multiply(_moves(joint, t, TAKES[take]), axes)
+        moving[joint] = rotation.multiply(turns[joint], axes)
         if animal.kind == ".bvh":  # where joints have no turn at rest: all is told from there
             moving[joint] = rotation.multiply(moving[joint], rotation.conjugate(resting[joint]))
             resting[joint] = rotation.identity_rotations()
@@ -286,7 +302,7 @@ def clip_of(name: str, take: str = "calisthenics") -> Clip:
         else rotation.identity_rotations()
     )
     if animal.above is not None:
-        rows.append((animal.above, -1, turned, np.zeros(3), np.tile(turned, (len(t), 1))))
+        rows.append((animal.above, -1, turned, np.zeros(3), np.tile(turned, (count, 1))))
     for joint in joints:
         above = _parent(animal, joint)
         parent = (
@@ -325,11 +341,14 @@ def clip_of(name: str, take: str = "calisthenics") -> Clip:
         )
     skeleton = Skeleton(names, np.array(parents), np.stack(rest), np.stack(offsets))
     whole = rotation.continuous(np.stack(paths, 1))
-    if animal.bind:
-        whole = np.concatenate([skeleton.rest_rotations[None], whole])
-    return Clip(
-        take, skeleton, animal.fps, whole, np.tile(skeleton.rest_translations[:1], (len(whole), 1, 1))
-    )
+    moved = (0,) if animal.above is None or way is None else (0, 1)
+    at = np.tile(skeleton.rest_translations[list(moved)], (count, 1, 1))
+    if way is not None:
+        at[:, -1] += (
+            rotation.rotate_vectors(turned if animal.above is None else np.array([0.0, 0, 0, 1]), way)
+            / animal.unit
+        )
+    return Clip(name, skeleton, animal.fps, whole, at, translated=moved)
 
 
 def places(name: str, joint: str, take: str = "calisthenics") -> Array:
@@ -355,13 +374,13 @@ def make(folder: Path) -> dict[str, Path]:
     for name, animal in ANIMALS.items():
         out[name] = folder / f"{name}{animal.kind}"
         if animal.kind == ".bvh":
-            _write_bvh(out[name], clip_of(name), animal)
+            write_bvh(out[name], clip_of(name), animal)
         else:
-            _write_glb(out[name], [clip_of(name, take) for take in TAKES], animal)
+            write_glb_of(out[name], [clip_of(name, take) for take in TAKES], animal)
     return out
 
 
-def _write_glb(path: Path, clips: list[Clip], animal: Animal) -> None:
+def write_glb_of(path: Path, clips: list[Clip], animal: Animal) -> None:
     """Write a GLB whose joints have the units and axes of the tool, under a node that makes metres with Y up
     of them.
     """
@@ -385,7 +404,7 @@ def _write_glb(path: Path, clips: list[Clip], animal: Animal) -> None:
     )
 
 
-def _write_bvh(path: Path, clip: Clip, animal: Animal) -> None:
+def write_bvh(path: Path, clip: Clip, animal: Animal) -> None:
     skeleton = clip.skeleton
     lines = ["HIERARCHY"]
 

@@ -35,6 +35,7 @@ LIKENESS = ((0.05, 3.0), (0.15, 4.0))
 ARMS_OUT = 4.0  # the same for a pose that is a T- or an A-pose only by its shape
 UNLIKE = 12.0  # the same for any pose: an A-pose with bent elbows in a file whose rest pose is the idle
 ALONE = 5.0  # times the take's largest step after it that the step from such a pose must be
+MIRRORED = (5.0, 2.5)  # UNLIKE and ALONE where that pose is the same on both sides
 CERTAIN = 12.0  # the same if the clip moves as quickly elsewhere
 OWN = 1.5  # the step must be so many times the clip's 95 % step, because a clip may jump all along
 LONE, LONE_BOUND = 6.0, 4.0  # how many times any step around it the steps to and from a lone frame are
@@ -124,6 +125,31 @@ class _Take:
         """Return whether the figure stands upright, with both arms straight and symmetric, out to
         its sides.
         """
+        ways = self._limbs(frame)
+        if ways is None:
+            return False
+        # Straight within 25 degrees, up to 65 below the horizontal, 25 ahead; a leg within 40 of straight
+        # down.
+        arms = []
+        for side in ("left", "right"):
+            upper, lower, arm, leg = (ways[f"{side}_{part}"] for part in ("upper", "lower", "arm", "leg"))
+            if upper @ lower < 0.906 or arm[0] < 0.42 or abs(arm[2]) > 0.42 or -leg[1] < 0.766:
+                return False
+            arms.append(arm)
+        return bool(arms[0] @ arms[1] > 0.966)
+
+    def mirrored(self, frame: int) -> bool:
+        """Return whether both arms and both legs are mirror images of each other within 8 degrees, as in
+        bind poses and hardly ever in a movement.
+        """
+        ways = self._limbs(frame)
+        parts = ("upper", "lower", "leg")
+        return ways is not None and all(ways[f"left_{x}"] @ ways[f"right_{x}"] > 0.990 for x in parts)
+
+    def _limbs(self, frame: int) -> dict[str, Array] | None:
+        """Return where upper arms, forearms, whole arms and legs point: out to their own side, up and ahead
+        of the figure; None where a joint is not known.
+        """
         if self.roles is None:
             self.roles = find_roles(self.clip.skeleton)
         needed = [
@@ -132,7 +158,7 @@ class _Take:
             for r in ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
         ]
         if any(r not in self.roles for r in (*needed, "hips", "head")):
-            return False
+            return None
         at = {r: self.places[frame, j].astype(float) for r, j in self.roles.items()}
 
         def way(a: str, b: str) -> Array:
@@ -144,18 +170,18 @@ class _Take:
         across -= up * (up @ across)
         across /= max(1e-9, float(np.linalg.norm(across)))
         ahead = np.cross(across, up)
-        arms = []
-        for side, sign in (("left", 1), ("right", -1)):
-            arm = way(f"{side}_upper_arm", f"{side}_hand")
-            leg = way(f"{side}_upper_leg", f"{side}_foot")
-            elbow = way(f"{side}_upper_arm", f"{side}_lower_arm") @ way(f"{side}_lower_arm", f"{side}_hand")
-            out = np.array([sign * (arm @ across), arm @ up, arm @ ahead])
-            # Straight within 25 degrees, up to 65 below the horizontal, 25 ahead; a leg within 40 of straight
-            # down.
-            if elbow < 0.906 or out[0] < 0.42 or abs(out[2]) > 0.42 or -(leg @ up) < 0.766:
-                return False
-            arms.append(out)
-        return bool(arms[0] @ arms[1] > 0.966)
+        ends = {
+            "upper": ("upper_arm", "lower_arm"),
+            "lower": ("lower_arm", "hand"),
+            "arm": ("upper_arm", "hand"),
+            "leg": ("upper_leg", "foot"),
+        }
+        return {
+            f"{side}_{name}": np.array([sign * (line @ across), line @ up, line @ ahead])
+            for side, sign in (("left", 1), ("right", -1))
+            for name, (a, b) in ends.items()
+            for line in (way(f"{side}_{a}", f"{side}_{b}"),)
+        }
 
 
 def _size(ways: Array, weights: Array) -> Array:
@@ -307,7 +333,10 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
                 continue  # a take that also jumps elsewhere is made of poses
             first = range(frames)[way][start]
             factor = take.factor(first)
-            if odds < factor or (factor == UNLIKE and peak < ALONE * max(numbers[end:])):
+            alone = ALONE
+            if factor == UNLIKE and odds >= MIRRORED[0] and take.mirrored(first):
+                factor, alone = MIRRORED
+            if odds < factor or (factor >= MIRRORED[0] and peak < alone * max(numbers[end:])):
                 continue
             if length == 1 or _straight(take.clip, np.arange(frames)[way][start : end + 1]):
                 return end

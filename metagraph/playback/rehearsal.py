@@ -45,6 +45,7 @@ OWN = 0.8  # share of what is seen that a clip must do by itself to be the reaso
 GLIDE, GLIDES = 0.6, 0.15  # m/s that the hips may go over the floor in a blend; metres that are seen
 UNDER = 0.05  # metres below the floor
 ABOVE = 0.20  # metres of the lowest joint above it
+LEVEL = 0.6  # of a thigh's length: its ends differ less in height where somebody sits
 INSIDE = 0.03  # metres of an arm within the body
 LONG = 0.5  # seconds that a foot is under the floor, or an arm within the body, before it is reported
 LASTING = 0.1  # of the time, from which on a figure off the floor is an error
@@ -76,14 +77,16 @@ _NAMES = {
 @dataclass(frozen=True, eq=False)
 class PlayedPoses:
     """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
-    `[F]`: how high the lowest joint of the body is. inside `[F]`: how deep an arm is within the body, metres.
-    added: by stage, what it adds on the way to each frame, `[4, F]`, as `AddedMoves.worst` returns it.
+    `[F]`: how high the lowest joint of the body is. sits `[F]`: whether it sits. inside `[F]`:
+    how deep an arm is within the body, metres. added: by stage, what it adds on the way to each frame,
+    `[4, F]`, as `AddedMoves.worst` returns it.
     """
 
     times: Array
     parts: tuple[str, ...]
     places: Array
     lowest: Array
+    sits: Array
     inside: Array
     added: Mapping[str, Array]
 
@@ -177,7 +180,12 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     contacts = rigs_of(project).contacts
     evaluator = Evaluator(plan, project)
     times = np.arange(round(seconds * RATE)) / RATE
-    places, lowest, inside = [], [], []
+    thighs = [
+        [roles[f"{side}_{part}_leg"] for part in ("upper", "lower")]
+        for side in ("left", "right")
+        if {f"{side}_upper_leg", f"{side}_lower_leg", "hips", "head"} <= roles.keys()
+    ]
+    places, lowest, sits, inside = [], [], [], []
     law = ContinuityLaw(project)
     added: dict[str, list[Array]] = {name: [] for name in _ADDED}
     for some in np.array_split(times, _chunks(seconds)):
@@ -191,6 +199,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         _, at = skeleton.globals(pose)
         places.append(at[:, joints].astype(np.float64))
         lowest.append(at[:, body, 1].min(1))
+        sits.append(_is_sitting(at, thighs, [roles["hips"], roles["head"]] if thighs else []))
         inside.append(
             contact_depths(contacts, pose).max(-1, initial=0.0)
             if contacts is not None
@@ -199,8 +208,19 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         if step():
             return None
     worst = {name: np.concatenate(rows, 1) for name, rows in added.items()}
-    found = [np.concatenate(rows) for rows in (places, lowest, inside)]
-    return PlayedPoses(times, parts, found[0], found[1], found[2], worst)
+    at, low, level, deep = (np.concatenate(rows) for rows in (places, lowest, sits, inside))
+    return PlayedPoses(times, parts, at, low, level, deep, worst)
+
+
+def _is_sitting(at: Array, thighs: list[list[int]], trunk: list[int]) -> Array:
+    """Return `[F]` whether thighs are level and the trunk is upright, of places `[F, J, 3]` and pairs of
+    joints; never where none are known.
+    """
+    if not thighs:
+        return np.zeros(len(at), bool)
+    ways = np.diff(at[:, [*thighs, trunk]], axis=2)[:, :, 0]
+    rise = ways[..., 1] / np.maximum(np.linalg.norm(ways, axis=-1), 1e-9)
+    return np.asarray((np.abs(rise[:, :-1]) < LEVEL).all(1) & (rise[:, -1] > LEVEL))
 
 
 def _own_limits(project: Project) -> tuple[Array, Array]:
@@ -259,25 +279,42 @@ class _Findings:
         words = phrase('the loop of "{stance}" plays', stance=stance)
         return _Cause((rest.stance, "loop"), words, layer, False, rest.action.id, rest.stance)
 
-    def _likely_cause(self, part: str, time: float) -> _Cause:
-        """Return the cause of what a part does: what blends on its own layer, else on another, else what
-        plays on its own.
+    def _likely_cause(self, part: str, time: float, value: float = 0.0, rank: int = 0) -> _Cause:
+        """Return the cause of what a part does, among the layers that move it: the clip that does nearly as
+        much by itself, else what blends on the part's own layer, else on another, else what plays on its own.
+
+        value: the part's speed, m/s, or with rank 1 how it changes, m/s2; 0 where that says nothing.
         """
         own = _LAYER_OF.get(part, "body")
-        causes = [self._cause(layer, time) for layer in (own, *(x for x in LAYERS if x != own))]
+        every = (own, *(x for x in LAYERS if x != own))
+        layers = [x for x in every if self._moves(x, part)] or [own]
+        causes = [self._cause(layer, time) for layer in layers]
         playing = [c for c in causes if c.key[0]]
+        if value > 0 and len(playing) > 1:
+            alone = [c for c in playing if OWN * value <= self._own_moves(part, time, c)[rank]]
+            if alone:
+                return alone[0]
         return next((c for c in causes if c.blending), next(iter(playing), causes[0]))
 
-    def _worst(self, values: Array, limits: Array, part: int) -> Iterator[tuple[int, float, _Cause, int]]:
+    def _moves(self, layer: Layer, part: str) -> bool:
+        """Return whether a layer moves a part: the hips and what stands on them only with the legs."""
+        return (
+            part not in ("hips", "left_foot", "right_foot") or self.project.graphs[layer].weight("legs") > 0
+        )
+
+    def _worst(
+        self, values: Array, limits: Array, part: int, rank: int = 0
+    ) -> Iterator[tuple[int, float, _Cause, int]]:
         """Yield, for each cause, the frame where values `[F]` are largest of those above a limit, the value,
-        and how often it happens.
+        and how often it happens. The values are speeds, or with rank 1 how they change by the next frame.
         """
         over = np.flatnonzero(values > limits[part])
         events = np.split(over, np.flatnonzero(np.diff(over) > 0.3 * RATE) + 1) if len(over) else []
         best: dict[tuple[str, str], tuple[int, float, _Cause, int]] = {}
         for event in events:
             n = int(event[np.argmax(values[event])])
-            cause = self._likely_cause(self.seen.parts[part], float(self.seen.times[n]))
+            time = float(self.seen.times[n + rank])
+            cause = self._likely_cause(self.seen.parts[part], time, float(values[n]), rank)
             known = best.get(cause.key)
             count = known[3] + 1 if known else 1
             if known is None or values[n] > known[1]:
@@ -314,10 +351,10 @@ class _Findings:
         changes = np.linalg.norm(np.diff(places, 2, axis=0), axis=-1) * RATE**2
         limits = np.maximum(USUAL * self.changes, JUMP * self.size)
         for part, name in enumerate(self.seen.parts):
-            for frame, value, cause, count in self._worst(changes[:, part], limits, part):
+            for frame, value, cause, count in self._worst(changes[:, part], limits, part, 1):
                 near = places[frame : frame + 3, part]
                 far = 100 * float(np.linalg.norm(np.diff(near, axis=0), axis=-1).max())
-                if OWN * value <= self._own_moves(name, frame + 1, cause)[1]:
+                if OWN * value <= self._own_moves(name, float(self.seen.times[frame + 1]), cause)[1]:
                     ways = np.linalg.norm(
                         np.diff(places[max(0, frame - 3) : frame + 6, part], axis=0), axis=-1
                     )
@@ -337,10 +374,9 @@ class _Findings:
                 )
                 yield self._problem("play-jump", words, remedy, frame + 1, cause)
 
-    def _own_moves(self, part: str, frame: int, cause: _Cause) -> tuple[float, float]:
-        """Return what a part does at a frame in the clip that the cause plays, as `own_moves`."""
+    def _own_moves(self, part: str, time: float, cause: _Cause) -> tuple[float, float]:
+        """Return what a part does at a time in the clip that the cause plays, as `own_moves`."""
         joint = anatomy.project_roles(self.project)[part]
-        time = float(self.seen.times[frame])
         return own_moves(self.project, self.plan, cause.layer, joint, time)
 
     def _own_jump(self, part: str, far: float, frame: int, cause: _Cause, alone: bool) -> Problem:
@@ -382,7 +418,8 @@ class _Findings:
             if name == "hips":
                 continue
             for frame, value, cause, _ in self._worst(speeds[:, part], limits, part):
-                if not cause.blending or OWN * value <= self._own_moves(name, frame, cause)[0]:
+                own = self._own_moves(name, float(self.seen.times[frame]), cause)[0]
+                if not cause.blending or OWN * value <= own:
                     continue
                 words = phrase(
                     "{part} goes {speed:.1f} m/s, and at most {usual:.1f} m/s in the clips",
@@ -403,7 +440,8 @@ class _Findings:
         for frame, value, cause, _ in self._worst(speeds, limits, part):
             some = level[max(0, frame - round(RATE)) : frame + round(RATE)]
             far = float(np.linalg.norm(np.ptp(some, axis=0)))
-            if not cause.blending or far < GLIDES * self.size:
+            own = self._own_moves("hips", float(self.seen.times[frame]), cause)[0]
+            if not cause.blending or far < GLIDES * self.size or OWN * value <= own:
                 continue
             words = phrase("the body slides {length:.1f} m at {speed:.1f} m/s", length=far, speed=value)
             if self._can_stay(cause.action):
@@ -427,7 +465,12 @@ class _Findings:
 
     def _floor(self) -> Iterator[Problem]:
         under, above = self.seen.lowest < -UNDER * self.size, self.seen.lowest > ABOVE * self.size
-        for code, over in (("play-under-floor", under), ("play-in-air", above)):
+        sits = self.seen.sits
+        for code, over in (
+            ("play-under-floor", under),
+            ("play-in-air", above & ~sits),
+            ("play-no-seat", above & sits),
+        ):
             frames = np.flatnonzero(over)
             if len(frames) < LONG * RATE:
                 continue
@@ -455,6 +498,12 @@ class _Findings:
             )
             remedy = phrase("Set the height of the clip in the program it is from, or skip the clip.")
             severity: Severity = "error" if share > LASTING else "warning"
+            if code == "play-no-seat":
+                words = phrase("the character sits with its feet {length:.0f} cm above the floor", length=far)
+                remedy = phrase(
+                    "Put a seat under it in your scene, or lower the clip in the program it is from."
+                )
+                severity = "hint"
             yield self._problem(code, words, remedy, worst, causes[key], severity)
 
     def _arms_inside(self) -> Iterator[Problem]:

@@ -132,10 +132,13 @@ def _place(
         if belief is None or belief.value in keys or (belief is p.stance and kind == "stance"):
             continue
         place = places[belief.value]
-        loop = loops.get(
-            plain_stance_name(place.name),
-            place.rest.clip if place.rest is not None and place.rest.clip in project.clips else None,
-        )
+        rest = place.rest if place.rest is not None and place.rest.clip in project.clips else None
+        loop = place.loop if place.loop in project.clips else None
+        if loop is None and place.shape is None:
+            loop = loops.get(plain_stance_name(place.name))
+        moment = rest if loop is None else None
+        if loop is None:
+            loop = rest.clip if rest is not None else loops.get(plain_stance_name(place.name))
         if loop is None:
             raise EditError(
                 phrase(
@@ -148,13 +151,13 @@ def _place(
         project = edits.add_stance(project, layer, place.name, [loop])
         made = list(project.graphs[layer].stances)[-1]
         keys[place.key] = made
-        if plain_stance_name(place.name) not in loops and place.rest is not None:
-            held[made] = place.rest
+        if moment is not None:
+            held[made] = moment
             still = {
-                "start": place.rest.start,
-                "end": place.rest.end,
+                "start": moment.start,
+                "end": moment.end,
                 "loop": True,
-                "blend_in": (place.rest.end - place.rest.start) / 3,
+                "blend_in": (moment.end - moment.start) / 3,
             }
             project = edits.update_actions(project, [list(project.graphs[layer].actions)[-1]], timing=still)
     if p.stance.value not in keys:

@@ -30,6 +30,10 @@ SHRUGS = 0.0065  # heights that shoulders rise: no breath lifts them so far
 LOOKS = 0.035  # heights that the head goes: farther is a look round, or a lean
 STRIDE = 0.05  # heights by which each foot passes the other in a walk, at least
 IDLE_HANDS = 0.2  # heights a second: the hands of no idle go faster at their fastest
+OUT, BRIEF = (
+    0.03,
+    5.0,
+)  # heights that a hand goes out, in a clip of so many seconds, from which on it gestures
 STEADY = 0.6  # of `LayerTraits.steady`, above which a movement goes on all the time
 BREATHES = 0.008  # heights a second that arms on a breathing chest move while the head moves
 SEVERAL = 8  # clips from which on the movement of the calmest belongs to the recording
@@ -93,6 +97,7 @@ def resting(traits: Traits) -> float:
         + 3.0 * x.steady
         - 6.0 * max(0.0, apart - 0.3)
         - _busy_hands(traits)
+        - _held_out(traits)
         - (_busy_idle(traits) if traits.layers["arms"].extent < HANGING else 0.0)
         + flows * (max(0.0, -long) + small)
     )
@@ -103,6 +108,16 @@ def _busy_hands(traits: Traits) -> float:
     arms = traits.layers["arms"]
     always = min(1.0, max(0.0, (arms.steady - STEADY) / (1 - STEADY)))
     return 3.0 * always * max(0.0, log(max(arms.peak, 1e-3) / IDLE_HANDS))
+
+
+def _held_out(traits: Traits) -> float:
+    """Return what speaks against a rest in a short clip in which a hand goes out, stays there and comes back:
+    a small gesture.
+    """
+    arms = traits.layers["arms"]
+    short = min(1.0, max(0.0, (BRIEF - traits.duration) / 1.5))
+    far = min(1.0, max(0.0, (arms.extent - OUT) / OUT))
+    return 3.0 * short * far * min(1.0, max(0.0, (traits.held - 0.3) / 0.2))
 
 
 def _busy_idle(traits: Traits) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import PurePosixPath
+from pathlib import PurePath
 
 from metagraph.common.wording import phrase
 from metagraph.suggest.estimate import Belief
@@ -22,14 +22,14 @@ def read_folder_tags(
     paths: Mapping[str, str], patterns: Patterns | None = None
 ) -> dict[str, Belief[tuple[str, ...]]]:
     """Return clip id -> the tags that its folders give. `paths` are those of all clips, by id, as a project
-    keeps them; absolute ones lie outside the project and give none.
+    keeps them. Absolute ones lie outside the project, as all do before it is saved: of their folders only
+    those give tags whose names mean something in clips' names.
 
     A folder gives a tag where it lies beside other folders with clips: its own name, and what that means as a
     word of a clip's name ("sad" is also negative).
     """
-    folders = {
-        clip: PurePosixPath(path).parent.parts for clip, path in paths.items() if not path.startswith("/")
-    }
+    outside = {clip for clip, path in paths.items() if PurePath(path).is_absolute()}
+    folders = {clip: PurePath(path).parent.parts for clip, path in paths.items()}
     beside: dict[tuple[str, ...], set[str]] = {}
     for parts in folders.values():
         for n, part in enumerate(parts):
@@ -43,6 +43,8 @@ def read_folder_tags(
             if len(beside[parts[:n]]) < 2 or name.rstrip(" 0123456789") in (*KINDS_OF_FILES, ""):
                 continue
             said = meanings[part].tags
+            if clip in outside and said is None:
+                continue
             named.append(part)
             found += [name, *(said.value if said is not None else ())]
         if found:

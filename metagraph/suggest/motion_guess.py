@@ -384,9 +384,20 @@ def _hands_telling(traits: Traits) -> float:
     )
     hands = traits.energy["left_arm"] + traits.energy["right_arm"]
     busy = traits.energy["fingers"] / max(hands, 1e-6) - 0.3  # fingers that play while the hand hangs
+    before = _clipped((traits.front - 0.05) / 0.05, 0, 1)
+    leaves = _clipped((traits.out - 0.03) / 0.03, 0, 1) * before  # crossed or clasped arms that open
+    # A hand that goes out before the body, stays there for its beats and comes back, makes a gesture however
+    # small: preparation, stroke and retraction (Kendon, Gesture, 2004).
+    shaped = (
+        _clipped((traits.held - 0.25) / 0.2, 0, 1)
+        * _clipped((arms.extent - 0.015) / 0.015, 0, 1)
+        * before
+        * _clipped(traits.lifted / 0.05, 0, 1)
+        * (1 - _clipped((touch.kept - 0.3) / 0.3, 0, 1))
+    )
     return (
         1.7
-        + _clipped(_log(arms.extent, 0.12), -1.6, 1)
+        + _clipped(_log(arms.extent, 0.12), -1.6 + 1.3 * shaped, 1)
         + 0.5 * _clipped(_log(head.peak, 0.06), -1.5, 1)
         + 1.5 * still * _clipped(_log(head.peak, 0.12), 0, 1)
         + 1.6 * _clipped(traits.shrug / 0.01, 0, 1.2)
@@ -394,12 +405,12 @@ def _hands_telling(traits: Traits) -> float:
         - 2.5 * _clipped((0.05 - traits.front) / 0.03, 0, 1) * _clipped(-traits.lifted / 0.04, 0, 1)
         - 2.0 * still * _clipped(busy, 0, 1)
         - 12.0 * min(touch.head, 0.4)
-        - 10.0 * _clipped(touch.arm - 0.08, 0, 0.35)
+        - 10.0 * _clipped(touch.arm - 0.08, 0, 0.35) * (1 - leaves)
         - 3.0 * scratching
-        - 2.4 * _clipped((touch.kept - 0.45) / 0.3, 0, 1) / (1 + (arms.extent / 0.25) ** 4)
+        - 2.4 * _clipped((touch.kept - 0.45) / 0.3, 0, 1) / (1 + (arms.extent / 0.25) ** 4) * (1 - leaves)
         - 4.0 * still * _clipped((traits.sway - 0.04) / 0.05, 0, 1)
         - 1.2 * still * _clipped(_log(traits.energy["legs"], 0.04), 0, 1.5)
-        - 0.8 * min(max(bouts - 2, 0), 2)
+        - 0.8 * min(max(bouts - 2, 0), 2) * (1 - shaped)
     )
 
 

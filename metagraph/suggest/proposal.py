@@ -35,7 +35,8 @@ class StancePlace:
     """A stance that clips may belong to.
 
     `key` is the project's id, or a key of its own for a stance that does not exist yet; `there` says whether
-    it exists. `shape` is what it looks like, if known. `rest` is where it can be seen if no clip rests in it.
+    it exists. `shape` is what it looks like, if known. `loop` is a clip of another layer that rests in it, as
+    one of the whole body rests in a stance of each. `rest` is where it can be seen if no clip rests in it.
     """
 
     key: str
@@ -43,6 +44,7 @@ class StancePlace:
     name: str
     there: bool = False
     shape: Shape | None = None
+    loop: str | None = None
     rest: RestMoment | None = None
 
 

@@ -33,9 +33,11 @@ from metagraph.suggest.proposal import (
     plain_stance_name,
 )
 from metagraph.suggest.stances.known import (
+    SAME,
     Shape,
     discover,
     discover_stances,
+    distance_from_stance,
     list_known_stances,
     rank_stances,
     settle_stances,
@@ -76,6 +78,7 @@ TAUGHT = 0.5  # confidence of a kind learned from labelled clips, from which on 
 TOLD = 0.7  # confidence of a name's stance, below which it does not define stances
 LEADS = 0.8  # confidence of the motion that a clip named after a stance goes there
 FACE_MOVES = 0.3  # of `Traits.face`, from which on a clip of a face alone is no pose that is held
+NAMED = 1.5  # times as far from a stance that a clip may rest which is named after it
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 
 
@@ -213,7 +216,7 @@ def propose(
             for c, p in out.items()
         }
     return Proposals(
-        with_likelihoods(project, out), _with_rests(project, places.by_key, out), aside, whole, spare
+        with_likelihoods(project, out), _with_rests(project, places.by_key, out, traits), aside, whole, spare
     )
 
 
@@ -383,17 +386,48 @@ def _spare(
 
 
 def _with_rests(
-    project: Project, places: Mapping[str, StancePlace], proposals: Mapping[str, Proposal]
+    project: Project,
+    places: Mapping[str, StancePlace],
+    proposals: Mapping[str, Proposal],
+    traits: Mapping[str, Traits],
 ) -> dict[str, StancePlace]:
-    """Return the stances. Those that no clip rests in get a moment of a clip that shows them."""
-    shown = {p.stance.value for p in proposals.values() if p.kind.value == "stance" and p.stance is not None}
-    names = {plain_stance_name(places[key].name) for key in shown}
-    return {
-        key: place
-        if place.there or key in shown or plain_stance_name(place.name) in names
-        else replace(place, rest=rest_of(project, place, proposals))
-        for key, place in places.items()
-    }
+    """Return the stances. Those in which no clip of their layer rests get a clip of another layer that rests
+    in them, else a moment of a clip that shows them.
+    """
+    resting = {p.clip: p for p in proposals.values() if p.kind.value == "stance" and p.stance is not None}
+    shown = {p.stance.value for p in resting.values() if p.stance is not None}
+    out = {}
+    for key, place in places.items():
+        if not place.there and key not in shown:
+            loop = _loop_elsewhere(place, places, resting, traits)
+            place = replace(
+                place, loop=loop, rest=rest_of(project, place, proposals) if loop is None else None
+            )
+        out[key] = place
+    return out
+
+
+def _loop_elsewhere(
+    place: StancePlace,
+    places: Mapping[str, StancePlace],
+    resting: Mapping[str, Proposal],
+    traits: Mapping[str, Traits],
+) -> str | None:
+    """Return the clip of another layer that rests in a stance: the one whose pose there is nearest, if it is
+    near, else, where nobody knows what the stance looks like, one whose stance has the same name.
+    """
+    name, found = plain_stance_name(place.name), list[tuple[float, str]]()
+    for clip, p in resting.items():
+        assert p.stance is not None
+        named = plain_stance_name(places[p.stance.value].name) == name
+        if place.shape is None or clip not in traits:
+            found += [(0.0, clip)] if named else []
+            continue
+        posed = traits[clip].layers[place.layer]
+        away = distance_from_stance(place.shape, posed.names, posed.first)
+        if away <= SAME[place.layer][1] * (NAMED if named else 1.0):
+            found.append((away, clip))
+    return min(found)[1] if found else None
 
 
 def _proposal(each: ClipEvidence, places: StancePlaces, anyway: bool = False) -> Proposal | None:

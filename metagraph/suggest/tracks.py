@@ -60,20 +60,28 @@ def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> TrackRig:
     )
 
 
-_TRACKS: WeakKeyDictionary[Clip, tuple[TrackRig, Array]] = WeakKeyDictionary()
+_TRACKS: WeakKeyDictionary[Clip, tuple[TrackRig, Array, Array]] = WeakKeyDictionary()
 
 
 def joint_track(rig: TrackRig, clip: Clip) -> Array:
     """Return where the relevant joints are, `[F, J, 3]` float32, in metres, from the root as the character
     faces, at RATE frames a second.
     """
+    return _tracks(rig, clip)[1]
+
+
+def floor_track(rig: TrackRig, clip: Clip) -> Array:
+    """Return where the hips are over the floor, `[F, 2]` metres, at RATE frames a second."""
+    return _tracks(rig, clip)[2]
+
+
+def _tracks(rig: TrackRig, clip: Clip) -> tuple[TrackRig, Array, Array]:
     known = _TRACKS.get(clip)
-    if known is not None and known[0] is rig:
-        return known[1]
-    facing, at = facing_and_standing(rig, clip_poses(clip))
-    track = view_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
-    _TRACKS[clip] = rig, track
-    return track
+    if known is None or known[0] is not rig:
+        facing, at = facing_and_standing(rig, clip_poses(clip))
+        track = view_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
+        known = _TRACKS[clip] = rig, track, at[:, rig.root][:, [0, 2]]
+    return known
 
 
 def clip_poses(clip: Clip) -> Pose:

@@ -32,6 +32,7 @@ SMOOTH = 0.06  # seconds: standard deviation of the filter on speeds
 RESTING = 0.05  # heights a second: slower is rest
 _BACK = np.array([-1.0, 1.0])  # turns a facing direction into its inverse
 NEAR_SEAM = 0.1  # seconds on either side of a loop's seam
+JERKY = 1.2  # times the greatest change of velocity within the loop, the same
 JERKS = 0.5  # of the greatest speed: a change of velocity at a loop's seam that is seen as a jerk
 TOUCH = 0.12  # heights from a wrist to what its hand touches, at most
 PARTS = ("left_arm", "right_arm", "fingers", "head", "trunk", "hips", "legs")
@@ -89,7 +90,9 @@ class Traits:
     and down. `face` is, for a clip in which nothing else moves, how much joints of the face do, 0..2; 0 for
     other clips. `contact` is that with its own body. `shrug` is how far the shoulders rise more than the
     trunk. `sway` is how far the hips go to a side. `front` and `lifted` say how far before the chest, and
-    above the hips, the hand that goes farthest is when it is farthest. `tremble` has the energies that all
+    above the hips, the hand that goes farthest is when it is farthest. `held` is how far away it stays, from
+    when it is half as far for the first time until it is for the last, relative to that: 1 for a hand that is
+    held out, 0 for one that comes back in between. `tremble` has the energies that all
     clips of its set have (see `with_tremble`).
     """
 
@@ -113,6 +116,7 @@ class Traits:
     sway: float = 0.0
     front: float = 0.0
     lifted: float = 0.0
+    held: float = 0.0
     tremble: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -280,7 +284,8 @@ def _flow(tracks: Array, times: Array) -> tuple[float, float]:
     speed = np.linalg.norm(velocity, axis=-1)
     point = int(np.argmax(speed.max(0)))
     fastest, jump = speed[:, point].max(), np.linalg.norm(velocity[0, point] - velocity[-1, point])
-    if fastest < 1e-4 or jump > JERKS * fastest:
+    usual = np.linalg.norm(np.diff(velocity[:, point], axis=0), axis=-1).max()  # in one frame, where few are
+    if fastest < 1e-4 or jump > max(JERKS * fastest, JERKY * usual):
         return 0.0, 0.0
     count = max(1, int(NEAR_SEAM / float(times[1] - times[0]) + 0.5))
     sides = speed[:count, point].mean(), speed[-count:, point].mean()
@@ -358,7 +363,7 @@ def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Ar
     left, right = hands
     out, near = _reach(world)
     touch = _touch(world)
-    front, lifted = _gesture_space(points, world)
+    front, lifted, held = _gesture_space(points, world)
     ground = world["hips"][:, [0, 2]]
     return Traits(
         figure.height,
@@ -380,6 +385,7 @@ def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Ar
         sway=float(np.ptp(points["hips"][:, 0])) if "hips" in points else 0.0,
         front=front,
         lifted=lifted,
+        held=held,
     )
 
 
@@ -392,9 +398,11 @@ def _shrug(points: Mapping[str, Array]) -> float:
     return min(rises, default=0.0)
 
 
-def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> tuple[float, float]:
-    """Return where the hand that goes farthest is: before the chest and above the hips."""
-    best, out = 0.0, (0.0, 0.0)
+def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> tuple[float, float, float]:
+    """Return where the hand that goes farthest is: before the chest and above the hips; and how far away it
+    stays in between, relative to the farthest.
+    """
+    best, out = 0.0, (0.0, 0.0, 0.0)
     for name in ("left_hand", "right_hand"):
         if name not in points:
             continue
@@ -403,7 +411,9 @@ def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> t
         if away[far] > best:
             best = float(away[far])
             height = world[name][far, 1] - world["hips"][far, 1]
-            out = float(points[name][far, 2]), float(height)
+            half = np.flatnonzero(away >= best / 2)
+            stays = float(away[half[0] : half[-1] + 1].min()) / best
+            out = float(points[name][far, 2]), float(height), stays
     return out
 
 

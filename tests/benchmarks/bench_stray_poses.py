@@ -142,12 +142,14 @@ def backwards(clip: Clip) -> Clip:
 def resampled(clip: Clip, fps: float, count_first: bool) -> tuple[Clip, int]:
     """Return the clip at another rate, and how many frames lie before its second one."""
     times = np.arange(int(clip.duration * fps) + 1) / fps
-    pose = clip.pose_at(times)
+    low, high, part = clip.locate(times)  # straight between keys, as tools do it
+    turned = np.broadcast_to(part[:, None], (len(times), len(clip.skeleton)))
+    moved_by = part[:, None, None]
     moved = replace(
         clip,
         fps=fps,
-        rotations=rotation.continuous(pose.rotations),
-        translations=pose.translations[:, list(clip.translated)],
+        rotations=rotation.continuous(rotation.nlerp(clip.rotations[low], clip.rotations[high], turned)),
+        translations=clip.translations[low] * (1 - moved_by) + clip.translations[high] * moved_by,
         morphs=(),
         weights=None,
     )

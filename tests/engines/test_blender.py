@@ -128,9 +128,9 @@ def test_labels_are_what_the_export_says_and_rows_tell_what_changed(document: di
     assert len(known) == sum(len(layer["actions"]) for layer in document["layers"].values())
     assert all(not labels.faults(label, 1e3) for label in known)
     before = next(label for label in known if label["kind"] == "gesture")
-    after = {**before, "tags": ["mine"], "stroke": 0.25, "start": before["start"] + 1e-8}
+    after = {**before, "tags": ["mine"], "stroke": 0.25, "start": before["start"] + 1e-8, "repeat": 2.0}
     assert labels.row_of("c", before, after) == {
-        "clip": "c", "action": before["action"], "tags": ["mine"], "stroke": 0.25
+        "clip": "c", "action": before["action"], "tags": ["mine"], "stroke": 0.25, "repeat": 2.0
     }  # fmt: skip
     wrong = {**before, "kind": "transition", "end_stance": before["stance"], "start": 9.0, "likelihood": 0}
     assert len(labels.faults(wrong, 3.0)) >= 3

@@ -11,6 +11,7 @@ import pytest
 
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
+from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback import continuity
 from metagraph.playback.own_moves import body_joints
@@ -160,3 +161,18 @@ def test_what_is_added_to_clips_is_reported_where_it_breaks_the_law_of_continuit
     found = [p for p in rehearse(alive, SECONDS) if p.code == "play-added"]
     assert found and all("beyond what the clips do" in p.message for p in found)
     assert any("gaze" in p.message and "Gaze" in p.remedy and p.moment is not None for p in found)
+
+
+def test_who_sits_above_the_floor_lacks_a_seat_and_is_not_said_to_float(sound: Project) -> None:
+    def seated(clip: Clip) -> Clip:
+        raised = lifted(0.6)(clip)
+        turns = raised.rotations.copy()
+        for side in ("Left", "Right"):
+            j = clip.skeleton.index(f"{side}UpperLeg")
+            bent = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(-85.0))
+            turns[:, j] = rotation.multiply(bent, turns[:, j].astype(float))
+        return replace(raised, rotations=turns)
+
+    found = {p.code: p for p in rehearse(changed(sound, seated), SECONDS)}
+    assert "play-in-air" not in found and found["play-no-seat"].severity == "hint"
+    assert "sits with its feet" in found["play-no-seat"].message and "seat" in found["play-no-seat"].remedy

@@ -71,6 +71,14 @@ def test_it_plays_whole_cycles_for_as_long_as_asked(
     assert [cue.cycle_from, cue.cycle_to] == pytest.approx([0.3, 0.7])
 
 
+@pytest.mark.parametrize(("hold", "duration", "cycles"), [(3.0, None, 8), (0.0, None, 1), (3.0, 1.2, 3)])
+def test_a_hold_makes_it_go_on_where_no_duration_is_asked_for(
+    project: Project, wave: str, hold: float, duration: float | None, cycles: int
+) -> None:
+    cue = played(planned(project, asked(wave, hold=hold, duration=duration)))
+    assert cue.end - cue.start == pytest.approx(cycles * CYCLE) and cue.hold == 0
+
+
 def test_a_request_for_an_action_says_how_long(project: Project, wave: str) -> None:
     ask = request_from({"do": "action", "action": wave, "at": 1.0, "duration": 4.0})
     cue = played(plan_performance(project, [ask], 9.0, idle=False))

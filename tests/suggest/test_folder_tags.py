@@ -26,6 +26,11 @@ def test_folders_within_folders_are_tags_too() -> None:
     assert read["0"].value == ("happy", "positive") and read["0"].reason == "its folder is 'happy'"
 
 
+def test_before_a_project_is_saved_folders_give_tags_only_where_their_names_mean_something() -> None:
+    found = tags("/home/anna/happy/wave.bvh", "/home/anna/sad/wave.bvh", "/home/anna/kitchen/nod.bvh")
+    assert found == [("happy", "positive"), ("sad", "negative"), ()]
+
+
 @pytest.mark.parametrize(
     "paths",
     [

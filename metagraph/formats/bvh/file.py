@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -31,7 +31,7 @@ from metagraph.formats.bvh.space import USUAL, find_relative_joints, find_unit, 
 from metagraph.formats.takes import FRAME_TIME, FROM_OFFSET, UNIT, UP, drop_stray_poses, note_repair
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
-from metagraph.motion.roles import find_roles
+from metagraph.motion.roles import find_roles, missing_roles
 from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
@@ -426,6 +426,10 @@ def _clip(
     rotations = _rotations(values, joints, columns)
     skeleton = Skeleton(names, parents.copy(), rotation.identity_rotations((len(joints),)), offsets)
     roles = find_roles(skeleton)
+    if missing_roles(roles):  # of unknown names the shape tells, as of a figure with Y up
+        upright = replace(skeleton, rest_translations=rotation.rotate_vectors(_TO_Y_UP, offsets))
+        turned = find_roles(upright)
+        roles = roles if missing_roles(turned) else turned
 
     scale, found = _metres(skeleton, roles, scale, notes, as_is)
     repairs += found

@@ -68,6 +68,8 @@ def shape_of(
     shortest, exit_at = length, action.timing.earliest_exit
     if cycle > 0:
         wanted = min(action.timing.repeat, LONGEST_REPEAT)
+        if request is not None and request.hold is not None:
+            wanted = request.hold  # what repeats goes on for as long as another gesture would be held
         if request is not None and request.duration is not None:
             wanted = request.duration
         length += (times_played(cycle, wanted * speed) - 1.0) * cycle / speed

@@ -64,8 +64,8 @@ def bridge_all(project: Project) -> tuple[Project, tuple[Bridge, ...]]:
     """
     out: list[Bridge] = []
     for layer in LAYERS:
-        poses = _poses(project, project.graphs[layer])
         start = project.graphs[layer].start
+        poses = _without_far_rests(project, layer, _poses(project, project.graphs[layer]))
         if start not in poses:
             continue
         for there in (True, False):
@@ -141,15 +141,49 @@ def describe_unbridged(project: Project) -> list[str]:
         if graph.start not in poses:
             continue
         home = [s for s in poses if _joined(project, layer, s)]
+        wanted = _without_far_rests(project, layer, poses)
         for stance in (s for s in poses if s not in home):
             lost = poses[stance]
             near = sorted((poses[s] for s in home), key=lambda one: _metres(one, lost))
             reasons = [_refusal(project, one, lost) for one in near]
+            if stance not in wanted:
+                far = phrase(
+                    "nothing but its loop plays there, {length:.0f} cm away. Add a clip that leads there, "
+                    "or bridge it under Problems.",
+                    length=100 * _metres(near[0], lost),
+                )
+                reasons = [reasons[0] or far]
             why = reasons[0] if reasons and None not in reasons else None
             if why is not None:
                 name = graph.stances[stance].name
                 out.append(phrase('"{name}" is not joined to the others: {why}', name=name, why=why))
     return out
+
+
+def _without_far_rests(project: Project, layer: Layer, poses: Mapping[str, _Rest]) -> dict[str, _Rest]:
+    """Return the poses without those of stances in which no gesture or fidget plays, nor in any that
+    transitions join to them, and which are so far from the others that a blend shows: nothing is lost where
+    nobody stands in them.
+    """
+    graph, most = project.graphs[layer], NOTICED * _size(project)
+    groups = {s: {s} for s in poses}
+    for one in poses:
+        for other in reachable(graph, one) & poses.keys():
+            joined = groups[one] | groups[other]
+            groups.update(dict.fromkeys(joined, joined))
+    kept = {
+        s
+        for s, mine in groups.items()
+        if graph.start in mine or any(graph.of(x, kind) for x in mine for kind in ("gesture", "fidget"))
+    }
+    while near := {
+        s
+        for one in poses.keys() - kept
+        if any(_metres(poses[one], poses[s]) <= most for s in kept)
+        for s in groups[one]
+    }:
+        kept |= near
+    return {s: rest for s, rest in poses.items() if s in kept}
 
 
 def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -> tuple[list[str], list[str]]:

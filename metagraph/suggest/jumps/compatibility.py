@@ -24,7 +24,14 @@ from metagraph.graph.model import REACH, Project
 from metagraph.graph.words import Layer
 from metagraph.motion.clip import Clip
 from metagraph.suggest.jumps.johnson import JohnsonSB, fit_johnson
-from metagraph.suggest.tracks import RATE, joint_track, track_rig, track_seconds, velocity_of
+from metagraph.suggest.tracks import (
+    RATE,
+    floor_track,
+    joint_track,
+    track_rig,
+    track_seconds,
+    velocity_of,
+)
 
 Array = NDArray[Any]
 
@@ -37,6 +44,8 @@ SEAMLESS = 0.3  # of the threshold: a seam that needs no overlap
 BLEND = (0.15, 0.5)  # seconds, shortest and longest
 SLOWEST = 0.5  # seconds, the most that w_v can be: of motion whose speed never changes it would be endless
 ALIKE = 0.05  # of the threshold: moments that are as good as one another
+STAYS = 0.015  # heights that hips may be off the spot at which a clip ends when it is left early
+UNSEEN = 0.25  # of a clip that a blend takes which nobody would miss
 STILL = 1e-3  # metres summed over joints: a threshold below says only that nothing moved
 Span = tuple[float, float]
 
@@ -326,10 +335,13 @@ def propose_times(
         start = begin  # before, it is on its way from elsewhere
     if visible_difference(_at(left, end), blend_out) > 1 >= visible_difference(_at(left, finish), blend_out):
         end = finish
-    room = max(0.0, end - start) / 2
+    most = max(0.0, end - start)
+    room_in, room_out = (
+        most * (UNSEEN if _at(x, t) <= 1 else 0.5) for x, t in ((entered, start), (left, end))
+    )
     away = bool((left > 1).any())
-    last = out.leave[-1][0] if out.leave else end
-    earliest = max(last, middle) if away and leave and max(last, middle) < end - blend_out else None
+    last = max(out.leave[-1][0] if out.leave else end, middle, _settled(clip, roles))
+    earliest = last if away and leave and last < end - blend_out else None
     if enter and leave:
         reason = phrase(
             "moves from {first:.2f} to {last:.2f} s, and looks like its stance before and after",
@@ -356,8 +368,15 @@ def propose_times(
             more=out.leave_cost,
         )
     return ProposedTimes(
-        start, end, min(blend_in, room), min(blend_out, room), earliest, bool(enter and leave), reason
+        start, end, min(blend_in, room_in), min(blend_out, room_out), earliest, bool(enter and leave), reason
     )
+
+
+def _settled(clip: Clip, roles: Mapping[str, int] | None) -> float:
+    """Return from which second on the hips stay over the spot on the floor at which the clip ends."""
+    at = floor_track(track_rig(clip, roles), clip)
+    away = np.linalg.norm(at - at[-1], axis=-1) > STAYS * clip.skeleton.height
+    return float(track_seconds(clip)[min(int(np.flatnonzero(away).max(initial=-1)) + 1, len(at) - 1)])
 
 
 def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> ProposedTimes:

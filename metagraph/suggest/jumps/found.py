@@ -11,10 +11,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import REACH, Action, Layer, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.phases import phases
 from metagraph.suggest.jumps import compatibility as c
@@ -307,11 +309,22 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
         return None
     stats = c.mask_statistics(measured.stats, motion, anatomy.action_mask(project, action), roles)
     stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
-    proposed = c.propose_times(stats, motion, into, left, stroke, roles)
     times = _times(motion, into)
     gaps = end_gaps.distances_to_stance(project, action, times)
-    proposed = _hidden(project, action, proposed, times, gaps)
+    if cycle_of(action.kind, action.timing, *project.span(action)) > 0:
+        proposed = _cycle_times(project, action)
+    else:
+        proposed = c.propose_times(stats, motion, into, left, stroke, roles)
+        proposed = _hidden(project, action, proposed, times, gaps)
     return Curves(times, c.entering(into), left, proposed, gaps, motion.skeleton.height)
+
+
+def _cycle_times(project: Project, action: Action) -> c.ProposedTimes:
+    """Return the times of an action that repeats: its part stays, or its cycles would not meet."""
+    start, end = project.span(action)
+    t = action.timing
+    reason = phrase("repeats its part, so its start and end stay where they are")
+    return c.ProposedTimes(start, end, t.blend_in, t.blend_out, t.earliest_exit, True, reason)
 
 
 def _hidden(

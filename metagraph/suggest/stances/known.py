@@ -184,6 +184,7 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
     if not mine:
         return ()
     others = {clip: t for clip, t in moving.items() if clip not in mine and t.face == 0}
+    still = {clip: t for clip, t in others.items() if resting(t) > 0}
     several = [t.layers[layer].names for t in mine.values()]
     names = max(set(several), key=lambda n: (several.count(n), n))
     found: list[tuple[str, float, Array, bool]] = []
@@ -208,7 +209,11 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
         best = min(loops or rows, key=lambda i: (float(np.linalg.norm(poses[i] - middle)), i))
         calm = 0.0
         closed = [i for i, j in pairwise(rows) if found[i][0] == found[j][0]]
-        if (
+        if not loops and any(
+            _far(t.layers[layer], "first", middle, names) <= SAME[layer][0] for t in still.values()
+        ):
+            closed = []  # one of another layer rests here, so none of this one is its loop
+        elif (
             not loops and len(closed) >= FEW
         ):  # the quietest of what begins and ends there is its loop, if much quieter than the others
             quiet = {i: energy(mine[found[i][0]]) for i in closed}

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import change_quoted
@@ -20,7 +21,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import Likely, MotionGuess
 from metagraph.suggest.proposal import StancePlace, plain_stance_name
-from metagraph.suggest.stances.known import Shape, distance_from_stance
+from metagraph.suggest.stances.known import SAME, Shape, distance_from_stance
 from metagraph.suggest.stances.pose_words import describe_pose
 from metagraph.suggest.traits import LayerTraits, Traits
 from metagraph.suggest.vote_fusion import Agreed, combine
@@ -112,12 +113,34 @@ class StancePlaces:
                 self._of_word[(layer, plain_stance_name(stance.name))] = stance.id
         for layer in LAYERS:
             self._joined(layer, shapes.get(layer, ()), [each for each in heard if each.layer == layer])
+        rests: list[
+            tuple[str, LayerTraits]
+        ] = []  # stances that only names tell, with a clip that rests there
         for each in heard:
             for word, *_ in each.called():
-                if (each.layer, plain_stance_name(word)) not in self._of_word:
-                    key = f"new {each.layer} {plain_stance_name(word)}"
-                    self.by_key.setdefault(key, StancePlace(key, each.layer, word))
-                    self._of_word[(each.layer, plain_stance_name(word))] = key
+                told = (each.layer, plain_stance_name(word))
+                if told in self._of_word:
+                    continue
+                key = self._same_rest(each, rests) or f"new {each.layer} {told[1]}"
+                self.by_key.setdefault(key, StancePlace(key, each.layer, word))
+                self._of_word[told] = key
+                if each.traits is not None:
+                    rests.append((key, each.posture or each.traits.layers[each.layer]))
+
+    def _same_rest(self, each: ClipEvidence, rests: Sequence[tuple[str, LayerTraits]]) -> str | None:
+        """Return the stance in which another clip has the same pose, of a clip that is named as one that
+        rests: "idle 1" and "idle 2" of a layer that stays the same in both.
+        """
+        kind = each.said.kind.value if each.said.kind is not None else None
+        if kind != "stance" or each.traits is None:
+            return None
+        mine = each.posture or each.traits.layers[each.layer]
+        for key, other in rests:
+            if self.by_key[key].layer != each.layer or not mine.names or mine.names != other.names:
+                continue
+            if np.linalg.norm(mine.first - other.first, axis=-1).max() <= SAME[each.layer][0]:
+                return key
+        return None
 
     def _joined(self, layer: Layer, shapes: Sequence[Shape], heard: Sequence[ClipEvidence]) -> None:
         """Join the words and the shapes of a layer."""

@@ -127,7 +127,7 @@ def test_stances_without_a_loop_are_left_as_they_are() -> None:
     project = stances(3)
     second = list(project.graphs["arms"].stances)[1]
     bare = edits.remove_actions(project, [a.id for a in project.graphs["arms"].of(second, "stance")])
-    made = bridge_all(bare)[1]
+    made = bridge_all(used(bare))[1]
     assert {s for x in made for s in (x.start, x.end)} == set(project.graphs["arms"].stances) - {second}
     assert bridge_stance(bare, second) == (bare, ())
     none = edits.remove_actions(project, [a.id for a in project.actions()])
@@ -193,6 +193,30 @@ def test_a_single_pose_is_blended_into_out_of_the_loop_before_it() -> None:
     assert into is not None and after.clips[into.clip].duration > 1
     assert into.timing.blend_out > into.timing.blend_in > 0 and not trouble(after)
     assert all(x.seconds >= SHORTEST - 1e-9 for x in made)
+
+
+def used(project: Project) -> Project:
+    """The project with a fidget in each stance, so that there is something to go there for."""
+    for layer, graph in project.graphs.items():
+        for stance in graph.stances:
+            for loop in graph.of(stance, "stance")[:1]:
+                project = edits.place_clips(project, [loop.clip], layer, "fidget", stance)
+    return project
+
+
+def test_a_far_stance_in_which_nothing_plays_is_left_alone_and_told_but_joined_on_request() -> None:
+    clips = [TOY.clip("idle", 2.0, 0.0, swing=0.02), TOY.clip("fighting", 2.0, 1.2, swing=0.02)]
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    for clip in clips:
+        project = edits.add_stance(project, "arms", clip.name, [TOY.id(project, clip.name)])
+    assert bridge_all(project) == (project, ())
+    (line,) = describe_unbridged(project)
+    assert "nothing but its loop plays there" in line and "under Problems" in line
+    assert len(bridge_stance(project, TOY.id(project, "fighting"))[1]) == 2
+    project = edits.add_clips(project, [("wave.glb", 0, "", TOY.clip("wave", 2.0, 1.2, swing=1.5))])
+    fighting = TOY.id(project, "fighting")
+    project = edits.place_clips(project, [TOY.id(project, "wave")], "arms", "gesture", fighting)
+    assert len(bridge_all(project)[1]) == 2
 
 
 def two_poses(change: Callable[[Clip], Clip], seconds: float = 2.0, layer: Layer = "body") -> Project:
@@ -282,7 +306,7 @@ def among_calm_clips(seconds: float, height: float) -> Project:
     for name in ("low", "high"):
         project = edits.add_stance(project, "body", name, [TOY.id(project, name)])
     stance = next(iter(project.graphs["body"].stances))
-    return edits.place_clips(project, [TOY.id(project, "wave")], "body", "gesture", stance)
+    return used(edits.place_clips(project, [TOY.id(project, "wave")], "body", "gesture", stance))
 
 
 def fastest(project: Project, action: str) -> float:
@@ -329,7 +353,7 @@ def test_a_bridge_by_a_moment_of_a_longer_clip_shows_that_moment_where_it_blends
     project = edits.add_stance(project, "arms", "held", [TOY.id(project, "wave")])
     held = list(project.graphs["arms"].actions)[-1]
     project = edits.update_actions(project, [held], timing={"start": start, "end": end, "loop": True})
-    after, made = bridge_all(project)
+    after, made = bridge_all(used(project))
     into = after.action(made[0].action)
     assert into is not None and into.timing.end is not None
     assert into.timing.end - into.timing.start >= CAREFUL - 2e-3

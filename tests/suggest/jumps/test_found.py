@@ -177,6 +177,16 @@ def test_curves_of_a_loop_are_its_seam_and_of_a_missing_file_nothing(toy: Any, w
     assert stance_curves(replace(project, clips=clips), measured, wave) is None
 
 
+def test_proposed_times_leave_the_part_that_repeats_as_it_is(toy: Any, wide: Project) -> None:
+    wave = toy.id(wide, "rest wave rt")
+    timing = {"start": 0.3, "end": 0.7, "blend_in": 0.3, "blend_out": 0.2, "repeat": 2.0}
+    project = edits.update_actions(wide, [wave], timing=timing)
+    strip = stance_curves(project, Measured(project, "arms"), project.action(wave))  # type: ignore[arg-type]
+    assert strip is not None and strip.proposed.good and "repeats" in strip.proposed.reason
+    found = strip.proposed
+    assert [found.start, found.end, found.blend_in, found.blend_out] == pytest.approx([0.3, 0.7, 0.3, 0.2])
+
+
 def test_a_blend_takes_off_what_the_player_blends() -> None:
     assert c.visible_difference(2.0, 0.0) == 2.0 and c.visible_difference(2.0, 0.05) == 2.0
     assert c.visible_difference(2.0, 0.2) == pytest.approx(1.0) and np.allclose(

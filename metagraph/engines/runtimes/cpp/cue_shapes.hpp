@@ -125,6 +125,9 @@ inline Ref<CueShape> shape_of(
     std::optional<double> exit_at = action->timing->earliest_exit;
     if (cycle > 0) {
         double wanted = std::min(action->timing->repeat, repeating::LONGEST_REPEAT);
+        if (request != nullptr && request->hold.has_value()) {
+            wanted = *request->hold; // what repeats goes on for as long as another gesture would be held
+        }
         if (request != nullptr && request->duration.has_value()) {
             wanted = *request->duration;
         }

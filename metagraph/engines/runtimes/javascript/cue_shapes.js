@@ -81,6 +81,9 @@ export function shapeOf(project, action, request, now, speed) {
   let exitAt = action.timing.earliestExit;
   if (cycle > 0) {
     let wanted = Math.min(action.timing.repeat, LONGEST_REPEAT);
+    if (request !== null && request.hold !== null) {
+      wanted = request.hold; // what repeats goes on for as long as another gesture would be held
+    }
     if (request !== null && request.duration !== null) {
       wanted = request.duration;
     }

@@ -14,7 +14,7 @@ LAYERS = ("body", "arms", "head")
 KINDS = ("stance", "gesture", "fidget", "transition")
 LIMBS = ("both", "left", "right")
 TEXTS = ("name", "kind", "layer", "stance", "end_stance", "limb")
-NUMBERS = ("likelihood", "cooldown", "start", "blend_in", "blend_out")  # >= 0
+NUMBERS = ("likelihood", "cooldown", "start", "blend_in", "blend_out", "repeat")  # >= 0
 MAYBE = ("end", "earliest_exit", "stroke", "ready", "stroke_end", "relax")  # None: found, or none
 ROWS = 1  # the format's number
 
@@ -52,7 +52,7 @@ def labels_of(document: Mapping[str, Any]) -> list[Label]:
                     "stance": called[action["stance"]],
                     "end_stance": called.get(action["end_stance"], ""),
                     **{key: action[key] for key in ("name", "kind", "limb", "loop", "likelihood")},
-                    "cooldown": action.get("cooldown", 0.0),
+                    **{key: action.get(key, 0.0) for key in ("cooldown", "repeat")},
                     "tags": list(action["tags"]),
                     "joints": list(action["joints"]),
                     **{key: action[key] for key in ("start", "blend_in", "blend_out")},

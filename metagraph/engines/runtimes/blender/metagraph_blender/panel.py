@@ -70,6 +70,7 @@ class MetagraphLabel(bpy.types.PropertyGroup):
     blend_in: _seconds("Blend in", "Seconds of blending from the stance; of a loop, its seam")
     blend_out: _seconds("Blend out", "Seconds of blending back")
     loop: BoolProperty(name="Loop")
+    repeat: _seconds("Repeats", "For how many seconds it repeats its part; 0 plays it once")
     end: _maybe("End", "Where it ends")
     earliest_exit: _maybe("Earliest exit", "From where it may be left")
     stroke: _maybe("Stroke", "Its most telling moment")
@@ -267,6 +268,7 @@ def _draw_label(layout: Any, action: Any, context: Any) -> None:
     for field in fields:
         layout.prop(own, field)
     times = ["start", "end", "blend_in", "blend_out", "earliest_exit", "loop"]
+    times += ["repeat"] if own.kind in ("gesture", "fidget") else []
     column = layout.column(align=True)
     for field in times + (["ready", "stroke", "stroke_end", "relax"] if own.kind == "gesture" else []):
         column.prop(own, field)

@@ -97,6 +97,10 @@ namespace Metagraph
             if (cycle > 0)
             {
                 var wanted = Math.Min(action.Timing.Repeat, RepeatingRules.LongestRepeat);
+                if (request != null && request.Hold != null)
+                {
+                    wanted = request.Hold.Value; // what repeats goes on for as long as another gesture would be held
+                }
                 if (request != null && request.Duration != null)
                 {
                     wanted = request.Duration.Value;

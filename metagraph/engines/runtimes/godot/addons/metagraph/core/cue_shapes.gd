@@ -71,6 +71,8 @@ static func shape_of(project, action, request, now, speed):
 	var exit_at = action.timing.earliest_exit
 	if cycle > 0:
 		var wanted = Util.least(action.timing.repeat, Repeating.LONGEST_REPEAT)
+		if request != null and request.hold != null:
+			wanted = request.hold  # what repeats goes on for as long as another gesture would be held
 		if request != null and request.duration != null:
 			wanted = request.duration
 		length += (Repeating.times_played(cycle, wanted * speed) - 1.0) * cycle / speed
