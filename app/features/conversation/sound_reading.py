@@ -66,6 +66,7 @@ class Sounds(QObject):
         )
         document.loaded.connect(self.forget)
         session.onstage.conversation_changed.connect(self._staged)
+        self._follow()  # the conversation may be on stage before its panel is opened
 
     def of(self, conversation: Conversation, side: int) -> SideSound | None:
         """Return a side's sound as far as it is read; None where the side has none."""

@@ -72,3 +72,12 @@ def test_nothing_that_is_painted_is_touched_by_the_thread_that_reads(sounds, qtb
     read(sounds, qtbot)
     assert elsewhere.count("set") == 0
     assert elsewhere.count("put") <= 2, "only the pitch, which is handed over when it is whole"
+
+
+def test_a_conversation_that_was_on_stage_before_is_read_at_once(sounds, qtbot):
+    read(sounds, qtbot)
+    later = Sounds(sounds.document, sounds.session, sounds.jobs)
+    qtbot.waitUntil(
+        lambda: bool(later.heard) and all(not h.told for h in later.heard.values()), timeout=60000
+    )
+    assert later.of(sounds.talk, 0).wave is not None
