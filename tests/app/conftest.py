@@ -87,7 +87,7 @@ def qapp() -> object:
     from app.stage import gl_view
 
     # Characters are drawn in software here: at a screen's rate that leaves little time for anything else.
-    character_panel.FRAME = character_panel.SOFT_FRAME = review_stage.FRAME = 160
+    character_panel.FRAME = character_panel.SOFT_FRAME = review_stage.FRAME = 80
     gl_view.ImageView.coarse = 3
     app = prepare_application()
     yield app
