@@ -21,7 +21,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.repeating import LEAST_CYCLE, cycle_of, usual_repeat
 
 NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
-SLIDES = 0.4  # of that pace: how fast the hips go over the floor
+SLIDES = 0.25  # of that pace: how fast the hips go over the floor
 EDGES: tuple[Edge, Edge] = ("begins", "ends")
 SHARE = 0.45  # of a clip that a blend may take
 SHARE_REPEATED = 0.38  # of the seconds that an action repeats

@@ -62,7 +62,7 @@ def test_a_gap_that_shows_is_blended_as_a_movement_of_its_own(project: Project, 
     assert after.action(wave).timing.blend_in == pytest.approx(LONG)  # type: ignore[union-attr]
 
 
-@pytest.mark.parametrize(("metres", "longer"), [(0.03, False), (0.2, True), (2.0, False)])
+@pytest.mark.parametrize(("metres", "longer"), [(0.03, False), (0.1, True), (2.0, False)])
 def test_hips_over_another_spot_get_time_to_come_back_unless_that_is_far(
     toy: Any, metres: float, longer: bool
 ) -> None:
