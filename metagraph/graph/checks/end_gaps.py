@@ -124,6 +124,29 @@ def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[En
     return out
 
 
+def measure_slides(project: Project, graph: MetaGraph, action: Action) -> dict[Edge, float]:
+    """Return how many metres the hips have to go over the floor at each end of an action, from and to the
+    loop of its stance; nothing on a layer that leaves the legs alone.
+    """
+    motion = motion_of(project, action)
+    if motion is None or action.kind == "stance" or graph.weight("legs") <= 0:
+        return {}
+    hips, out = anatomy.project_roles(project).get("hips", 0), {}
+    start, end = project.span(action)
+    ends: tuple[tuple[Edge, str | None, float], ...] = (
+        ("begins", action.stance, start),
+        ("ends", find_end_stance(action), end),
+    )
+    for edge, stance, moment in ends:
+        loop = next(iter(graph.of(stance, "stance")), None) if stance else None
+        target = motion_of(project, loop)
+        if loop is not None and target is not None:
+            poses = (motion.pose_at(moment), target.pose_at(project.span(loop)[0]))
+            here, there = (motion.skeleton.globals(pose)[1][hips] for pose in poses)
+            out[edge] = float(np.hypot(here[0] - there[0], here[2] - there[2]))
+    return out
+
+
 def measure_seam(project: Project, graph: MetaGraph, loop: Action) -> EndGap | None:
     """Return the gap between a loop's ends, on the joints its layer moves, with the distance that shows if it
     is not blended; None if it cannot be measured.

@@ -8,11 +8,21 @@ from collections.abc import Collection
 from math import ceil, floor
 
 from metagraph.graph import edits
-from metagraph.graph.checks.end_gaps import FAR, LONG, TALL, UNHURRIED, find_end_gaps
+from metagraph.graph.checks.end_gaps import (
+    FAR,
+    LONG,
+    TALL,
+    UNHURRIED,
+    Edge,
+    find_end_gaps,
+    measure_slides,
+)
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.repeating import LEAST_CYCLE, cycle_of, usual_repeat
 
 NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
+SLIDES = 0.25  # of that pace: how fast the hips go over the floor
+EDGES: tuple[Edge, Edge] = ("begins", "ends")
 SHARE = 0.45  # of a clip that a blend may take
 SHARE_REPEATED = 0.38  # of the seconds that an action repeats
 LONGEST = 3.0  # seconds that one repeats to have room for its blends
@@ -21,7 +31,8 @@ SLOWER = 1.1  # times as long a blend for one that repeats, whose own movement i
 
 def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
     """Return the project with longer blends where gestures, fidgets and transitions begin or end far from
-    their stances. None becomes shorter. but: ids of actions that stay as they are.
+    their stances, or with the hips over another spot, where the blend has time for that. None becomes
+    shorter. but: ids of actions that stay as they are.
     """
     if project.skeleton is None:
         return project
@@ -33,7 +44,9 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
                 continue
             start, end = project.span(action)
             timing = action.timing
-            far = {g.edge: g.metres for g in find_end_gaps(project, project.graphs[layer], action)}
+            graph = project.graphs[layer]
+            far = {g.edge: g.metres for g in find_end_gaps(project, graph, action)}
+            slides = measure_slides(project, graph, action)
             most, own, repeat = SHARE * (end - start), pace, timing.repeat
             if (cycle := cycle_of(action.kind, timing, start, end)) > 0:
                 own = pace / SLOWER
@@ -41,10 +54,15 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
                 repeat = max(repeat, round(cycle * min(ceil(needed / cycle), floor(LONGEST / cycle)), 3))
                 most = SHARE_REPEATED * repeat
             into, out = (
-                min(most, max(gap / own, LONG if gap > shows else 0.0))
-                if (gap := far.get(edge, 0.0)) > near
-                else 0.0
-                for edge in ("begins", "ends")
+                min(
+                    most,
+                    max(
+                        gap / own if gap > near else 0.0,
+                        LONG if gap > shows else 0.0,
+                        way / (SLIDES * pace) if near < way < most * SLIDES * pace else 0.0,
+                    ),
+                )
+                for gap, way in ((far.get(edge, 0.0), slides.get(edge, 0.0)) for edge in EDGES)
             )
             longer = {
                 name: ceil(value * 1000) / 1000

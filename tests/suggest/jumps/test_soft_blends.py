@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from metagraph.graph import edits
@@ -58,3 +60,19 @@ def test_a_gap_that_shows_is_blended_as_a_movement_of_its_own(project: Project, 
     after = soften_blends(off)
     assert "far-start" not in codes(after)
     assert after.action(wave).timing.blend_in == pytest.approx(LONG)  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(("metres", "longer"), [(0.03, False), (0.1, True), (2.0, False)])
+def test_hips_over_another_spot_get_time_to_come_back_unless_that_is_far(
+    toy: Any, metres: float, longer: bool
+) -> None:
+    project = toy.project("body")
+    wave = project.action(toy.id(project, "rest wave rt"))
+    clip = project.clips[wave.clip].motion
+    places = clip.translations.copy()
+    places[:, 0, 2] += metres * np.linspace(0, 1, clip.frames)
+    moved = replace(project.clips[wave.clip], motion=replace(clip, translations=places))
+    project = replace(project, clips={**project.clips, wave.clip: moved})
+    before = wave.timing.blend_out
+    after = soften_blends(project).action(wave.id).timing.blend_out
+    assert (after > before + 0.05) == longer
