@@ -63,7 +63,7 @@ def close(out: Any) -> None:
 SCALE = "QT_SCALE_FACTOR"
 SIZES = ((1280, 720), (1680, 1050), (2560, 1440))
 THEMES = ("dark", "light")
-TALKING = 9.7  # seconds of the sample's conversation at which both can be seen to take part
+TALKING = 5.4  # seconds of the sample's conversation at which both can be seen to take part
 
 
 def on_sample(theme: str = "dark", size: tuple[int, int] = (1680, 1020)) -> Any:
@@ -383,9 +383,8 @@ def performance() -> None:
     from app.cli.parser import main as command
 
     sample = str(ROOT / "sample_clips" / "sample.metagraph.yaml")
-    command(
-        ["render", sample, "-s", "46", "--seed", "7", "-o", str(ROOT / "docs" / "images" / "performance.png")]
-    )
+    out = str(ROOT / "docs" / "images" / "performance.png")
+    command(["render", sample, "-s", "46", "--seed", "7", "-o", out, "--overwrite"])
 
 
 def nothing() -> None:
