@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import json
 import sys
-import time
 from dataclasses import fields
 from pathlib import Path
 from types import ModuleType
@@ -355,17 +354,6 @@ def test_confidence_is_no_boast(bench: ModuleType) -> None:
     scores = [s for table in tables for s in bench.measure(table).values()]
     for low, high, count, mean, right in bench.calibration(scores):
         assert right >= mean - 0.05, f"{count} guesses of {low}..{high}"
-
-
-def test_a_thousand_names_are_quick(bench: ModuleType) -> None:
-    names = [n for table in bench.truths() for n in table["clips"]]
-    many = [f"{n}_{i}" for i in range(1000 // len(names) + 1) for n in names][:1000]
-    times = []
-    for _ in range(3):
-        begun = time.process_time()
-        read_names(many)
-        times.append(time.process_time() - begun)
-    assert min(times) < 0.3
 
 
 # --- properties
