@@ -72,7 +72,7 @@ LISTING = (
     Translated(
         "metagraph.playback.planning.markov",
         "markov",
-        ("write", "_row", "performs", "length", "rest_length", "KINDS", "BEGIN", "RESTS"),
+        ("write", "_row", "performs", "length", "rest_length", "KINDS", "LISTENS", "BEGIN", "RESTS"),
     ),
     Translated("metagraph.playback.planning.mood", "mood"),
     Translated("metagraph.playback.planning.director", "director"),

@@ -20,6 +20,7 @@ namespace metagraph {
 namespace markov {
 
 inline const List<std::string> KINDS = List<std::string>{"gesture", "fidget", "transition"}; // as in `Markov.modes`
+inline constexpr int LISTENS = 1; // place of the row that stands for modes of which a model says nothing
 inline const Ref<Cursor> BEGIN = lang::made<Cursor>();
 inline constexpr double RESTS = 0.9; // standard deviation of rests, times their mean
 inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(

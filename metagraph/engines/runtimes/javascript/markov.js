@@ -15,6 +15,7 @@ import { chanceOf, keyed, logNormal, picked, uniform } from "./choice.js";
 import { splitWords, zip } from "./basics.js";
 
 export const KINDS = ["gesture", "fidget", "transition"]; // as in `Markov.modes`
+export const LISTENS = 1; // place of the row that stands for modes of which a model says nothing
 export const BEGIN = new Cursor();
 export const RESTS = 0.9; // standard deviation of rests, times their mean
 

@@ -17,6 +17,7 @@ namespace Metagraph
     {
         // as in `Markov.modes`
         public static readonly List<string> Kinds = new List<string> { "gesture", "fidget", "transition" };
+        public const int Listens = 1; // place of the row that stands for modes of which a model says nothing
         public static readonly Cursor Begin = new Cursor();
         public const double Rests = 0.9; // standard deviation of rests, times their mean
 

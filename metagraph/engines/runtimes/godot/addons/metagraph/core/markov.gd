@@ -12,6 +12,7 @@ const MetaPlan = preload("meta_plan.gd")
 const Choice = preload("choice.gd")
 const Util = preload("util.gd")
 const KINDS = ["gesture", "fidget", "transition"]  # as in `Markov.modes`
+const LISTENS = 1  # place of the row that stands for modes of which a model says nothing
 
 
 static func BEGIN():
