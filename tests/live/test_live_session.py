@@ -307,7 +307,7 @@ def test_a_session_without_clips_says_so() -> None:
 
 
 BLOCK = (
-    '<bml id="b1"><speech id="s1" start="0.5"><text>Well <sync id="t"/> no</text></speech>'
+    '<bml id="b1"><speech id="s1" start="0.6"><text>Well <sync id="t"/> no</text></speech>'
     '<gesture id="g" lexeme="open" stroke="s1:t"/><head id="h" lexeme="SHAKE" '
     'start="g:end"/><locomotion/></bml>'
 )
@@ -322,7 +322,7 @@ def test_a_block_is_answered_as_a_whole_and_by_behaviour(session: LiveSession) -
     assert reply["at"] == min(p["at"] for p in reply["parts"]) and reply["until"] == max(
         p["until"] for p in reply["parts"]
     )
-    assert reply["parts"][0]["at"] == pytest.approx(session.now + 0.1 + 0.5, abs=1e-4)
+    assert reply["parts"][0]["at"] == pytest.approx(session.now + 0.1 + 0.6, abs=1e-4)
 
 
 def test_a_block_that_cannot_be_read_is_told_with_its_line(session: LiveSession) -> None:
