@@ -202,7 +202,12 @@ MUTATIONS = [
         "how early a gesture with a stroke may begin",
     ),
     ("meaning.js", "tags = [ask.do, ...ask.tags];", "tags = ask.tags;", "the tag of a nod"),
-    ("life.js", "aversion_rate: 1.1,", "aversion_rate: 1,", "the idle manner"),
+    (
+        "life.js",
+        "aversion_rate: 1.1, aversion_length: 2.4",
+        "aversion_rate: 1, aversion_length: 2.4",
+        "the idle manner",
+    ),
     ("life.js", "breath_rate: [14,", "breath_rate: [15,", "the usual rate of breath"),
     (
         "pose.js",
