@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QButtonGroup, QGridLayout, QToolButton, QWidget
 
 from app.translation import tr
 from app.widgets.form_fields import Mixed
@@ -16,24 +16,28 @@ from metagraph.graph.model import LIMBS
 
 
 class ChoiceRow(QWidget):
-    """The choices are (label, tooltip). chosen: the place of the one that was clicked."""
+    """The choices are (label, tooltip), `columns` of them in a line, 0 for all. chosen: the place of the one
+    that was clicked.
+    """
 
     chosen = Signal(int)
 
-    def __init__(self, parent: QWidget, choices: Iterable[tuple[str, str]], least_width: int = 0) -> None:
+    def __init__(
+        self, parent: QWidget, choices: Iterable[tuple[str, str]], least_width: int = 0, columns: int = 0
+    ) -> None:
         super().__init__(parent)
         self.group = QButtonGroup(self)
         self._buttons: list[QToolButton] = []
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(2)
+        rows = QGridLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(2)
         for n, (text, tip) in enumerate(choices):
             button = make_widget(QToolButton, self, text=text, checkable=True, toolTip=tip)
             button.setMinimumWidth(least_width)
             self.group.addButton(button, n)
             self._buttons.append(button)
-            row.addWidget(button)
-        row.addStretch(1)
+            rows.addWidget(button, *(divmod(n, columns) if columns else (0, n)))
+        rows.setColumnStretch(rows.columnCount(), 1)
         self.group.idClicked.connect(self.chosen)
 
     def button(self, place: int) -> QToolButton:

@@ -145,7 +145,7 @@ class LifePanel(QWidget):
         factors = (
             (MODE_WORDS[m], tr("Factors that '{mode}' multiplies the amounts by", mode=tr(m))) for m in MODES
         )
-        self.tabs = ChoiceRow(self, ((tr("Always"), tr("The amounts for all modes")), *factors))
+        self.tabs = ChoiceRow(self, ((tr("Always"), tr("The amounts for all modes")), *factors), columns=3)
         self.tabs.show_choice(0)
         self.tabs.chosen.connect(lambda n: self.show_mode(None if n == 0 else MODES[n - 1]))
         outer.addWidget(self.tabs)
