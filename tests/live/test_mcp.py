@@ -108,7 +108,7 @@ def test_gestures_go_with_what_is_said_on_its_words_and_answer_to_nobody(session
     told = {"text": "Well, hello", "words": [["Well", 0.1, 0.4], ["hello", 3.0, 3.6]]}
     session.called("tools/call", name="say", arguments=told)
     session.line.send([(b'{"state":"planned","at":1.0}', False)])
-    assert json.loads(session.asked[-1] or b"")["stroke"] == pytest.approx(4.2)
+    assert json.loads(session.asked[-1] or b"")["stroke"] == pytest.approx(4.1)
 
 
 def test_what_cannot_be_understood_is_told_and_what_waits_for_no_answer_gets_none(session: Session) -> None:
