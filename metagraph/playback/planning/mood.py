@@ -227,7 +227,7 @@ def leaning(x: float, most: float) -> float:
     return (1 + y) / (1 - y)
 
 
-def drive(mood: Mood) -> float:
+def liveliness(mood: Mood) -> float:
     """Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less
     where it is unpleasant and does not excite.
     """
@@ -252,7 +252,7 @@ def extent(mood: Mood) -> float:
     """Return how large gestures and fidgets of arms and head are played: a factor of their turns away from
     the stance.
     """
-    size = within(drive(mood) - 1.5 * fear(mood), -1.0, 1.0)
+    size = within(liveliness(mood) - 1.5 * fear(mood), -1.0, 1.0)
     by_mood = 1 + 0.25 * size if size > 0 else 1 + 0.4 * size
     dial = mood.intensity - 1
     by_dial = 1 + 0.25 * dial if dial > 0 else 1 + 0.4 * dial
@@ -261,7 +261,7 @@ def extent(mood: Mood) -> float:
 
 def tempo(mood: Mood) -> float:
     """Return how fast actions are played: a factor of their own speed."""
-    pace = drive(mood)
+    pace = liveliness(mood)
     by_mood = 1 + 0.25 * pace if pace > 0 else 1 + 0.3 * pace
     return within(by_mood, LEAST_TEMPO, MOST_TEMPO)
 
@@ -297,7 +297,7 @@ def favour(mood: Mood, tags: Sequence[str], vigour: float) -> float:
     layer and kind, -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and
     as much rarer where they are against it.
     """
-    out = leaning(vigour * within(drive(mood) + (mood.intensity - 1), -1.0, 1.0), 4.0)
+    out = leaning(vigour * within(liveliness(mood) + (mood.intensity - 1), -1.0, 1.0), 4.0)
     if PLEASANT in tags:
         out *= leaning(mood.valence, 4.0)
     if UNPLEASANT in tags:
@@ -313,7 +313,7 @@ def stirs(mood: Mood, seed: Bits, key: str) -> bool:
     """Whether something a model wrote is performed in a mood: the less lively, the less of it, down to
     0.6.
     """
-    lively = drive(mood)
+    lively = liveliness(mood)
     return lively >= 0 or uniform(seed, key, "mood") < 1 + 0.4 * lively
 
 

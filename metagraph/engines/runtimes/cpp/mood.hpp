@@ -74,7 +74,7 @@ inline double faded(double x);
 inline Ref<Mood> shown(const List<double>& starts, const List<List<double>>& values, double seconds);
 inline double within(double x, double low, double high);
 inline double leaning(double x, double most);
-inline double drive(const Ref<Mood>& mood);
+inline double liveliness(const Ref<Mood>& mood);
 inline double fear(const Ref<Mood>& mood);
 inline double anger(const Ref<Mood>& mood);
 inline double extent(const Ref<Mood>& mood);
@@ -325,7 +325,7 @@ inline double leaning(double x, double most) {
 
 /// Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
 /// unpleasant and does not excite.
-inline double drive(const Ref<Mood>& mood) {
+inline double liveliness(const Ref<Mood>& mood) {
     double well = std::max(0.0, mood->valence);
     double ill = std::max(0.0, -mood->valence);
     double calm = 1 - std::max(0.0, mood->arousal);
@@ -346,7 +346,7 @@ inline double anger(const Ref<Mood>& mood) {
 
 /// Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
 inline double extent(const Ref<Mood>& mood) {
-    double size = mood::within(mood::drive(mood) - 1.5 * mood::fear(mood), -1.0, 1.0);
+    double size = mood::within(mood::liveliness(mood) - 1.5 * mood::fear(mood), -1.0, 1.0);
     double by_mood = size > 0 ? 1 + 0.25 * size : 1 + 0.4 * size;
     double dial = mood->intensity - 1;
     double by_dial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
@@ -355,7 +355,7 @@ inline double extent(const Ref<Mood>& mood) {
 
 /// Return how fast actions are played: a factor of their own speed.
 inline double tempo(const Ref<Mood>& mood) {
-    double pace = mood::drive(mood);
+    double pace = mood::liveliness(mood);
     double by_mood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
     return mood::within(by_mood, mood::LEAST_TEMPO, mood::MOST_TEMPO);
 }
@@ -395,7 +395,7 @@ inline double distance(const Ref<Mood>& mood, const std::string& name) {
 /// -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they
 /// are against it.
 inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, double vigour) {
-    double out = mood::leaning(vigour * mood::within(mood::drive(mood) + (mood->intensity - 1), -1.0, 1.0), 4.0);
+    double out = mood::leaning(vigour * mood::within(mood::liveliness(mood) + (mood->intensity - 1), -1.0, 1.0), 4.0);
     if (lang::contains(tags, mood::PLEASANT)) {
         out *= mood::leaning(mood->valence, 4.0);
     }
@@ -416,7 +416,7 @@ inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, doubl
 
 /// Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
 inline bool stirs(const Ref<Mood>& mood, std::uint32_t seed, const std::string& key) {
-    double lively = mood::drive(mood);
+    double lively = mood::liveliness(mood);
     return lively >= 0 || choice::uniform(seed, List<std::string>{key, "mood"}) < 1 + 0.4 * lively;
 }
 

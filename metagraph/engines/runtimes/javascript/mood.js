@@ -315,7 +315,7 @@ export function leaning(x, most) {
  * @param {Mood} mood
  * @returns {number}
  */
-export function drive(mood) {
+export function liveliness(mood) {
   const well = Math.max(0, mood.valence);
   const ill = Math.max(0, -mood.valence);
   const calm = 1 - Math.max(0, mood.arousal);
@@ -348,7 +348,7 @@ export function anger(mood) {
  * @returns {number}
  */
 export function extent(mood) {
-  const size = within(drive(mood) - 1.5 * fear(mood), -1, 1);
+  const size = within(liveliness(mood) - 1.5 * fear(mood), -1, 1);
   const byMood = size > 0 ? 1 + 0.25 * size : 1 + 0.4 * size;
   const dial = mood.intensity - 1;
   const byDial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
@@ -361,7 +361,7 @@ export function extent(mood) {
  * @returns {number}
  */
 export function tempo(mood) {
-  const pace = drive(mood);
+  const pace = liveliness(mood);
   const byMood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
   return within(byMood, LEAST_TEMPO, MOST_TEMPO);
 }
@@ -420,7 +420,7 @@ export function distance(mood, name) {
  * @returns {number}
  */
 export function favour(mood, tags, vigour) {
-  let out = leaning(vigour * within(drive(mood) + (mood.intensity - 1), -1, 1), 4);
+  let out = leaning(vigour * within(liveliness(mood) + (mood.intensity - 1), -1, 1), 4);
   if (tags.includes(PLEASANT)) {
     out *= leaning(mood.valence, 4);
   }
@@ -444,7 +444,7 @@ export function favour(mood, tags, vigour) {
  * @returns {boolean}
  */
 export function stirs(mood, seed, key) {
-  const lively = drive(mood);
+  const lively = liveliness(mood);
   return lively >= 0 || uniform(seed, key, "mood") < 1 + 0.4 * lively;
 }
 

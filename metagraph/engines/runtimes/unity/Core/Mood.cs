@@ -317,7 +317,7 @@ namespace Metagraph
         /// Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
         /// unpleasant and does not excite.
         /// </summary>
-        public static double Drive(Mood mood)
+        public static double Liveliness(Mood mood)
         {
             var well = Math.Max(0.0, mood.Valence);
             var ill = Math.Max(0.0, -mood.Valence);
@@ -344,7 +344,7 @@ namespace Metagraph
         /// </summary>
         public static double Extent(Mood mood)
         {
-            var size = Within(Drive(mood) - 1.5 * Fear(mood), -1.0, 1.0);
+            var size = Within(Liveliness(mood) - 1.5 * Fear(mood), -1.0, 1.0);
             var byMood = size > 0 ? 1 + 0.25 * size : 1 + 0.4 * size;
             var dial = mood.Intensity - 1;
             var byDial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
@@ -354,7 +354,7 @@ namespace Metagraph
         /// <summary>Return how fast actions are played: a factor of their own speed.</summary>
         public static double Tempo(Mood mood)
         {
-            var pace = Drive(mood);
+            var pace = Liveliness(mood);
             var byMood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
             return Within(byMood, LeastTempo, MostTempo);
         }
@@ -400,7 +400,7 @@ namespace Metagraph
         /// </summary>
         public static double Favour(Mood mood, List<string> tags, double vigour)
         {
-            var out_ = Leaning(vigour * Within(Drive(mood) + (mood.Intensity - 1), -1.0, 1.0), 4.0);
+            var out_ = Leaning(vigour * Within(Liveliness(mood) + (mood.Intensity - 1), -1.0, 1.0), 4.0);
             if (tags.Contains(Pleasant))
             {
                 out_ *= Leaning(mood.Valence, 4.0);
@@ -425,7 +425,7 @@ namespace Metagraph
         /// </summary>
         public static bool Stirs(Mood mood, uint seed, string key)
         {
-            var lively = Drive(mood);
+            var lively = Liveliness(mood);
             return lively >= 0 || ChoiceRules.Uniform(seed, key, "mood") < 1 + 0.4 * lively;
         }
 

@@ -252,7 +252,7 @@ static func leaning(x, most):
 
 # Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is unpleasant
 # and does not excite.
-static func drive(mood):
+static func liveliness(mood):
 	var well = Util.most(0.0, mood.valence)
 	var ill = Util.most(0.0, -mood.valence)
 	var calm = 1 - Util.most(0.0, mood.arousal)
@@ -273,7 +273,7 @@ static func anger(mood):
 
 # Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
 static func extent(mood):
-	var size = within(drive(mood) - 1.5 * fear(mood), -1.0, 1.0)
+	var size = within(liveliness(mood) - 1.5 * fear(mood), -1.0, 1.0)
 	var by_mood = 1 + 0.25 * size if size > 0 else 1 + 0.4 * size
 	var dial = mood.intensity - 1
 	var by_dial = 1 + 0.25 * dial if dial > 0 else 1 + 0.4 * dial
@@ -282,7 +282,7 @@ static func extent(mood):
 
 # Return how fast actions are played: a factor of their own speed.
 static func tempo(mood):
-	var pace = drive(mood)
+	var pace = liveliness(mood)
 	var by_mood = 1 + 0.25 * pace if pace > 0 else 1 + 0.3 * pace
 	return within(by_mood, LEAST_TEMPO, MOST_TEMPO)
 
@@ -321,7 +321,7 @@ static func distance(mood, name):
 # Return how much likelier than usual an action is. vigour: how energetic it is beside others of its layer and kind, -1..1. Up to
 # 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they are against it.
 static func favour(mood, tags, vigour):
-	var out = leaning(vigour * within(drive(mood) + (mood.intensity - 1), -1.0, 1.0), 4.0)
+	var out = leaning(vigour * within(liveliness(mood) + (mood.intensity - 1), -1.0, 1.0), 4.0)
 	if tags.has(PLEASANT):
 		out *= leaning(mood.valence, 4.0)
 	if tags.has(UNPLEASANT):
@@ -335,7 +335,7 @@ static func favour(mood, tags, vigour):
 
 # Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
 static func stirs(mood, seed_, key):
-	var lively = drive(mood)
+	var lively = liveliness(mood)
 	return lively >= 0 or Choice.uniform(seed_, [key, "mood"]) < 1 + 0.4 * lively
 
 
