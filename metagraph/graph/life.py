@@ -36,9 +36,9 @@ class Manner(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unkno
 
 # Who talks looks away for some 2 s in each 5 s (Andrist et al. 2013); who listens looks at the other three
 # quarters of the time (Argyle and Cook). Idle, ours: nobody speaks, so the gaze wanders longer and farther,
-# and away half of the time. In conversation people blink 26 times a minute, at rest 17. Who thinks before an
-# answer looks away for 3.5 s, from 1.3 s before it speaks (Andrist et al.), and is still. Who reacts to
-# something looks at it; that one's numbers are ours.
+# and away half of the time. In conversation people blink 26 times a minute, at rest 17. Somebody who thinks
+# before an answer looks away for 3.5 s, from 1.3 s before the first word (Andrist et al.), and is still.
+# Somebody who reacts looks at the other; these numbers are ours.
 MANNERS: Mapping[Mode, Manner] = MappingProxyType({
     "idle": Manner(aversion_rate=1.1, aversion_length=2.4, aversion_angle=1.4, saccade_rate=0.85),
     "listening": Manner(

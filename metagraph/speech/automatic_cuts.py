@@ -1,7 +1,7 @@
 """Cuts of a conversation's camera that follow who speaks: over the listener's shoulder at each new speaker,
 closer where somebody speaks long, to a listener who answers in passing or has long been out of the picture,
-to who thinks before an answer, all who talk at the beginning, now and then, in a long silence and where
-several speak at once. The rules are those any editor of dialogue begins with; the numbers are ours.
+to somebody who thinks before an answer, and to all speakers at the beginning, now and then, in a long silence
+and where several speak at once. The rules are those any editor of dialogue begins with; the numbers are ours.
 """
 
 from __future__ import annotations
@@ -93,10 +93,12 @@ def automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
         if not both:
             _cut_within(conversation, turn, begin, min(turn.end, after), cut)
         until = max(until, turn.end)
-    for start, side in sorted((s.start, n) for n, of in enumerate(conversation.sides) for s in of.segments):
-        if start > until:  # a last answer
-            cut(start - EARLY, "over", side)
-            until = conversation.length
+    said = [(s.start, s.end, n) for n, of in enumerate(conversation.sides) for s in of.segments]
+    after_all = min((s for s in said if s[0] > until), default=None)
+    if after_all is not None:  # a last answer in passing
+        start, _, side = after_all
+        cut(start - EARLY, "over", side)
+        until = max(end for _, end, _ in said)
     if conversation.length - until > SILENCE:
         cut(until + 1.0, "two", 0)
     return tuple(cuts)
@@ -110,19 +112,19 @@ def _cut_within(
     cut: Callable[[float, Shot, int], None],
 ) -> None:
     """Cut within a long turn: closer and back, and to who listens."""
-    answers = [
+    answers = sorted(
         (s.start - ANSWER, n)
         for n, side in enumerate(conversation.sides)
         if n != turn.side
         for s in side.segments
         if s.kind == "response"
-    ]
+    )
     listener = 1 - turn.side if len(conversation.sides) == 2 else None
     shots: tuple[Shot, Shot] = ("close", "over")
     seen, last, place = begin, begin, 0  # when a listener was last seen, the last cut, the next shot
     while True:
         at, who = last + LONG, turn.side
-        answer = next((a for a in sorted(answers) if last + BEFORE <= a[0] <= at), None)
+        answer = next((a for a in answers if last + BEFORE <= a[0] <= at), None)
         if answer is not None and answer[0] < end - REACTION - SHORTEST:
             at, who = answer
         elif listener is not None and UNSEEN - 0.01 <= at - seen < end - seen - REACTION - SHORTEST:

@@ -33,14 +33,19 @@ def list_modes(conversation: Conversation, side: int) -> Iterator[tuple[float, M
         span for n in others_of(conversation, side) for span in speaking_spans(conversation.sides[n].segments)
     ]
     thinks, reacts = list(_thinking(segments, other)), list(_reacting(segments, conversation.length))
+    states: tuple[tuple[Mode, list[Span]], ...] = (
+        ("talking", own),
+        ("thinking", thinks),
+        ("reacting", reacts),
+    )
     edges = sorted({0.0, *(x for start, end in (*own, *other, *thinks, *reacts) for x in (start, end))})
     last: Mode | None = None
     for at in edges:
         near = any(start <= at < end + QUIET for start, end in (*own, *other))
         mode: Mode = "listening" if near else "idle"
-        for name, spans in (("talking", own), ("thinking", thinks), ("reacting", reacts)):
+        for name, spans in states:
             if any(start <= at < end for start, end in spans):
-                mode = name  # type: ignore[assignment]
+                mode = name
         if mode != last:
             yield round(at, 3), mode
             last = mode

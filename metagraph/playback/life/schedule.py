@@ -52,8 +52,8 @@ BETWEEN_AVERSIONS = 0.6  # seconds at least
 SHORTEST_AVERSION = 0.25
 BREATH = 0.85  # of the mean length and depth: the least
 BREATH_CHANCE = 0.3  # and what chance adds
-# Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
-# shortened or drawn out by so much of its length at most. Ours.
+# A character breathes in before it speaks: a breath begins so long before the first word, and the one before
+# it is shortened or drawn out by so much of its length at most. Ours.
 BREATHES_IN = 0.55  # seconds
 STRETCH = 0.5
 
@@ -201,12 +201,8 @@ class LifeDraw:
     def begin(self, cut: float) -> None:
         """Lay modes, moods and strict looks out in one row of segments."""
         self.cut = cut
-        for speech in self.track.speeches:
-            self.phrases.append(speech.start)
-        for change in self.track.modes:
-            if change.mode == "talking":
-                self.phrases.append(change.start)
-        self.phrases = sorted(self.phrases)
+        talks = [change.start for change in self.track.modes if change.mode == "talking"]
+        self.phrases = sorted([*[speech.start for speech in self.track.speeches], *talks])
         edges = list(self.modes.times)
         edges += self.moods.times
         for n, target in enumerate(self.targets):
@@ -295,11 +291,11 @@ class LifeDraw:
         """Return the length of a breath that begins at `at`, so that the next one begins right before the
         character speaks.
         """
-        for phrase in self.phrases:
-            wanted = phrase - BREATHES_IN - at
-            if abs(wanted - length) <= STRETCH * length:
-                return wanted
-        return length
+        place = bisect_left(self.phrases, at + (1.0 - STRETCH) * length + BREATHES_IN)
+        if place == len(self.phrases):
+            return length
+        wanted = self.phrases[place] - BREATHES_IN - at
+        return wanted if wanted <= (1.0 + STRETCH) * length else length
 
     def saccades(self, lane: Lane) -> Lane:
         """The eyes' small jumps."""

@@ -49,8 +49,8 @@ inline constexpr double BETWEEN_AVERSIONS = 0.6; // seconds at least
 inline constexpr double SHORTEST_AVERSION = 0.25;
 inline constexpr double BREATH = 0.85; // of the mean length and depth: the least
 inline constexpr double BREATH_CHANCE = 0.3; // and what chance adds
-// Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
-// shortened or drawn out by so much of its length at most. Ours.
+// A character breathes in before it speaks: a breath begins so long before the first word, and the one before
+// it is shortened or drawn out by so much of its length at most. Ours.
 inline constexpr double BREATHES_IN = 0.55; // seconds
 inline constexpr double STRETCH = 0.5;
 inline Ref<Schedule> schedule(
@@ -290,15 +290,17 @@ inline Ref<Schedule> Schedule::since(double seconds) const {
 
 inline void LifeDraw::begin(double cut) {
     this->cut = cut;
-    for (const auto& speech : this->track->speeches) {
-        this->phrases.push_back(speech->start);
-    }
+    List<double> talks;
     for (const auto& change : this->track->modes) {
         if (change->mode == "talking") {
-            this->phrases.push_back(change->start);
+            talks.push_back(change->start);
         }
     }
-    this->phrases = lang::in_order(this->phrases);
+    List<double> found;
+    for (const auto& speech : this->track->speeches) {
+        found.push_back(speech->start);
+    }
+    this->phrases = lang::in_order(lang::together(found, talks));
     List<double> edges = this->modes->times;
     lang::extend(edges, this->moods->times);
     for (int n = 0; n < lang::len(this->targets); n++) {
@@ -403,13 +405,12 @@ inline Ref<Lane> LifeDraw::breaths(const Ref<Lane>& lane) {
 }
 
 inline double LifeDraw::to_phrase(double at, double length) {
-    for (const auto& phrase : this->phrases) {
-        double wanted = phrase - schedule::BREATHES_IN - at;
-        if (std::abs(wanted - length) <= schedule::STRETCH * length) {
-            return wanted;
-        }
+    int place = lang::bisect_left(this->phrases, at + (1.0 - schedule::STRETCH) * length + schedule::BREATHES_IN);
+    if (place == lang::len(this->phrases)) {
+        return length;
     }
-    return length;
+    double wanted = lang::at(this->phrases, place) - schedule::BREATHES_IN - at;
+    return wanted <= (1.0 + schedule::STRETCH) * length ? wanted : length;
 }
 
 inline Ref<Lane> LifeDraw::saccades(const Ref<Lane>& lane) {

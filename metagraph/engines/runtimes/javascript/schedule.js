@@ -38,8 +38,8 @@ export const BETWEEN_AVERSIONS = 0.6; // seconds at least
 export const SHORTEST_AVERSION = 0.25;
 export const BREATH = 0.85; // of the mean length and depth: the least
 export const BREATH_CHANCE = 0.3; // and what chance adds
-// Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
-// shortened or drawn out by so much of its length at most. Ours.
+// A character breathes in before it speaks: a breath begins so long before the first word, and the one before
+// it is shortened or drawn out by so much of its length at most. Ours.
 export const BREATHES_IN = 0.55; // seconds
 export const STRETCH = 0.5;
 
@@ -241,15 +241,8 @@ export class LifeDraw {
   /** Lay modes, moods and strict looks out in one row of segments. */
   begin(cut) {
     this.cut = cut;
-    for (const speech of this.track.speeches) {
-      this.phrases.push(speech.start);
-    }
-    for (const change of this.track.modes) {
-      if (change.mode === "talking") {
-        this.phrases.push(change.start);
-      }
-    }
-    this.phrases = sorted(this.phrases);
+    const talks = this.track.modes.filter((change) => change.mode === "talking").map((change) => change.start);
+    this.phrases = sorted([...this.track.speeches.map((speech) => speech.start), ...talks]);
     const edges = [...this.modes.times];
     edges.push(...this.moods.times);
     for (const [n, target] of this.targets.entries()) {
@@ -353,13 +346,12 @@ export class LifeDraw {
 
   /** Return the length of a breath that begins at `at`, so that the next one begins right before the character speaks. */
   toPhrase(at, length) {
-    for (const phrase of this.phrases) {
-      const wanted = phrase - BREATHES_IN - at;
-      if (Math.abs(wanted - length) <= STRETCH * length) {
-        return wanted;
-      }
+    const place = bisectLeft(this.phrases, at + (1 - STRETCH) * length + BREATHES_IN);
+    if (place === this.phrases.length) {
+      return length;
     }
-    return length;
+    const wanted = this.phrases[place] - BREATHES_IN - at;
+    return wanted <= (1 + STRETCH) * length ? wanted : length;
   }
 
   /** The eyes' small jumps. */

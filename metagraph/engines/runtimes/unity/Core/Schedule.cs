@@ -169,18 +169,8 @@ namespace Metagraph
         public void Begin(double cut)
         {
             Cut = cut;
-            foreach (Speech speech in Track.Speeches)
-            {
-                Phrases.Add(speech.Start);
-            }
-            foreach (ModeFrom change in Track.Modes)
-            {
-                if (change.Mode == "talking")
-                {
-                    Phrases.Add(change.Start);
-                }
-            }
-            Phrases = Phrases.OrderBy(x => x).ToList();
+            var talks = Track.Modes.Where(change => change.Mode == "talking").Select(change => change.Start).ToList();
+            Phrases = Track.Speeches.Select(speech => speech.Start).ToList().Concat(talks).ToList().OrderBy(x => x).ToList();
             var edges = Modes.Times.ToList();
             edges.AddRange(Moods.Times);
             foreach (var one in Targets.Select((item, n) => (n, item)))
@@ -309,15 +299,13 @@ namespace Metagraph
         /// </summary>
         public double ToPhrase(double at, double length)
         {
-            foreach (double phrase in Phrases)
+            var place = PlainLists.Left(Phrases, at + (1.0 - ScheduleRules.Stretch) * length + ScheduleRules.BreathesIn);
+            if (place == Phrases.Count)
             {
-                var wanted = phrase - ScheduleRules.BreathesIn - at;
-                if (Math.Abs(wanted - length) <= ScheduleRules.Stretch * length)
-                {
-                    return wanted;
-                }
+                return length;
             }
-            return length;
+            var wanted = Phrases[place] - ScheduleRules.BreathesIn - at;
+            return wanted <= (1.0 + ScheduleRules.Stretch) * length ? wanted : length;
         }
 
         /// <summary>The eyes' small jumps.</summary>
@@ -532,8 +520,8 @@ namespace Metagraph
         public const double ShortestAversion = 0.25;
         public const double Breath = 0.85; // of the mean length and depth: the least
         public const double BreathChance = 0.3; // and what chance adds
-        // Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
-        // shortened or drawn out by so much of its length at most. Ours.
+        // A character breathes in before it speaks: a breath begins so long before the first word, and the one before
+        // it is shortened or drawn out by so much of its length at most. Ours.
         public const double BreathesIn = 0.55; // seconds
         public const double Stretch = 0.5;
 

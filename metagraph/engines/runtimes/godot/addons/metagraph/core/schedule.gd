@@ -35,8 +35,8 @@ const BETWEEN_AVERSIONS = 0.6  # seconds at least
 const SHORTEST_AVERSION = 0.25
 const BREATH = 0.85  # of the mean length and depth: the least
 const BREATH_CHANCE = 0.3  # and what chance adds
-# Who is about to speak breathes in: a breath begins so long before the first word, and the one before it is
-# shortened or drawn out by so much of its length at most. Ours.
+# A character breathes in before it speaks: a breath begins so long before the first word, and the one before
+# it is shortened or drawn out by so much of its length at most. Ours.
 const BREATHES_IN = 0.55  # seconds
 const STRETCH = 0.5
 
@@ -287,12 +287,14 @@ class LifeDraw:
 	# Lay modes, moods and strict looks out in one row of segments.
 	func begin(cut):
 		self.cut = cut
-		for speech in self.track.speeches:
-			self.phrases.append(speech.start)
+		var talks = []
 		for change in self.track.modes:
 			if change.mode == "talking":
-				self.phrases.append(change.start)
-		self.phrases = Util.in_order(self.phrases)
+				talks.append(change.start)
+		var found = []
+		for speech in self.track.speeches:
+			found.append(speech.start)
+		self.phrases = Util.in_order(found + talks)
 		var edges = Util.list(self.modes.times)
 		Util.extend(edges, self.moods.times)
 		for n in range(self.targets.size()):
@@ -379,11 +381,11 @@ class LifeDraw:
 
 	# Return the length of a breath that begins at `at`, so that the next one begins right before the character speaks.
 	func to_phrase(at, length):
-		for phrase in self.phrases:
-			var wanted = phrase - BREATHES_IN - at
-			if Util.absolute(wanted - length) <= STRETCH * length:
-				return wanted
-		return length
+		var place = Util.left_of(self.phrases, at + (1.0 - STRETCH) * length + BREATHES_IN)
+		if place == self.phrases.size():
+			return length
+		var wanted = self.phrases[place] - BREATHES_IN - at
+		return wanted if wanted <= (1.0 + STRETCH) * length else length
 
 	# The eyes' small jumps.
 	func saccades(lane):
