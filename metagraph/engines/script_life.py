@@ -126,6 +126,14 @@ def list_life_cases(project: Project) -> Iterator[ScriptCase]:
         times=(61.3, 99.9, 119.5),
         alive=ALIVE,
     )
+    yield make_case(
+        "a model that talks",
+        "what a model writes for one who talks, positive and negative nods among it",
+        [ask("m", "mode", 10.0, mode="talking")],
+        150.0,
+        seed=6,
+        idle=True,
+    )
 
 
 def _looks() -> Iterator[ScriptCase]:

@@ -379,6 +379,7 @@ NOTICED_BY = {
     "stick: arms: to stay": [
         "the key of a hop", "blends that must fit", "the seam of a loop", "the period of a loop with a seam",
     ],
+    "stick: a model that talks": ["the share of negative gestures"],
     "stick: body: an action of another stance": [
         "the blending curve", "the idle manner", "the usual rate of breath", "the edge a cue is led out from",
         "the fade from loop to loop",
@@ -386,7 +387,6 @@ NOTICED_BY = {
     "stick: body: to stay": ["the other arm of a one-armed action"],
     "stick: chatter 1": ["the blink that opens a speech", "looks that wait beneath a more important one"],
     "stick: chatter 2": ["spelling"],
-    "stick: chatter 3": ["the share of negative gestures"],
     "stick: cut": ["the shortest fixation", "the time between aversions", "jumps up and down"],
     "stick: head: the same asked over and over": ["spacing that gives way by one"],
     "stick: lines": [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from preview.camera import Camera
 from preview.figure import StickFigure
 from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO, look_name, look_of
 from preview.offscreen import Offscreen
-from preview.scene import THEMES, Actor, Scene
+from preview.scene import THEMES, Actor, LampTurn, Scene
 
 
 @pytest.mark.parametrize("theme", THEMES)
@@ -73,3 +75,28 @@ def test_two_pictures_side_by_side_share_what_they_draw_and_are_what_each_is_alo
     beside.release()  # after the first: nothing happens
     with Offscreen(200, 200) as alone:
         assert (alone.render(scene, camera) == a).all()
+
+
+def test_a_turned_lamp_keeps_its_height_and_its_angle_to_a_camera_that_turns_as_far():
+    theme = THEMES["dark"]
+    turned = theme.turned(LampTurn(np.pi / 2))
+    x, y, z = theme.to_light
+    assert turned.to_light == pytest.approx([z, y, -x])
+    mirrored = theme.turned(LampTurn(0.0, mirrored=True))
+    assert mirrored.to_light == pytest.approx([-x, y, z])
+    assert theme.turned(LampTurn(0.0)).to_light == pytest.approx(theme.to_light)
+
+
+@pytest.mark.gl
+def test_a_scene_is_drawn_in_the_light_that_it_says(toy):
+    figure = StickFigure(toy.skeleton)
+    rotations, positions = toy.skeleton.globals(toy.skeleton.rest)
+    plain = Scene((Actor(figure, rotations, positions),), ground=False)
+    behind = replace(plain, lamp=LampTurn(np.pi))
+    assert not plain.same(behind)
+    with Offscreen(160, 120) as offscreen:
+        camera = Camera().frame(plain.bounds(), 160 / 120)
+        lit, dark = (offscreen.render(s, camera).astype(int) for s in (plain, behind))
+        assert np.abs(lit - dark).max() > 20
+        theme = THEMES["dark"].turned(LampTurn(np.pi))
+        assert np.array_equal(dark, offscreen.render(plain, camera, theme))

@@ -78,6 +78,7 @@ def test_it_keeps_a_conversation_in_a_project(
     assert code == 0 and list(kept)[-1] == data["kept"] and data["kept"].startswith("v")
     clauses = data["delivered"][0][0]  # what becomes of the rates
     assert clauses["asked"] == 0.75 and clauses["count"] >= clauses["performed"] >= clauses["strokes"] > 0
+    assert len(open_project(project).project.timelines[data["kept"]].cuts) > 1  # it is filmed
     assert kept[data["kept"]].name == "Dogs" and kept[data["kept"]].sides[0].audio == "talk.wav"
 
 

@@ -29,6 +29,7 @@ from tests.thorough import many
 Array = np.ndarray[Any, Any]
 OFF = Life(on=False)
 QUIET = Life(breathing=0, gaze=0, saccades=0, aversion_rate=0, blinks=0)
+QUIET_GAZE = Life(breathing=0, saccades=0, aversion_rate=0, blinks=0)
 TEXT = "Papa may have many memories of the farm."
 
 
@@ -603,3 +604,22 @@ def test_channels_are_in_the_order_that_arrays_have() -> None:
         CHANNELS[:4] == LIDS and CHANNELS[4] == "blink" and CHANNELS[5] == "jaw_open" and len(CHANNELS) == 20
     )
     assert msgspec.structs.fields(Life), "life is a struct"
+
+
+def test_a_look_far_aside_turns_the_trunk_along_and_a_glance_does_not(sample: Project) -> None:
+    def turns(degrees: float) -> tuple[float, float]:
+        """How far the upper chest and the head have turned, degrees."""
+        away = np.radians(degrees)
+        look = LookAt("k", 1.0, 9.0, (2 * np.sin(away), 1.6, 2 * np.cos(away)))
+        pose, after = alive(sample, QUIET_GAZE, track_of([look]), [8.0])
+        assert sample.skeleton is not None
+        both = [sample.skeleton.globals(p)[0][0] for p in (pose, after)]
+        chest, head = (
+            float(np.degrees(rotation.angle_between(*(x[joint(sample, name)].astype(float) for x in both))))
+            for name in ("UpperChest", "Head")
+        )
+        return chest, head
+
+    near, far = turns(12.0), turns(60.0)
+    assert near[0] < 1.0
+    assert 8.0 < far[0] < 0.35 * far[1]

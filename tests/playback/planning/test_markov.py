@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
-from metagraph.graph.model import LAYERS, Layer, Markov, Project
+from metagraph.graph.model import LAYERS, Layer, Markov, Mode, Project
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.markov import ARMS, DEFAULTS, Cursor, write
 
@@ -198,3 +198,15 @@ def test_a_states_tags_are_asked_for_and_shares_are_not_drawn_beside_them() -> N
     assert set(seen) == {("gesture", ()), ("gesture", ("very", "positive")), ("fidget", ())}
     for key, share in ((("gesture", ()), 0.2), (("gesture", ("very", "positive")), 0.4)):
         assert abs(seen[key] / len(metas) - share) < 4 * np.sqrt(share * (1 - share) / len(metas))
+
+
+def test_a_model_without_rows_for_moments_performs_as_it_does_while_listening() -> None:
+    def share(chain: Markov, mode: Mode) -> float:
+        metas, _ = write(chain, 1, 4000.0)
+        nods = [m for m in metas if m.request.kind == "gesture"]
+        return sum(markov.performs(chain, 1, m, mode) for m in nods) / len(nods)
+
+    head = DEFAULTS["head"]
+    short = replace(head, modes=head.modes[:3])
+    assert share(head, "thinking") == 0 and share(head, "reacting") == 1
+    assert share(short, "thinking") == share(short, "reacting") == share(short, "listening") > 0.5

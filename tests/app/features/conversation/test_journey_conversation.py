@@ -56,6 +56,7 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(
     assert document.undo_stack.index() == 1
     ident = session.onstage.conversation
     assert ident in document.project.conversations
+    assert len(document.project.timelines[ident].cuts) > 1  # it is filmed
 
     def now() -> Any:
         return document.project.conversations[ident]

@@ -158,7 +158,8 @@ def test_what_is_written_is_cut_and_captioned_like_the_preview(talking, monkeypa
     talking.performance.timeline.set_cuts("Cut", cuts)
     talking.preview.view.grab()
     aspect = talking.preview.view.width() / talking.preview.view.height()
-    assert talking.preview.view.camera == Cutting().camera(seen, cuts, 2.5, aspect).camera
+    filmed = Cutting().camera(seen, cuts, 2.5, aspect)
+    assert (talking.preview.view.camera, talking.preview.scene().lamp) == filmed
 
 
 def test_the_titles_leave_the_cameras_alone(talking):
