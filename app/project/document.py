@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -16,9 +16,10 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.autosave import Autosave
 from app.project.autosave import state_folder as state_folder  # where others look for it
+from app.project.change_words import describe_change
 from app.project.opening import with_motion_of
 from app.project.version_count import version_count
-from app.project.writing import Writing, name_after_file
+from app.project.writing import Writing, move_steps
 from app.translation import in_english, tr
 from metagraph.errors import FileError
 from metagraph.formats.locking import Lock, new_owner
@@ -27,7 +28,7 @@ from metagraph.formats.project.appended_file import Identity, folder_now, identi
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal import Done, How
 from metagraph.formats.project.limits import find_unwritable
-from metagraph.formats.store import file_digest, move_project
+from metagraph.formats.store import file_digest
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.listing import is_listed_differently
 from metagraph.graph.model import Project
@@ -42,28 +43,33 @@ class _Change(QUndoCommand):
     def __init__(
         self, document: Document, text: str, before: Project, after: Project, merge: str | None
     ) -> None:
-        super().__init__(text)
+        super().__init__(describe_change(text, before, after))
+        self.command = text  # without what it changed
         self.english = in_english(text)  # its name in logs
         self.document, self.before, self.after, self.merge = document, before, after, merge
         self.cancelled = False
         self._how: How = "done"
 
     def redo(self) -> None:
-        if self._how == "done" and self._goes_on():
+        previous = self._goes_on() if self._how == "done" else None
+        if previous is not None:
             self._how = "merged"
+            self.setText(describe_change(self.command, previous.before, self.after))
         self.document._set(self.after, self.text(), self._how)
         self._how = "redone"  # for the next time
 
-    def _goes_on(self) -> bool:
-        """Return whether the stack will merge it with the previous step."""
+    def _goes_on(self) -> _Change | None:
+        """Return the previous step, if the stack will merge this one with it."""
         stack = self.document.undo_stack
         top = stack.command(stack.index() - 1) if stack.index() else None
-        return (
+        if (
             self.merge is not None
             and isinstance(top, _Change)
             and top.merge == self.merge
             and stack.index() != stack.cleanIndex()
-        )
+        ):
+            return top
+        return None
 
     def undo(self) -> None:
         self.document._set(self.before, self.text(), "undone")
@@ -76,7 +82,26 @@ class _Change(QUndoCommand):
         if not isinstance(other, _Change) or other.merge != self.merge:
             return False
         self.after = other.after
+        self.setText(other.text())
         return True
+
+
+@dataclass(frozen=True)
+class Past:
+    """How a project came to be.
+
+    `saved` are the steps that led to what its file holds, and `steps` those after it, which no file holds;
+    the last one leads to the project. `lost` counts unsaved edits that cannot be undone, between the two.
+    `common` is the content of its file where there are such.
+    """
+
+    saved: Sequence[UndoStep] = ()
+    steps: Sequence[UndoStep] = ()
+    lost: int = 0
+    common: Project | None = None
+
+
+NO_PAST = Past()
 
 
 class Document(QObject):
@@ -199,40 +224,39 @@ class Document(QObject):
         self,
         project: Project,
         path: Path | None,
-        recovered: int = 0,
+        past: Past = NO_PAST,
         *,
-        steps: Sequence[UndoStep] = (),
-        common: Project | None = None,
         digest: str | None = None,
         lock: Lock | None = None,
         read_only: bool = False,
     ) -> None:
-        """Show another project; without a path, its clip paths are absolute. `recovered` is the number of its
-        edits that are not in its file. `steps` can be undone, the last one leads to `project`; `recovered`
-        then counts the edits before them.
+        """Show another project; without a path, its clip paths are absolute. `past` says how it came to be.
 
-        `common` and `digest` are the content and digest of its file (its present digest if left out). `lock`
-        is that of the file.
+        `digest` is that of its file (its present one if left out), and `lock` the lock of the file.
         """
+        steps = past.steps
         self._leave_file(lock)
         before, self.project = self.project, project
         self.path, self.lock, self.read_only, self._returned = path, lock, read_only, False
         self.digest = digest or self._digest_now()
         self._settle_in()
         first = steps[0].before if steps else project
-        self.common = common if recovered else first
+        self.common = past.common if past.lost else first
         self.undo_stack.clear()
-        if recovered:
+        self._restore(past.saved)
+        if past.lost:
             self.undo_stack.resetClean()
+        else:
+            self.undo_stack.setClean()
         self._restore(steps)
         done = [(step.before, step.after, step.text) for step in steps]
-        self.autosave.begin(first if recovered or steps or path is None else None, recovered, done)
+        self.autosave.begin(first if past.lost or steps or path is None else None, past.lost, done)
         self.loaded.emit()
         self.changed.emit(before, project)
         self.state_changed.emit()
 
     def _restore(self, steps: Sequence[UndoStep]) -> None:
-        """Put steps on the stack that were made before a crash."""
+        """Put steps on the stack that were made before."""
         self.undo_stack.blockSignals(True)  # the views follow once, at the end
         self._restoring = True
         for step in steps:
@@ -312,25 +336,31 @@ class Document(QObject):
             with suppress(FileError):  # it is about to be saved
                 mark = journal.mark()
         home = self._home if target == self.path else None
-        return Writing(self.project, self.path, target, journal, mark, version_count(), home, self.access)
+        return Writing(
+            self.project,
+            self.path,
+            target,
+            journal,
+            mark,
+            version_count(),
+            home,
+            self.access,
+            self._steps_done(),
+            self.digest,
+        )
+
+    def _steps_done(self) -> tuple[UndoStep, ...]:
+        """Return the steps that lead to the current project, the last one last."""
+        made = map(self.undo_stack.command, range(self.undo_stack.index()))
+        return tuple(UndoStep(c.text(), c.before, c.after) for c in made if isinstance(c, _Change))
 
     def end_saving(self, writing: Writing) -> None:
         """Take what was written as the saved state. Edits made in the meantime are unsaved."""
         edited = self.project is not writing.project
         elsewhere = writing.target != self.path
         if elsewhere:
-            before = self.project
-            after = writing.after
-            if edited:
-                after = replace(
-                    move_project(before, self.path, writing.target), name=name_after_file(writing.target)
-                )
-            # Undoing would restore paths relative to the old place, so a new place begins a new history.
-            self.undo_stack.clear()
-            self._move_lock(writing.target)
-            self.project, self.path, self.read_only, self._returned = after, writing.target, False, False
-            self.changed.emit(before, after)
-        self.common, self.digest = writing.after, writing.digest
+            self._move(writing.target)
+        self.common, self.digest = writing.after if edited else self.project, writing.digest
         self._settle_in()
         if edited:
             self.undo_stack.resetClean()
@@ -340,6 +370,21 @@ class Document(QObject):
             self.autosave.begin(self.project if edited else None, int(edited))
         self.state_changed.emit()
         self.saved.emit()
+
+    def _move(self, target: Path) -> None:
+        """Continue with another file: the paths of the project and of every step are relative to that."""
+        before = self.project
+        made = map(self.undo_stack.command, range(self.undo_stack.count()))
+        changes = [change for change in made if isinstance(change, _Change)]
+        now = UndoStep("", before, before)
+        *moved, now = move_steps(
+            [*(UndoStep("", c.before, c.after) for c in changes), now], self.path, target
+        )
+        for change, step in zip(changes, moved, strict=True):
+            change.before, change.after = step.before, step.after
+        self._move_lock(target)
+        self.project, self.path, self.read_only = now.after, target, False
+        self.changed.emit(before, self.project)
 
     def _settle_in(self) -> None:
         """Remember what identifies the file and its folder."""

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.faults import is_foreseen
 from app.project.autosave import state_folder
-from app.project.document import Document
+from app.project.document import Document, Past
 from app.project.jobs import WORDS, Jobs, WindowJob
 from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, keep_as_copy, look_beside, remove_journal
@@ -23,6 +23,7 @@ from app.project.network_files import NetworkFiles
 from app.project.opening import load_recovered, open_whole
 from app.project.outside import Outside
 from app.project.saver import Saver
+from app.project.step_store import find_steps
 from app.project.unsaved import Unsaved, count_lost_steps
 from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
@@ -41,6 +42,7 @@ from metagraph.graph.model import Project
 if TYPE_CHECKING:
     from app.project.recovering import Choice
 
+Steps = tuple[UndoStep, ...]
 RECENT = 10
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}"
 SEATED = Path(__file__).resolve().parents[2] / "sample_clips" / f"seated{SUFFIX}"
@@ -188,16 +190,21 @@ class Files(QObject):
         if not template:  # a copy of an allowed project names the same files
             allow(False)
 
-        def work(job: WindowJob) -> tuple[Opened, Project | None, list[Path], tuple[UndoStep, ...]]:
+        def work(job: WindowJob) -> tuple[Opened, Project | None, list[Path], Steps, Steps]:
             kept = [keep_as_copy(other, path) for other in copies]
             if chosen is None:
-                return open_whole(path, job.tell), None, kept, ()
+                opened = open_whole(path, job.tell)
+                earlier = () if template else find_steps(opened.digest, opened.project, path.resolve().parent)
+                return opened, None, kept, earlier, ()
             common = read_project(path) if is_file(path) and not chosen.behind else chosen.common
             opened, steps = load_recovered(chosen, path.parent, job.tell)
-            return replace(opened, digest=chosen.digest), common, kept, steps
+            earlier = ()
+            if steps and not (chosen.behind or chosen.worked_in or count_lost_steps(chosen, steps)):
+                earlier = find_steps(chosen.digest, steps[0].before, path.resolve().parent)
+            return replace(opened, digest=chosen.digest), common, kept, earlier, steps
 
-        def done(result: tuple[Opened, Project | None, list[Path], tuple[UndoStep, ...]]) -> None:
-            opened, common, kept, steps = result
+        def done(result: tuple[Opened, Project | None, list[Path], Steps, Steps]) -> None:
+            opened, common, kept, earlier, steps = result
             if self.document.project is not before and not self.may_leave():
                 _release(lock, self.document)
                 return  # it was edited meanwhile
@@ -208,9 +215,9 @@ class Files(QObject):
                 self.document.load(
                     opened.project,
                     path,
-                    count_lost_steps(chosen, steps) if chosen is not None else 0,
-                    steps=steps,
-                    common=common,
+                    Past(
+                        earlier, steps, count_lost_steps(chosen, steps) if chosen is not None else 0, common
+                    ),
                     digest=opened.digest,
                     lock=lock,
                     read_only=read_only,

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from app.project.step_store import keep_steps
 from metagraph.common.files import is_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.new_file import Access
 from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
+from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal import Journal
 from metagraph.formats.project.versions import write_project
 from metagraph.formats.store import (
@@ -18,7 +21,7 @@ from metagraph.formats.store import (
     content_digest,
     encode_project,
     file_digest,
-    move_project,
+    move_projects,
     read_with_digest,
 )
 from metagraph.graph.model import Project
@@ -56,8 +59,9 @@ class Writing:
 
     `was` is the file its paths are relative to. `mark` is its position in the journal. `versions` is the
     number of earlier ones that are kept. `home` identifies the folder of its own file. `access` says who may
-    read it. After writing: `after` is the project as in the file, `digest` the file's SHA-256, `note` the
-    reason if its earlier version could not be kept, and `anew` whether its own file had been missing.
+    read it. `steps` led to the project; `replaces` is the digest of the file as it was. After writing:
+    `after` is the project as in the file, `digest` the file's SHA-256, `note` the reason if its earlier
+    version could not be kept, and `anew` whether its own file had been missing.
     """
 
     project: Project
@@ -68,6 +72,8 @@ class Writing:
     versions: int = 0
     home: Identity | None = None
     access: Access | None = None
+    steps: tuple[UndoStep, ...] = ()
+    replaces: str | None = None
     anew: bool = False
     after: Project = field(default_factory=Project)
     digest: str = ""
@@ -82,9 +88,7 @@ class Writing:
             self.anew = not is_file(self.target)
         self.after = self.project
         if self.target != self.was:
-            self.after = replace(
-                move_project(self.project, self.was, self.target), name=name_after_file(self.target)
-            )
+            self.after = move_states([self.project], self.was, self.target)[0]
         content = encode_project(self.after, self.target)
         self.digest = content_digest(content)
         if expected is not None:
@@ -95,6 +99,14 @@ class Writing:
             with suppress(FileError):  # what cannot be journalled must be saved in any case
                 self.journal.settle(self.mark, self.digest)
         self.note = write_project(self.target, content, self.versions, self.access)
+        self._keep_steps()
+
+    def _keep_steps(self) -> None:
+        """Keep the steps for the next time the project is opened."""
+        steps = self.steps
+        if self.target != self.was:
+            steps = move_steps(steps, self.was, self.target)
+        keep_steps(self.digest, steps, self.replaces if self.target == self.was else None)
 
     def _look_for_folder(self) -> None:
         """Raise FolderGoneError if the folder is gone or has another name, because nobody would look for the
@@ -107,6 +119,22 @@ class Writing:
             place = folder_now(folder, self.home, journal)
             if there is None or place is not None:
                 raise FolderGoneError(self.target, place)
+
+
+def move_states(states: Sequence[Project], old: Path | None, new: Path) -> list[Project]:
+    """Return the states of a project as they are when it is saved as another file: with other paths, and
+    named after it. `old` is the file that their paths are relative to, None if these are absolute.
+    """
+    name = name_after_file(new)
+    moved = move_projects(states, old, new)
+    renamed = {id(state): replace(state, name=name) for state in moved}  # one state stays one object
+    return [renamed[id(state)] for state in moved]
+
+
+def move_steps(steps: Sequence[UndoStep], old: Path | None, new: Path) -> tuple[UndoStep, ...]:
+    """Return the steps between the states that `move_states` returns."""
+    moved = iter(move_states([state for step in steps for state in (step.before, step.after)], old, new))
+    return tuple(UndoStep(step.text, next(moved), next(moved)) for step in steps)
 
 
 def find_file_change(path: Path, expected: str) -> FileChangedError | None:

@@ -5,7 +5,7 @@ returns the focus.
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QKeyEvent, QKeySequence
+from PySide6.QtGui import QAction, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QApplication, QDialog, QMainWindow, QWidget
 from shiboken6 import isValid
 
@@ -63,6 +63,9 @@ class Keyboard(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if watched is self.window and event.type() == QEvent.Type.ShortcutOverride:
             self.actions.settle()  # a key may come right after the change that enables its command
+            if isinstance(event, QKeyEvent) and self._pad_action(event) is not None:
+                event.accept()  # else Qt would take "Num+1" for the plain digit's command
+                return True
         if watched is self._watched and event.type() == QEvent.Type.ShortcutOverride:
             return isinstance(event, QKeyEvent) and self._ours(event)
         if watched is self.window and isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
@@ -77,15 +80,17 @@ class Keyboard(QObject):
         """Run the command of a number pad's key that nothing in the window handled: on X11, Qt only checks
         shortcuts for the plain digit, never for "Num+3".
         """
-        if not event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
-            return False
-        wanted = QKeySequence(event.keyCombination())
-        action = next(
-            (a for a in self.actions.by_id.values() if wanted in a.shortcuts() and a.isEnabled()), None
-        )
-        if action is not None:
+        action = self._pad_action(event)
+        if action is not None and action.isEnabled():
             action.trigger()
         return action is not None
+
+    def _pad_action(self, event: QKeyEvent) -> QAction | None:
+        """Return the command that a key of the number pad belongs to, whether or not it is enabled now."""
+        if not event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
+            return None
+        wanted = QKeySequence(event.keyCombination())
+        return next((a for a in self.actions.by_id.values() if wanted in a.shortcuts()), None)
 
     def _ours(self, event: QKeyEvent) -> bool:
         """Keep a command's key from a field that would use it itself: Ctrl+E goes to the end of a line on

@@ -9,7 +9,7 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, QSettings, Qt, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent
-from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QMainWindow
+from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow
 
 from app.look import icons
 from app.look.theme import apply_theme, theme
@@ -263,7 +263,7 @@ class Window(QMainWindow):
             and event.key() == Qt.Key.Key_Space
         ):
             focus = QApplication.focusWidget()
-            if isinstance(focus, QAbstractButton | QComboBox) and not event.modifiers():
+            if isinstance(focus, QAbstractButton) and not event.modifiers():
                 event.accept()
                 return True
         return super().event(event)

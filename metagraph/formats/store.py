@@ -12,6 +12,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -229,13 +230,37 @@ def move_project(project: Project, old: Path | None, new: Path) -> Project:
     """Return the project with paths relative to `old` made relative to `new`. Both are project files; None
     means absolute paths.
     """
-    source = old.parent if old is not None else None
+    return move_projects([project], old, new)[0]
 
+
+def move_projects(projects: Sequence[Project], old: Path | None, new: Path) -> list[Project]:
+    """Move several states of one project as `move_project` does; what they share stays shared."""
+    source = old.parent if old is not None else None
+    moved: dict[int, Any] = {}  # by the identity of parts, which `projects` keep alive
+
+    @cache
     def renew(text: str) -> str:
         whole = Path(text) if source is None else source / text
-        return relative(whole, new.parent)
+        return text if is_closed(text) else relative(whole, new.parent)
 
-    return _with_paths(project, renew)
+    def once(part: Any, move: Callable[[Any], Any]) -> Any:
+        if id(part) not in moved:
+            moved[id(part)] = move(part)
+        return moved[id(part)]
+
+    def move_entry(entry: ClipEntry) -> ClipEntry:
+        return replace(entry, path=renew(entry.path))
+
+    def move(project: Project) -> Project:
+        return replace(
+            project,
+            clips=once(project.clips, lambda c: {i: once(entry, move_entry) for i, entry in c.items()}),
+            character=renew(project.character) if project.character else None,
+            lines=once(project.lines, lambda _: _lines(project, renew)),
+            conversations=once(project.conversations, lambda _: _conversations(project, renew)),
+        )
+
+    return [once(project, move) for project in projects]
 
 
 def _with_paths(project: Project, make: Callable[[str], str]) -> Project:

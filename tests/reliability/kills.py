@@ -20,12 +20,11 @@ from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from app.project.document import Document, state_folder  # noqa: E402
+from app.project.document import Document, Past, state_folder  # noqa: E402
 from app.project.leftovers import list_untitled_journals, look_beside, read_untitled, remove_journal  # noqa: E402
 from app.project.opening import load_recovered, open_whole  # noqa: E402
 from app.project.unsaved import count_lost_steps  # noqa: E402
@@ -87,10 +86,10 @@ class Sitting:
         say("act", "recover" if chosen is not None else "open")
         if chosen is not None:
             opened, steps = load_recovered(chosen, self.folder)
-            more: dict[str, Any] = {"steps": steps, "lock": lock}
-            if self.path is not None:
-                more |= {"common": read_project(self.path), "digest": chosen.digest}
-            self.document.load(opened.project, self.path, count_lost_steps(chosen, steps), **more)
+            common = read_project(self.path) if self.path is not None else None
+            digest = chosen.digest if self.path is not None else None
+            past = Past(steps=steps, lost=count_lost_steps(chosen, steps), common=common)
+            self.document.load(opened.project, self.path, past, digest=digest, lock=lock)
             if self.document.secured():
                 for left in found.left:
                     remove_journal(left.path)

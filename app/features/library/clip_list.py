@@ -214,7 +214,7 @@ class ClipList(QListView):
         if key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.currentIndex().isValid():
             self.play(self.currentIndex().data(ENTRY).id)
         elif event.text() in ("1", "2", "3", "4"):
-            event.ignore()  # the window's keys label the selection
+            event.ignore()  # the window's keys label the selection, those of the number pad turn the view
         elif held and key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
             self.zoomed.emit(-1 if key == Qt.Key.Key_Minus else 1)
         elif event.text() in ("+", "-", "*") and self.rows.sections and self.rows.sections[0].title:

@@ -50,7 +50,7 @@ def _steps(base: Data, records: Sequence[Data]) -> list[UndoStep]:
     steps: list[UndoStep] = []
     for record in records:
         replay.apply(record)
-        before, now = now, _next(now, replay, record)
+        before, now = now, project_after(now, replay, record)
         text, how = str(record.get("step") or UNNAMED), record.get("how")
         if how == "undone" and steps and now == steps[-1].before:
             now = steps.pop().before
@@ -61,7 +61,7 @@ def _steps(base: Data, records: Sequence[Data]) -> list[UndoStep]:
     return steps
 
 
-def _next(project: Project, replay: Replay, record: Data) -> Project:
+def project_after(project: Project, replay: Replay, record: Data) -> Project:
     """Return the project after a record that has been worked into `replay`; only what it names is read."""
     part: Data = {"metagraph": FORMAT}
     for key in record:

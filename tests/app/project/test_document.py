@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from app.project.autosave import journal_shelter, state_folder
-from app.project.document import UNDO_STEPS, Document
+from app.project.document import UNDO_STEPS, Document, Past
 from app.project.writing import name_after_file
 from metagraph.errors import FileError
 from metagraph.formats.project.history import UndoStep
@@ -45,7 +45,7 @@ def test_an_edit_is_one_step_that_goes_back_and_forth(document, toy):
     document.redo()
     assert document.project is after
     assert seen == [(before, after), (after, before), (before, after)]
-    assert document.undo_stack.undoText() == "Change likelihood"
+    assert document.undo_stack.undoText() == "Likelihood 1 → 2, rest beat lf"
 
 
 def test_an_edit_that_changes_nothing_is_no_step(document, toy):
@@ -126,7 +126,6 @@ def test_saving_elsewhere_names_the_project_and_makes_paths_relative(document, t
     assert document.project.name == "tuesday"
     assert next(iter(document.project.clips.values())).path == "../clips/rest loop.glb"
     assert document.folder == tmp_path / "shows"
-    assert not document.undo_stack.canUndo(), "steps back would bring paths of the old place"
     document.save(tmp_path / "other.metagraph.yaml")
     assert next(iter(document.project.clips.values())).path == "clips/rest loop.glb"
     assert read_project(tmp_path / "other.metagraph.yaml").name == "other"
@@ -147,6 +146,54 @@ def test_saving_elsewhere_names_the_project_and_makes_paths_relative(document, t
 )
 def test_a_project_is_named_after_its_file(tmp_path, file, name):
     assert name_after_file(tmp_path / file) == name
+
+
+def test_the_first_save_keeps_every_step(document, toy, tmp_path):
+    beat = toy.id(document.project, "rest beat lf")
+    likely(document, beat, 2.0)
+    likely(document, beat, 3.0)
+    document.undo()
+    document.save(tmp_path / "mine.metagraph.yaml")
+    assert not document.dirty
+    assert document.project.action(beat).likelihood == 2.0
+    document.undo()
+    assert document.project.action(beat).likelihood == 1.0 and document.dirty
+    assert document.project.name == "mine"
+    document.redo()
+    assert not document.dirty
+    document.redo()
+    assert document.project.action(beat).likelihood == 3.0
+
+
+def test_undo_after_saving_elsewhere_leads_to_paths_of_the_new_place(document, toy, tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    document.save(tmp_path / "a" / "one.metagraph.yaml")
+    likely(document, toy.id(document.project, "rest beat lf"), 2.0)
+    document.save(tmp_path / "b" / "two.metagraph.yaml")
+    now = {i: e.path for i, e in document.project.clips.items()}
+    document.undo()
+    assert {i: e.path for i, e in document.project.clips.items()} == now
+    assert document.project.name == "two"
+    document.save()
+    assert read_project(document.path).clips.keys() == document.project.clips.keys()
+
+
+def test_an_edit_made_while_it_is_saved_elsewhere_can_be_undone(document, toy, tmp_path):
+    beat = toy.id(document.project, "rest beat lf")
+    likely(document, beat, 2.0)
+    writing = document.begin_saving(tmp_path / "mine.metagraph.yaml")
+    likely(document, beat, 3.0)
+    writing.write()
+    document.end_saving(writing)
+    assert document.dirty and document.project.name == "mine"
+    document.undo()
+    assert document.project.action(beat).likelihood == 2.0
+    document.undo()
+    assert document.project.action(beat).likelihood == 1.0
+    document.redo()
+    document.redo()
+    assert document.project.action(beat).likelihood == 3.0
 
 
 def test_a_failed_save_changes_nothing(document, toy, tmp_path):
@@ -205,7 +252,7 @@ def test_recovered_edits_are_unsaved_and_survive_a_second_crash(qapp, toy, tmp_p
     beat = toy.id(project, "rest beat lf")
     recovered = edits.update_actions(project, (beat,), likelihood=2.0)
     document = Document()
-    document.load(recovered, path, recovered=True)
+    document.load(recovered, path, Past(lost=1))
     assert document.dirty
     document.edit("Change seed", lambda p: edits.set_settings(p, seed=5))
     found, _ = recover(document.journal_place, path)
@@ -278,7 +325,7 @@ def test_steps_that_a_crash_left_are_undone_as_far_as_any(document, toy):
     for n in range(UNDO_STEPS + 3):
         states.append(edits.update_actions(states[-1], (beat,), likelihood=2.0 + n))
     steps = tuple(UndoStep(f"Step {n}", *two) for n, two in enumerate(pairwise(states)))
-    document.load(states[-1], None, steps=steps)
+    document.load(states[-1], None, Past(steps=steps))
     assert document.undo_stack.count() == UNDO_STEPS and document.project == states[-1]
     while document.undo_stack.canUndo():
         document.undo()

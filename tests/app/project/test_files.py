@@ -234,6 +234,52 @@ def crash(desk) -> None:
     document.undo_stack.setClean()
 
 
+def reopen(desk, path, qtbot):
+    desk.document.load(Project(), None)
+    desk.open(path)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3 and desk.idle())
+
+
+def test_steps_can_be_undone_after_saving_and_opening_again(desk, saved, qtbot):
+    change_seed(desk, 7)
+    first = next(iter(desk.document.project.clips))
+    desk.document.edit("Rename clip", lambda p: edits.rename_clip(p, first, "hello"))
+    desk.document.save()
+    reopen(desk, saved, qtbot)
+    stack = desk.document.undo_stack
+    assert [stack.text(n) for n in range(stack.count())] == ["Import 3 clips", "Change seed", "Rename clip"]
+    assert not desk.document.dirty
+    desk.document.undo()
+    assert desk.document.project.clips[first].name != "hello" and desk.document.dirty
+    assert desk.document.project.clips[first].motion is not None
+    desk.document.undo()
+    assert desk.document.project.settings.seed == 1
+    desk.document.undo()
+    assert not desk.document.project.clips
+    for _ in range(3):
+        desk.document.redo()
+    assert desk.document.project.clips[first].name == "hello" and not desk.document.dirty
+
+
+def test_a_clip_removed_before_saving_comes_back_with_its_motion(desk, saved, qtbot):
+    first = next(iter(desk.document.project.clips))
+    desk.document.edit("Remove clip", lambda p: edits.remove_clips(p, (first,)))
+    desk.document.save()
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 2 and desk.idle())
+    desk.document.undo()
+    assert desk.document.project.clips[first].motion is not None
+
+
+def test_a_file_that_another_program_changed_has_no_steps(desk, saved, qtbot):
+    change_seed(desk, 7)
+    desk.document.save()
+    saved.write_text(saved.read_text(encoding="utf-8") + "# a remark\n", encoding="utf-8")
+    reopen(desk, saved, qtbot)
+    assert desk.document.undo_stack.count() == 0
+
+
 @pytest.mark.parametrize("answer", ["recover", "discard"])
 def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answer):
     change_seed(desk, 7)
@@ -247,7 +293,8 @@ def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answe
     taken = answer == "recover"
     assert desk.document.project.settings.seed == (8 if taken else 1)
     assert desk.document.dirty is taken
-    assert desk.document.undo_stack.count() == (2 if taken else 0)
+    # the step before the save can be undone, too
+    assert desk.document.undo_stack.count() == (3 if taken else 1)
     if taken:
         desk.document.undo()
         assert desk.document.project.settings.seed == 7

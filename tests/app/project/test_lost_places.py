@@ -180,7 +180,7 @@ def test_a_damaged_journal_says_what_is_lost_and_is_kept_until_it_is_discarded(d
     assert recovered(desk, qtbot, lambda: desk.open(saved)) == 8
     assert "1 edit is damaged" in desk.asked[0]
     lines = next(lines for title, lines in desk.reports if "damaged" in title)
-    assert any("Change seed" in line for line in lines)
+    assert any("Seed 1 → 7" in line for line in lines)
     kept = place.with_name(place.name + DAMAGED)
     assert kept.exists() and not place.exists()
     desk.document.save()

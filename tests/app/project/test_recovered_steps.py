@@ -15,7 +15,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from app.project.document import Document
+from app.project.document import Document, Past
 from app.project.opening import load_recovered
 from metagraph.formats.project.data import to_data
 from metagraph.formats.recovery import read_journal
@@ -62,7 +62,7 @@ def recovered(journal: Path, saved: Path | None) -> tuple[Document, int]:
     opened, steps = load_recovered(left, journal.parent)
     document = new_document()
     common = read_project(saved) if saved is not None else None
-    document.load(opened.project, saved, left.unsaved if steps else left.edits, steps=steps, common=common)
+    document.load(opened.project, saved, Past((), steps, left.unsaved if steps else left.edits, common))
     return document, len(steps)
 
 
@@ -141,7 +141,7 @@ def test_a_drag_is_one_step_and_its_words_are_kept(sitting: tuple[Document, Path
     again, count = recovered(crashed(document, path), path)
     assert count == 2 and again.undo_stack.undoText() == "Rename the project"
     again.undo()
-    assert again.undo_stack.undoText() == "Set likelihood"
+    assert again.undo_stack.undoText() == "Likelihood 1 → 2.5, rest beat lf"
     assert again.project.action(beat).likelihood == 2.5
     again.undo()
     assert again.project.action(beat).likelihood == 1.0 and not again.dirty
@@ -201,5 +201,5 @@ def test_the_views_follow_a_recovery_once(sitting: tuple[Document, Path]) -> Non
     opened, steps = load_recovered(left, path.parent)
     again, seen = new_document(), []
     again.changed.connect(lambda before, after: seen.append(after))
-    again.load(opened.project, path, steps=steps)
+    again.load(opened.project, path, Past(steps=steps))
     assert seen == [opened.project] and again.undo_stack.count() == 5

@@ -697,7 +697,7 @@ def test_requests_and_another_seed_change_the_performance(toys):
     before = [c.action.id for c in arms()]
     drive.timeline.seed.setValue(4242)
     drive.wait(lambda: [c.action.id for c in arms()] != before)
-    assert drive.document.undo_stack.undoText() == "Change seed"
+    assert drive.document.undo_stack.undoText() == "Seed 1 → 4242"
     drive.key(KEY.Key_Z, CTRL)
     assert drive.timeline.seed.value() == 1
     drive.wait(lambda: [c.action.id for c in arms()] == before)
