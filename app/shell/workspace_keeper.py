@@ -8,7 +8,15 @@ import json
 from dataclasses import dataclass
 
 from PySide6.QtCore import QByteArray, QObject, QSettings, Signal
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import (
+    QAbstractSpinBox,
+    QApplication,
+    QComboBox,
+    QLineEdit,
+    QPlainTextEdit,
+    QTextEdit,
+    QWidget,
+)
 
 from app.shell.places import ARRANGED, PanelPlaces
 from app.shell.workspaces import ALL, FIRST, WORKSPACES, Workspace
@@ -17,6 +25,7 @@ from app.translation import tr
 GROUP = (
     f"workspaces {ARRANGED}"  # what was kept when docks were made otherwise lies elsewhere, and is not read
 )
+FIELDS = (QAbstractSpinBox, QComboBox, QLineEdit, QPlainTextEdit, QTextEdit)
 OLD = "state"  # one arrangement for everything, as kept before there were workspaces
 
 
@@ -126,12 +135,18 @@ class Workspaces(QObject):
             return
         if focus.isVisible():
             focus.setFocus()
-            return
+        else:
+            self.focus_large()
+
+    def focus_large(self) -> None:
+        """Give the focus to the large panel, but to none of its fields: a key that means a command would be
+        typed there.
+        """
         name = self.places.large()
-        large: QWidget | None = self.places.panel(name) if name and self.places.ready else None
-        while large is not None and not large.focusPolicy().value:
-            large = next((c for c in large.findChildren(QWidget) if c.focusPolicy().value), None)
-        (large or window).setFocus()
+        large = self.places.panel(name) if name and self.places.ready else None
+        inside = [large, *large.findChildren(QWidget)] if large is not None else []
+        takes = (w for w in inside if w.focusPolicy().value and w.isVisible() and not isinstance(w, FIELDS))
+        next(takes, self.places.window).setFocus()
 
     def everything(self) -> None:
         """Show every panel at once, until a workspace is chosen."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QFrame, QUndoView, QWidget
 
+from app.look.icons import icon
 from app.shell.actions import Command, Standard
 from app.shell.command_table import Feature, has_actions_selected, is_meta_graph_shown
 from app.shell.context import Shell
@@ -37,7 +38,8 @@ class EditingFeature(Feature):
         view = QUndoView(self.document.undo_stack, self.shell.widget)
         view.setSpacing(3)
         view.setFrameShape(QFrame.Shape.NoFrame)
-        view.setEmptyLabel(tr("When opened"))
+        view.setEmptyLabel(tr("Before these steps"))
+        view.setCleanIcon(icon("save", self.shell.widget.palette().text().color().name()))
         view.setAccessibleName(tr("Every step so far; click one to go back to it"))
         return view
 

@@ -73,10 +73,12 @@ def contribute(shell: Shell) -> Contribution:
         for ident, dock in places.docks.items():
             yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
 
+    recent: list[str] = []  # the commands done from the list, the latest first
+
     def find(title: str, keyed: bool) -> None:
         from app.features.help.command_finder import CommandFinder
 
-        CommandFinder(title, entries(keyed), shell.widget).open()
+        CommandFinder(title, entries(keyed), shell.widget, recent).open()
 
     def keys() -> None:
         find(tr("Keyboard shortcuts"), True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from PySide6.QtCore import QEvent, QModelIndex, QObject, QSize, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, QTimer
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -39,26 +39,58 @@ class Entry:
     run: Callable[[], object] | None = None
     enabled: bool = True
 
-    def matches(self, wanted: str) -> bool:
-        """Return whether each word that is wanted is in it."""
-        text = f"{self.group} {self.words} {self.keys} {self.also}".casefold()
-        return all(word in text for word in wanted.casefold().split())
+    def rank(self, wanted: str) -> int | None:
+        """Return how well it matches what was typed, 0 best; None if it does not match."""
+        sought, name = wanted.casefold().split(), self.words.casefold()
+        words = name.split()
+        if words == sought:
+            return 0
+        if words[: len(sought)] == sought:
+            return 1
+        if all(word in words for word in sought):
+            return 2
+        if all(any(w.startswith(word) for w in words) for word in sought):
+            return 3
+        if all(word in name for word in sought):
+            return 4
+        text = f"{self.group} {name} {self.keys} {self.also}".casefold()
+        if all(word in text for word in sought):
+            return 5
+        return 6 if _has_letters_in_order("".join(sought), words) else None
+
+
+def _has_letters_in_order(letters: str, words: list[str]) -> bool:
+    """Return whether the letters are in the words in this order, the first one first: "expgr" finds "export
+    graph".
+    """
+    name, at = "".join(words), 0
+    for letter in letters:
+        found = name.find(letter, at)
+        if found < 0 or (at == 0 and found > 0):
+            return False
+        at = found + 1
+    return True
 
 
 class CommandFinder(QDialog):
-    """Words narrow the list, Up and Down go through it, Enter or a double click does it."""
+    """Words narrow the list, Up and Down go through it, Enter or a double click does it. `recent` has the
+    names of the commands done last, the latest first, and is kept up to date.
+    """
 
-    def __init__(self, title: str, entries: Iterable[Entry], parent: QWidget) -> None:
+    def __init__(
+        self, title: str, entries: Iterable[Entry], parent: QWidget, recent: list[str] | None = None
+    ) -> None:
         super().__init__(parent)
         self.setWindowTitle(title)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.entries = tuple(entries)
+        self.recent = [] if recent is None else recent
         self.search = QLineEdit(self, placeholderText=tr("Type what you want to do"), clearButtonEnabled=True)
         self.search.setAccessibleName(tr("Search commands"))
         self.search.textChanged.connect(self._narrow)
         self.search.installEventFilter(self)
         self.tree = QTreeWidget(self)
-        self.tree.setColumnCount(2)
+        self.tree.setColumnCount(3)
         self.tree.setHeaderHidden(True)
         self.tree.setRootIsDecorated(False)
         self.tree.setIndentation(14)
@@ -69,7 +101,8 @@ class CommandFinder(QDialog):
         header = self.tree.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        for column in (1, 2):
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
         self.tree.itemActivated.connect(self._do)
         self.none = QLabel(tr("No command matches. Try other words."), self)
         self.none.setProperty("dim", True)
@@ -77,54 +110,69 @@ class CommandFinder(QDialog):
         layout.addWidget(self.search)
         layout.addWidget(self.none)
         layout.addWidget(self.tree, 1)
-        self._fill()
         self._narrow("")
         self.resize(SIZE)
         self.search.setFocus()
 
-    def _fill(self) -> None:
+    def _narrow(self, wanted: str) -> None:
+        """Show what matches the words typed: by menu while there are none, else the best match first."""
+        self.tree.clear()
+        if wanted.strip():
+            ranked = [(entry.rank(wanted), entry) for entry in self.entries]
+            found = [(rank, self._how_recent(entry), entry) for rank, entry in ranked if rank is not None]
+            for *_, entry in sorted(found, key=lambda row: row[:2]):
+                self._add(self.tree, entry, entry.group)
+        else:
+            self._fill_by_group()
+        self.none.setVisible(not self.listed())
+        items = self._usable()
+        if items:
+            self.tree.setCurrentItem(items[0])
+        self.tree.scrollToTop()
+
+    def _how_recent(self, entry: Entry) -> int:
+        """Return 0 for the command done last, and so on."""
+        return self.recent.index(entry.words) if entry.words in self.recent else len(self.recent)
+
+    def _fill_by_group(self) -> None:
         groups: dict[str, QTreeWidgetItem] = {}
         for entry in self.entries:
             if entry.group not in groups:
-                head = groups[entry.group] = QTreeWidgetItem(self.tree, [entry.group, ""])
+                head = groups[entry.group] = QTreeWidgetItem(self.tree, [entry.group])
                 font = head.font(0)
                 font.setBold(True)
                 head.setFont(0, font)
                 head.setFlags(Qt.ItemFlag.ItemIsEnabled)
                 head.setFirstColumnSpanned(True)
-            item = QTreeWidgetItem(groups[entry.group], [entry.words, entry.keys])
-            item.setData(0, ROLE, entry)
-            item.setToolTip(0, "\n".join(x for x in (entry.words, entry.also) if x))
-            item.setDisabled(not entry.enabled)
+            self._add(groups[entry.group], entry)
         self.tree.expandAll()
 
-    def _narrow(self, wanted: str) -> None:
-        first: QTreeWidgetItem | None = None
-        for head in top_items(self.tree):
-            shown = 0
-            for item in items_below(head):
-                fits = item.data(0, ROLE).matches(wanted)
-                item.setHidden(not fits)
-                shown += fits
-                if fits and first is None and not item.isDisabled():
-                    first = item
-            head.setHidden(not shown)
-        self.none.setVisible(not self.listed())
-        if first is None:
-            self.tree.clearSelection()
-            self.tree.setCurrentIndex(QModelIndex())
-            return
-        self.tree.setCurrentItem(first)
-        if not wanted:
-            self.tree.scrollToTop()
+    def _add(self, parent: QTreeWidget | QTreeWidgetItem, entry: Entry, group: str = "") -> None:
+        item = QTreeWidgetItem(parent, [entry.words, group, entry.keys])
+        item.setData(0, ROLE, entry)
+        item.setForeground(1, self.palette().placeholderText())
+        item.setToolTip(0, "\n".join(x for x in (entry.words, entry.also) if x))
+        item.setDisabled(not entry.enabled)
+
+    def _items(self) -> list[QTreeWidgetItem]:
+        """Return the items of all entries that are shown."""
+        tops = top_items(self.tree)
+        every = [item for top in tops for item in (top, *items_below(top))]
+        return [item for item in every if item.data(0, ROLE) is not None]
+
+    def _usable(self) -> list[QTreeWidgetItem]:
+        return [item for item in self._items() if not item.isDisabled()]
 
     def listed(self) -> list[Entry]:
         """Return what is shown now."""
-        return [i.data(0, ROLE) for h in top_items(self.tree) for i in items_below(h) if not i.isHidden()]
+        return [item.data(0, ROLE) for item in self._items()]
 
     def _do(self, item: QTreeWidgetItem | None, column: int = 0) -> None:
         entry = item.data(0, ROLE) if item is not None else None
         if entry is not None and entry.run is not None and entry.enabled:
+            if entry.words in self.recent:
+                self.recent.remove(entry.words)
+            self.recent.insert(0, entry.words)
             self.accept()  # first: what is done may look at what has the keyboard
             QTimer.singleShot(0, entry.run)
 
@@ -140,9 +188,7 @@ class CommandFinder(QDialog):
         return super().eventFilter(watched, event)
 
     def _step(self, key: Qt.Key) -> None:
-        items = [
-            i for h in top_items(self.tree) for i in items_below(h) if not i.isHidden() and not i.isDisabled()
-        ]
+        items = self._usable()
         if not items:
             return
         current = self.tree.currentItem()

@@ -27,6 +27,7 @@ from app.stage.compatibility_state import Compatibility
 from app.stage.line_player import Sound
 from app.stage.onion import OnionSkin
 from app.stage.performance import StagePerformance
+from app.stage.playback_source import LEAD
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr
@@ -35,6 +36,7 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.editing.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.graph.model import Project
+from metagraph.graph.repeating import seconds_played
 from metagraph.motion.dope import DopeSheet, dope_sheet
 from metagraph.playback.timing.handles import move_handle
 
@@ -42,6 +44,7 @@ Array = NDArray[Any]
 
 HELD = 0.4  # seconds of a new hold
 KEPT = 0.5  # seconds for which a hand is kept at least
+BEFORE = 0.5  # seconds that are seen before a blend that is played
 MOST = 12  # actions below each other
 EMPTY = DopeSheet((), np.zeros((0, 0)), np.zeros((0, 0)))
 GHOSTS = {"start": 0.22, "stroke": 0.34, "end": 0.22}  # how much of each is seen
@@ -316,6 +319,17 @@ class Subject(QObject):
         self.before = before
         self._old = {}
         self.performance.compare(before)
+
+    def play_blend(self, ident: str, handle: str) -> None:
+        """Play an action between its stances, from just before the blend whose handle is "in" or "out"."""
+        action, project = self.document.project.action(ident), self.document.project
+        if action is None or handle not in ("in", "out"):
+            return
+        self.session.show_context(ident)
+        if handle == "out" and action.kind != "stance":
+            start, end = project.span(action)
+            played = seconds_played(action.kind, action.timing, start, end)
+            self.session.transport.seek(max(0.0, LEAD + played - action.timing.blend_out - BEFORE))
 
     def loop_action(self) -> None:
         """Play the part of the clip that the action plays again and again, or all of it again."""

@@ -69,8 +69,11 @@ class TimingPanel(QWidget):
         self.onion = self._button(tr("Onion"), tr("Show ghosts of the start, stroke and end poses"), True)
         self.onion.clicked.connect(lambda on: subject.show(onion=on))
         self.compare = self._button(
-            "A/B",
-            tr('Compare with how it was when you selected it, or chose "Compare from now on" in the menu'),
+            tr("A/B"),
+            tr(
+                'Show it as it was when you selected it, or chose "Compare from now on" in the menu (A shows '
+                "it as it is again)"
+            ),
             True,
         )
         self.compare.clicked.connect(subject.compare)
@@ -160,6 +163,7 @@ class TimingPanel(QWidget):
         self.use.setVisible(first.seen is not None)
         self.onion.setChecked(self.subject.shows.onion)
         self.compare.setChecked(self.subject.before is not None)
+        self.compare.setText(tr("A/B") if self.subject.before is None else tr("A: before"))
         part = self.session.transport.part
         self.loop.setChecked(part is not None and part[0] == first.action.clip)
 

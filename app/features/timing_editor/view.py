@@ -4,6 +4,8 @@ the keys are.
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
@@ -274,7 +276,8 @@ class TimingView(QWidget):
             handle = shown.handle(name)
             return f"{describe_handle(handle)} s" if handle is not None else name
 
-        return TimingDrag(self, facts, grip, snaps, handle_change(self.idents(), name), words)
+        done = partial(self.subject.play_blend, facts.action.id, name)
+        return TimingDrag(self, facts, grip, snaps, handle_change(self.idents(), name), words, done)
 
     def _block_drag(self, facts: Facts, name: str) -> TimingDrag:
         first = next((b.first for b in facts.blocks if b.name == name), facts.span[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QDialog, QLineEdit, QVBoxLayout
+from PySide6.QtWidgets import QAbstractSpinBox, QApplication, QComboBox, QDialog, QLineEdit, QVBoxLayout
 
 from metagraph.graph import edits
 
@@ -83,3 +83,44 @@ def test_a_dialog_gives_the_focus_back(toys, modal):
     dialog.accept()
     drive.wait(drive.canvas.hasFocus)
     dialog.deleteLater()
+
+
+@pytest.mark.parametrize("where", ["clips", "canvas"])
+def test_the_number_pad_turns_the_view_and_labels_nothing(toys, where):
+    drive = toys
+    field = drive.library.list if where == "clips" else drive.canvas
+    drive.session.selection.select_clips((next(iter(drive.document.project.clips)),))
+    field.setFocus()
+    drive.wait(field.hasFocus)
+    before, done = drive.document.project, []
+    action = drive.actions["see_front"]
+    action.triggered.connect(lambda: done.append("front"))
+    QTest.keyClick(field, Qt.Key.Key_1, Qt.KeyboardModifier.KeypadModifier)
+    assert done == ["front"]
+    assert drive.document.project is before
+
+
+def test_the_number_pad_types_numbers_in_a_field(toys):
+    field = toys.library.search
+    field.setFocus()
+    toys.wait(field.hasFocus)
+    QTest.keyClick(field, Qt.Key.Key_1, Qt.KeyboardModifier.KeypadModifier)
+    assert field.text() == "1"
+
+
+def test_the_space_bar_plays_after_something_was_chosen_from_a_list(toys):
+    drive = toys
+    drive.session.selection.select_actions((next(iter(drive.document.project.actions())).id,))
+    chooser = drive.properties.action.stance
+    chooser.setFocus()
+    drive.wait(chooser.hasFocus)
+    playing = drive.session.transport.playing
+    QTest.keyClick(chooser, Qt.Key.Key_Space)
+    assert drive.session.transport.playing is not playing
+    assert not chooser.view().isVisible()
+
+
+@pytest.mark.fresh_window
+def test_no_field_has_the_focus_when_the_window_opens(toys):
+    focus = toys.window.focusWidget()
+    assert focus is None or not isinstance(focus, QLineEdit | QAbstractSpinBox | QComboBox)

@@ -26,7 +26,8 @@ class TimingDrag(RowsDrag):
     """Something of an action's timing is moved, in as many actions as are selected; all in one step of undo.
 
     grip: where in seconds what is dragged stood. snaps: where it may come to rest. change: what is to change
-    in which project when it is moved by seconds. words: what is dragged, at a moment.
+    in which project when it is moved by seconds. words: what is dragged, at a moment. done: called when it
+    was moved.
     """
 
     def __init__(
@@ -37,9 +38,10 @@ class TimingDrag(RowsDrag):
         snaps: Iterable[Snap],
         change: Callable[[Project, float], Changes],
         words: Callable[[float], str],
+        done: Callable[[], object] = lambda: None,
     ) -> None:
         super().__init__(host, facts)
-        self.grip, self.words = grip, words
+        self.grip, self.words, self.done = grip, words, done
         self.snaps, self.change = tuple(snaps), change
         self.project = host.document.project
 
@@ -69,6 +71,7 @@ class TimingDrag(RowsDrag):
     def finish(self, at: QPointF) -> None:
         if self.begun:
             self.host.document.finish_merging()
+            self.done()
         self.over()
 
     def cancel(self, reason: Reason) -> None:

@@ -6,7 +6,8 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.features.help.command_finder import CommandFinder
+from app.features.help.command_finder import CommandFinder, Entry
+from metagraph.graph import edits
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -63,3 +64,27 @@ def test_the_shortcuts_stand_in_groups(toys):
     dialog.search.setText("ctrl+e")
     assert next(e.words for e in dialog.listed()).startswith("Export")
     dialog.close()
+
+
+@pytest.mark.parametrize(
+    ("typed", "first"),
+    [("export", "Export"), ("undo", "Undo"), ("save", "Save"), ("frame", "Frame the character")],
+)
+def test_the_command_with_just_that_name_is_first(toys, typed, first):
+    toys.document.edit("Change seed", lambda p: edits.set_settings(p, seed=p.settings.seed + 1))
+    dialog = opened(toys, "palette")
+    dialog.search.setText(typed)
+    assert dialog.tree.currentItem().text(0).startswith(first)
+    assert dialog.listed()[0].words.startswith(first)
+    dialog.close()
+
+
+def test_what_was_done_last_comes_before_equal_matches(qapp):
+    made = [Entry("View", words, run=lambda: None) for words in ("light theme", "light room", "lights")]
+    assert [e.words for e in made if e.rank("light") == 1] == ["light theme", "light room"]
+    dialog = CommandFinder("Commands", made, None, ["light room"])
+    dialog.search.setText("light")
+    assert [e.words for e in dialog.listed()] == ["light room", "light theme", "lights"]
+    dialog.search.setText("lro")
+    assert [e.words for e in dialog.listed()] == ["light room"], "letters in order find it, too"
+    dialog.deleteLater()
