@@ -319,6 +319,22 @@ def to_stance(project: Project, actions: Collection[str], stance: str) -> Projec
     return project
 
 
+def set_kind(
+    project: Project, actions: Collection[str], kind: Kind, end_stance: str | None = None
+) -> Project:
+    """Give actions another kind. Each keeps its layer and stance. A transition keeps its end, and what
+    becomes one ends in `end_stance`. Raises EditError if one would have no end, or end where it starts.
+    """
+    groups: dict[tuple[str, str | None], list[str]] = {}
+    for ident in actions:
+        action = project.action(ident)
+        if action is not None and action.kind != kind:
+            groups.setdefault((action.stance, action.end_stance or end_stance), []).append(ident)
+    for (stance, end), idents in groups.items():
+        project = move_actions(project, idents, kind, stance, end if kind == "transition" else None)
+    return project
+
+
 def set_ends(project: Project, actions: Collection[str], end_stance: str) -> Project:
     """Make transitions end in a stance. Other kinds stay as they are. Raises EditError if one would end where
     it starts.

@@ -32,6 +32,7 @@ EVERY: dict[str, Callable[[Project, Any], Project]] = {
         p, {t.id(p, "up yawn"): {"likelihood": 2.0}, t.id(p, "up beat"): {"timing": {"end": 0.5}}}
     ),
     "to_stance": lambda p, t: edits.to_stance(p, [t.id(p, "up yawn"), t.id(p, "up beat")], t.id(p, "rest")),
+    "set_kind": lambda p, t: edits.set_kind(p, [t.id(p, "up yawn"), t.id(p, "rest beat lf")], "gesture"),
     "set_ends": lambda p, t: edits.set_ends(p, [t.id(p, "rest to up"), t.id(p, "up yawn")], t.id(p, "far")),
     "remove_actions": lambda p, t: edits.remove_actions(p, [t.id(p, "up yawn")]),
     "set_base": lambda p, t: edits.set_base(p, "c2", 7),
@@ -284,6 +285,30 @@ def test_actions_go_to_another_stance_each_keeping_its_kind_and_end(toy: Any) ->
     ]  # fmt: skip
     with pytest.raises(EditError, match="another stance"):
         edits.to_stance(project, [toy.id(project, "rest to up")], toy.id(project, "up"))
+
+
+def test_another_kind_leaves_every_action_on_its_own_stance(toy: Any) -> None:
+    project = toy.project()
+    names = ("up yawn", "rest beat lf", "rest to up")
+    chosen = [toy.id(project, name) for name in names]
+    after = edits.set_kind(project, [*chosen, "a999"], "fidget")
+    for ident in chosen:
+        was, now = project.action(ident), after.action(ident)
+        assert now.kind == "fidget" and now.end_stance is None
+        assert (now.stance, now.layer, now.name, now.timing) == (was.stance, was.layer, was.name, was.timing)
+    assert edits.set_kind(after, chosen, "fidget") is after, "nothing changes"
+
+
+def test_what_becomes_a_transition_ends_where_it_is_told_and_never_where_it_starts(toy: Any) -> None:
+    project = toy.project()
+    far, up = toy.id(project, "far"), toy.id(project, "up")
+    chosen = [toy.id(project, name) for name in ("up yawn", "rest to up")]
+    after = edits.set_kind(project, chosen, "transition", far)
+    assert [after.action(i).end_stance for i in chosen] == [far, up], "a transition keeps its own end"
+    with pytest.raises(EditError, match="another stance"):
+        edits.set_kind(project, chosen, "transition", up)
+    with pytest.raises(EditError, match="choose the stance"):
+        edits.set_kind(project, chosen, "transition")
 
 
 def test_transitions_get_another_end_and_other_kinds_stay(toy: Any) -> None:

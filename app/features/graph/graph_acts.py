@@ -75,28 +75,35 @@ class GraphActs(QObject):
         self.session.transport.show_plan()
 
     def place_selection(self, kind: Kind) -> None:
-        """Label the selection, clips or actions, with a kind on the current stance: the keys 1 to 4."""
-        load = Load(clips=self.session.selection.clips, actions=self.session.selection.actions)
+        """Give the selected actions a kind, or place the selected clips with it on the current stance: the
+        keys 1 to 4.
+        """
+        load = Load(clips=self.session.selection.clips)
+        if self.session.selection.actions:
+            self.set_kind(kind)
+            return
         if not load:
             self.refused.emit(tr("Select clips or actions first."))
             return
-        stance = self.session.place.stance()
-        new = kind == "stance" and bool(load.clips)
-        hit = (
-            GraphHit("card", stance, "stance")
-            if new
-            else GraphHit("loop", stance, "stance")
-            if kind == "stance"
-            else GraphHit("node", None, kind)
-        )
+        area = "card" if kind == "stance" else "node"
+        hit = GraphHit(area, self.session.place.stance() if kind == "stance" else None, kind)
         drop = self.what(hit, load)
         if not drop.possible:
             self.refused.emit(drop.words)
             return
         before = self.document.project
         self.do(drop, load)
-        if load.clips and self.document.project is not before:
+        if self.document.project is not before:
             self.labelled.emit(load.clips, self.session.selection.actions)
+
+    def set_kind(self, kind: Kind) -> None:
+        """Give the selected actions a kind. They stay on their layers and stances."""
+        chosen, end = self.session.selection.actions, self.session.place.other()
+        words = tr("Change kind")
+        try:
+            self.document.edit(words, lambda p: edits.set_kind(p, chosen, kind, end))
+        except EditError as error:
+            self.refused.emit(tr_error(error))
 
     def shift(self, steps: int) -> None:
         """List the selected actions a place earlier (-1) or later (1) in their nodes."""

@@ -30,7 +30,7 @@ from app.widgets.making import make_widget
 from app.widgets.restyling import set_sheet
 from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph import edits
-from metagraph.graph.model import LIMBS, Action
+from metagraph.graph.model import KINDS, LIMBS, Action
 from metagraph.graph.repeating import cycle_of, times_played
 from metagraph.playback.timing.handles import set_timing_field
 from metagraph.suggest.jumps.soft_blends import repeat_actions
@@ -145,6 +145,9 @@ class ActionPage(Halves):
         self.form.addRow(tr("Likelihood"), self.likelihood)
         self.variation = ActionRows(self.form, page)
         self.variation.changed.connect(lambda text, fields: self._set(text, **fields))
+        self.chosen_kind = QuietChooser(page, toolTip=tr("What kind of action it is; its stance stays"))
+        self.chosen_kind.activated.connect(self._rekind)
+        self.form.addRow(tr("Kind"), self.chosen_kind)
         self.stance = QuietChooser(page, toolTip=tr("The stance it starts from"))
         self.stance.activated.connect(self._restance)
         self.form.addRow(tr("Stance"), self.stance)
@@ -205,6 +208,9 @@ class ActionPage(Halves):
         self.tags.setPlaceholderText(tr(MIXED) if tags is Mixed else tr("positive, greeting, …"))
         self.likelihood.show_value(common_value([a.likelihood for a in actions]))
         self.variation.show_actions(project, actions)
+        self.chosen_kind.show_entries(
+            [(f"{KIND_MARKS[k]} {tr(KIND_TITLES[k])}", k) for k in KINDS], kind, tr(MIXED)
+        )
         self._fill_stances(actions, kind)
         masks = common_value([(a.joints, a.joint_weights) for a in actions])
         self.joints.setText(tr(MIXED) if masks is Mixed else _moved(*masks))
@@ -307,6 +313,12 @@ class ActionPage(Halves):
             self._set(tr("Change likelihood"), likelihood=round(value, 3))
         else:
             self.show_actions(self.session.selection.selected_actions())
+
+    def _rekind(self, place: int) -> None:
+        kind, chosen = self.chosen_kind.itemData(place), self.session.selection.actions
+        end = self.session.place.other()
+        self.edit(tr("Change kind"), lambda p: edits.set_kind(p, chosen, kind, end))
+        self.show_actions(self.session.selection.selected_actions())  # as it was, where that is impossible
 
     def _restance(self, place: int) -> None:
         stance, chosen = self.stance.itemData(place), self.session.selection.actions

@@ -341,6 +341,24 @@ def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch)
     assert drive.window.statusBar().currentMessage() == drive.told[-1]
 
 
+def test_a_key_changes_the_kind_of_actions_of_several_stances_and_nothing_else(toys):
+    drive = toys
+    chosen = tuple(drive.id(name) for name in ("rest beat lf", "up beat"))
+    before, steps = [drive.document.project.action(i) for i in chosen], count(drive)
+    drive.session.selection.select_actions(chosen)
+    drive.canvas.setFocus()
+    drive.key(KEY.Key_3, widget=drive.canvas)
+    after = [drive.document.project.action(i) for i in chosen]
+    assert [a.kind for a in after] == ["fidget", "fidget"] and count(drive) == steps + 1
+    assert [a.stance for a in after] == [a.stance for a in before]
+    assert drive.session.selection.actions == chosen
+    chooser = drive.properties.action.chosen_kind
+    assert chooser.currentData() == "fidget"
+    chooser.setCurrentIndex(chooser.findData("gesture"))
+    chooser.activated.emit(chooser.currentIndex())
+    assert [drive.document.project.action(i) for i in chosen] == before
+
+
 def test_a_likelihood_bar_is_dragged_in_one_step_and_escape_takes_it_back(toys):
     drive = toys
     beat = drive.id("rest beat lf")
