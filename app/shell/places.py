@@ -30,7 +30,7 @@ from app.widgets.painting import PaintingHold
 from app.widgets.soon import Soon
 
 ARRANGED = (
-    6  # how panels are put into docks; an arrangement that was saved when it was done otherwise is void
+    7  # how panels are put into docks; an arrangement that was saved when it was done otherwise is void
 )
 
 BEHIND = 6  # the rank of panels above which they are behind the others where all are shown

@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QEvent, QSettings, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QSettings, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent, QShowEvent
 from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow
 
@@ -76,6 +76,15 @@ class WindowShell:
         self.actions.refresh()
 
 
+SIZE = QSize(1680, 1020)  # of a new window, where the screen has room for it
+FRAME = QSize(4, 40)  # what a desktop puts around a window, at most
+
+
+def fit_screen(room: QSize) -> QSize:
+    """Return the size of a new window on a screen with room of a size, so that its frame is seen, too."""
+    return SIZE.boundedTo(room - FRAME)
+
+
 class Window(QMainWindow):
     """Owns the shell, and composes panels, menus, header and status bar from what the features contribute.
 
@@ -116,7 +125,7 @@ class Window(QMainWindow):
         self.statusBar().addPermanentWidget(self.job_line)
         self.statusBar().addPermanentWidget(shell.notice)
         self.keyboard = Keyboard(self, shell.actions)
-        self.resize(1680, 1020)
+        self.resize(fit_screen(self.screen().availableSize()))
         self.workspaces.restore()
         self.places.proportions.follow()
         self._wire()  # now: each signal before would have everything shown once more

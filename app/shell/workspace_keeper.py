@@ -70,7 +70,7 @@ class Workspaces(QObject):
         """Open the workspace that was current when the window was last closed, as it was left."""
         settings = QSettings()
         settings.remove(OLD)
-        geometry = settings.value("geometry")
+        geometry = settings.value(self._geometry_key())
         if isinstance(geometry, QByteArray):
             self.places.window.restoreGeometry(geometry)
         self.tabs = [t for t in self.tabs if not t.own] + _own(settings.value(f"{GROUP}/own"))
@@ -81,9 +81,14 @@ class Workspaces(QObject):
     def save(self) -> None:
         """Keep everything for the next run."""
         settings = QSettings()
-        settings.setValue("geometry", self.places.window.saveGeometry())
+        settings.setValue(self._geometry_key(), self.places.window.saveGeometry())
         settings.setValue(f"{GROUP}/current", self.current)
         self._keep()
+
+    def _geometry_key(self) -> str:
+        """Return where the window's place is kept: each size of screen has its own."""
+        size = self.places.window.screen().size()
+        return f"geometry {size.width()}x{size.height()}"
 
     def _keep(self) -> None:
         """Keep how the current workspace is left, unless all panels are shown for something else."""

@@ -74,20 +74,20 @@ GRAPH = Workspace(
 TIME = Workspace(
     "time",
     tr_noop("Time"),
-    tr_noop("Large character above the timing of an action"),
-    across(("list", 27), (down(("large", 53), ("below", 47)), 73)),
+    tr_noop("Large character beside the timing of an action"),
+    across((down(("list", 45), ("below", 55)), 63), ("large", 37)),
 )
 PERFORM = Workspace(
     "perform",
     tr_noop("Perform"),
-    tr_noop("Large character above its requests and what it plays"),
-    down((across(("large", 68), ("side", 32)), 64), ("below", 36)),
+    tr_noop("Large character beside its requests and what it plays"),
+    across((down(("side", 40), ("below", 60)), 63), ("large", 37)),
 )
 TALK = Workspace(
     "talk",
     tr_noop("Talk"),
-    tr_noop("Two characters in conversation, above what they say"),
-    down((across(("large", 70), ("side", 30)), 54), ("below", 46)),
+    tr_noop("Two characters in conversation, beside what they say"),
+    across((down(("side", 30), ("below", 70)), 58), ("large", 42)),
 )
 WORKSPACES: tuple[Workspace, ...] = (LABEL, GRAPH, TIME, PERFORM, TALK)
 FIRST = GRAPH

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QDragMoveEvent, QDropEvent, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_lanes import KINDS, PLURALS, describe_segment
@@ -25,6 +25,7 @@ from app.widgets.sentence import Sentence
 from metagraph.graph.conversation.model import SPOKEN, side_name
 
 NONE = tr_noop("None on stage")
+BELOW_WORDS = 150  # pixels from the top of these words to the button below them
 # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room
 BRIEF = 1000
 
@@ -53,6 +54,13 @@ class ConversationPanel(QWidget):
         layout.addLayout(self._header())
         self.view = SegmentView(self.editing, self.sounds, self)
         layout.addWidget(self.view, 1)
+        below = QVBoxLayout(self.view)  # what the view says while nothing is on stage
+        below.addStretch(1)
+        below.addSpacing(BELOW_WORDS)
+        self.play = QPushButton(self.view)
+        self.play.clicked.connect(self._play_first)
+        below.addWidget(self.play, 0, Qt.AlignmentFlag.AlignHCenter)
+        below.addStretch(1)
         self._soon = QTimer(self, singleShot=True, interval=0)  # many changes in a row are counted once
         self._soon.timeout.connect(self._words)
         document.changed.connect(lambda before, after: self._restage())
@@ -108,7 +116,18 @@ class ConversationPanel(QWidget):
             next((n for n, (_, i) in enumerate(wanted) if i == self.session.onstage.conversation), 0)
         )
         self.stage.setEnabled(len(wanted) > 1)
+        first = next(iter(self.document.project.conversations.values()), None)
+        self.play.setVisible(first is not None and self.session.onstage.conversation is None)
+        if first is not None:
+            self.play.setText(tr("Play '{name}'", name=first.name))
         self._soon.start()
+
+    def _play_first(self) -> None:
+        """Put the first conversation on stage, and play it from its beginning."""
+        first = next(iter(self.document.project.conversations))
+        self.session.onstage.set_conversation(first)
+        self.session.transport.seek(0.0)
+        self.session.transport.set_playing(True)
 
     def _words(self) -> None:
         of, t = self.editing.conversation, theme(self.session.look.name)

@@ -76,5 +76,5 @@ class ProblemButton(QToolButton):
             if hints
             else tr("No problems")
         )
-        self.setIcon(icons.icon("warning", color))
+        self.setIcon(icons.icon("warning" if problems else "done", color))
         set_sheet(self, f"color: {color}")
