@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QWidget
 
 from app.features.welcome.welcome_page import WelcomeChoice, WelcomePage
 from app.project.files import PRACTICE, SAMPLE, Files
@@ -10,6 +11,7 @@ from app.project.importing import Importing
 from app.project.load import describe_readable_formats
 from app.shell.context import Contribution, Shell
 from app.shell.places import PanelPlaces
+from app.shell.workspace_keeper import Workspaces
 from app.translation import tr
 
 
@@ -18,8 +20,12 @@ def contribute(shell: Shell) -> Contribution:
     pages: list[WelcomePage] = []
 
     def begin() -> None:
-        """Lay the page over the graph; once there are places."""
-        room = shell.services[PanelPlaces].dock("graph").widget()
+        """Lay the page over the graph, or over the large panel where there is none; once there are places."""
+        places = shell.services[PanelPlaces]
+
+        def rooms() -> list[QWidget]:
+            return [places.dock(name).widget() for name in ("graph", places.large()) if name]
+
         choices = (
             WelcomeChoice(
                 "import",
@@ -43,7 +49,8 @@ def contribute(shell: Shell) -> Contribution:
                 lambda: files.open(SAMPLE, template=True),
             ),
         )
-        page = WelcomePage(choices, files, shell.stage.session, document, room)
+        page = WelcomePage(choices, files, shell.stage.session, document, rooms)
+        shell.services[Workspaces].changed.connect(page.follow_soon)
         pages.append(page)
 
     QTimer.singleShot(0, shell.widget, begin)

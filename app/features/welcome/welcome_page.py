@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, QSize, Qt
+from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -119,7 +119,7 @@ class WelcomeCard(QAbstractButton):
 
 class WelcomePage(QWidget):
     """Lies over a room as long as nothing is in the project and nothing was done; closed by hand it stays so
-    until another project is begun.
+    until another project is begun. `rooms` returns where it may lie, the best first.
     """
 
     def __init__(
@@ -128,10 +128,14 @@ class WelcomePage(QWidget):
         files: Files,
         session: StageSession,
         document: Document,
-        room: QWidget,
+        rooms: Callable[[], Sequence[QWidget]],
     ) -> None:
-        super().__init__(room)
-        self.files, self.session, self.document, self.room = files, session, document, room
+        super().__init__(rooms()[0])
+        self.files, self.session, self.document, self.rooms = files, session, document, rooms
+        self._watched: set[QWidget] = set()
+        self._soon = QTimer(self, singleShot=True, interval=0)  # once the panels have their places
+        self._soon.timeout.connect(self.follow)
+        self.follow_soon = self._soon.start
         self.closed = False
         self.setAutoFillBackground(True)
         self.setAccessibleName(tr("Start"))
@@ -163,7 +167,6 @@ class WelcomePage(QWidget):
         layout.addSpacing(4)
         layout.addWidget(self.skip, 0, Qt.AlignmentFlag.AlignHCenter)
         layout.addStretch(1)
-        room.installEventFilter(self)
         document.loaded.connect(self._again)
         document.changed.connect(lambda *_: self.follow())
         document.state_changed.connect(self.follow)
@@ -172,7 +175,7 @@ class WelcomePage(QWidget):
         self._again()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.Resize:
+        if event.type() in (QEvent.Type.Resize, QEvent.Type.Show):
             self.follow()
         return False
 
@@ -187,17 +190,28 @@ class WelcomePage(QWidget):
 
     def follow(self) -> None:
         """Be there while there is nothing else, and room for it."""
-        document, size = self.document, self.room.size()
+        document, room = self.document, self._room()
         project = document.project
         empty = not project.clips and document.path is None and not document.undo_stack.count()
-        whole = size.width() >= LEAST.width() and size.height() >= LEAST.height()
-        shown = empty and whole and not self.closed and self.session.onstage.mode == "meta"
-        if shown:
-            self.setGeometry(self.room.rect())
+        shown = empty and room is not None and not self.closed and self.session.onstage.mode == "meta"
+        if room is not None and shown:
+            if self.parent() is not room:
+                self.setParent(room)
+            self.setGeometry(room.rect())
             if self.isHidden():
                 self._tell_recent()
             self.raise_()
         self.setVisible(shown)
+
+    def _room(self) -> QWidget | None:
+        """Return the first room that is seen and large enough."""
+        rooms = self.rooms()
+        for room in rooms:
+            if room not in self._watched:
+                self._watched.add(room)
+                room.installEventFilter(self)
+        large = (r for r in rooms if r.width() >= LEAST.width() and r.height() >= LEAST.height())
+        return next((room for room in large if room.isVisible()), None)
 
     def _tell_recent(self) -> None:
         names = [path.name.split(".")[0] for path in self.files.recent()[:RECENT]]

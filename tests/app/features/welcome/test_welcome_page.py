@@ -6,7 +6,6 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.features.welcome import welcome_page
 from app.features.welcome.welcome_page import WelcomePage
 from tests.app.painted_text import faults
 
@@ -69,14 +68,25 @@ def test_each_card_does_what_it_says(drive, page, monkeypatch, tmp_path):
 def test_its_words_are_whole(drive, page, size):
     drive.window.resize(*size)
     drive.pause(30)
-    assert page.isVisible() and page.size() == page.room.size()
+    assert page.isVisible() and page.size() == page.parentWidget().size()
     assert [f for f in faults(drive.window) if "Card" in f or "Welcome" in f or "Begin" in f] == []
     drive.window.resize(1680, 1020)
 
 
-def test_a_room_too_small_for_it_is_left_alone(drive, page):
+def test_where_the_graph_is_too_small_for_it_the_large_panel_has_it(drive, page):
     drive.workspaces.choose("time")
     drive.window.resize(1280, 720)
-    drive.pause(30)
-    assert page.room.width() < welcome_page.LEAST.width() and page.isHidden()
+    drive.wait(page.isVisible)
+    assert page.parentWidget() is drive.places.dock("character").widget()
+    drive.workspaces.choose("graph")
     drive.window.resize(1680, 1020)
+    drive.wait(lambda: page.parentWidget() is drive.places.dock("graph").widget())
+
+
+@pytest.mark.parametrize("workspace", ["label", "graph", "time", "perform", "talk"])
+def test_an_empty_project_has_it_in_every_workspace(drive, page, workspace):
+    drive.workspaces.choose(workspace)
+    drive.wait(page.isVisible)
+    room = page.parentWidget()
+    assert page.size() == room.size() and not page.visibleRegion().isEmpty()
+    drive.workspaces.choose("graph")
