@@ -94,7 +94,7 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
             options.theirs,
             phrase("does not go together with ours: {error}", error=error),
             phrase("the project"),
-            phrase("Open one of the two and import the other into it (File > Import project)."),
+            phrase("Open one of the two and import the other into it (File > Import > Import project)."),
         ) from None
     output.save(found.project)
     for line in found.kept:

@@ -24,7 +24,7 @@ Words = str | Callable[..., str]
 # The menus with their groups, in order; a line separates groups. A group that is not listed here comes last
 # in its menu.
 MENUS: dict[str, tuple[str, ...]] = {
-    tr_noop("&File"): ("project", "save", "import", "character", "write", "quit"),
+    tr_noop("&File"): ("project", "examples", "kept", "save", "import", "character", "write", "quit"),
     tr_noop("&Edit"): ("history", "selection", "properties", "find"),
     tr_noop("&Graph"): ("author", "label", "layers", "stances", "skeleton"),
     tr_noop("C&lips"): ("rating", "labels", "favourites", "files", "view", "groups"),
@@ -34,6 +34,28 @@ MENUS: dict[str, tuple[str, ...]] = {
     tr_noop("&View"): ("workspaces", "workspace", "character", "sides", "watch", "graph", "look"),
     tr_noop("&Study"): (),
     tr_noop("&Help"): (),
+}
+# Groups that are a submenu, by their menu; neighbours with the same title share one. So no menu has more
+# than 15 entries.
+SUBMENUS: dict[str, dict[str, str]] = {
+    "&File": {
+        "examples": tr_noop("Open an e&xample"),
+        "import": tr_noop("&Import"),
+        "character": tr_noop("C&haracter"),
+    },
+    "&Graph": {"layers": tr_noop("&Go to"), "stances": tr_noop("&Go to")},
+    "C&lips": {"rating": tr_noop("&Rating"), "labels": tr_noop("&Label"), "groups": tr_noop("&Group")},
+    "&Play": {
+        "range": tr_noop("Loop &range"),
+        "markers": tr_noop("&Markers"),
+        "timeline": tr_noop("&Timeline"),
+    },
+    "&View": {
+        "workspaces": tr_noop("&Workspace"),
+        "workspace": tr_noop("&Workspace"),
+        "sides": tr_noop("&Camera"),
+        "watch": tr_noop("&Show"),
+    },
 }
 
 
@@ -126,7 +148,10 @@ class Actions:
             parent.addAction(action)
             self._made[command.id] = action
         self._shown = [_Shown(command, self._made[command.id]) for command in self.commands]
-        self._by_menu = [tuple(group) for _, group in groupby(self._shown, lambda shown: shown.command.menu)]
+        self._by_menu = [
+            (_submenu_titles(menu) if not title else (), tuple(shown))
+            for (menu, title), shown in _grouped(self._shown).items()
+        ]
 
     @property
     def by_id(self) -> dict[str, QAction]:
@@ -145,20 +170,29 @@ class Actions:
         return [self._made[c.id] for c in self.commands if name in c.menus]
 
     def fill(self, bar: QMenuBar) -> dict[str, QMenu]:
-        """Make the menus."""
+        """Make the menus and their submenus; return the menus."""
         menus: dict[str, QMenu] = {}
-        group = ""
         names = list(dict.fromkeys(command.menu for command in self.commands))
         titles = dict(zip(names, with_distinct_keys(tuple(tr(name) for name in names)), strict=True))
-        for command in self.commands:
-            if command.menu not in menus:
-                menus[command.menu] = bar.addMenu(titles[command.menu])
-            elif command.group != group:
-                menus[command.menu].addSeparator()
-            group = command.group
-            menus[command.menu].addAction(self._made[command.id])
-        for menu in menus.values():
-            menu.aboutToShow.connect(self.refresh)  # panels have buttons for some of it, too
+        for (name, group), commands in groupby(self.commands, lambda command: (command.menu, command.group)):
+            if name not in menus:
+                menus[name] = bar.addMenu(titles[name])
+                menus[name].aboutToShow.connect(self.refresh)  # panels have buttons for some of it, too
+                inside: dict[str, QMenu] = {}  # its submenus
+                apart = False  # whether a line must separate what comes next
+            title = SUBMENUS.get(name, {}).get(group)
+            if title is None:
+                place = menus[name]
+                if apart:
+                    place.addSeparator()
+            elif title in inside:
+                place = inside[title]
+                place.addSeparator()
+            else:
+                place = inside[title] = menus[name].addMenu(tr(title))
+            apart = True
+            for command in commands:
+                place.addAction(self._made[command.id])
         return menus
 
     def settle(self) -> None:
@@ -184,12 +218,25 @@ class Actions:
                 action.setChecked(command.checked())  # a click changes it, too
             if command.visible is not None:
                 action.setVisible(command.visible())
-        for menu in self._by_menu:
+        for titles, menu in self._by_menu:
             texts = tuple([s.text if isinstance(s.text, str) else s.text() for s in menu])
-            for shown, text in zip(menu, with_distinct_keys(texts), strict=True):
+            for shown, text in zip(menu, with_distinct_keys((*titles, *texts))[len(titles) :], strict=True):
                 if text != shown.words:
                     shown.words = text
                     shown.action.setText(text)
+
+
+def _grouped(shown: Iterable[_Shown]) -> dict[tuple[str, str], list[_Shown]]:
+    """Return the commands by their menu and submenu, "" for none."""
+    out: dict[tuple[str, str], list[_Shown]] = {}
+    for one in shown:
+        title = SUBMENUS.get(one.command.menu, {}).get(one.command.group, "")
+        out.setdefault((one.command.menu, title), []).append(one)
+    return out
+
+
+def _submenu_titles(menu: str) -> tuple[str, ...]:
+    return tuple(tr(title) for title in dict.fromkeys(SUBMENUS.get(menu, {}).values()))
 
 
 def _in_order(commands: tuple[Command, ...]) -> tuple[Command, ...]:

@@ -75,7 +75,7 @@ TIME = Workspace(
     "time",
     tr_noop("Time"),
     tr_noop("Large character beside the timing of an action"),
-    across((down(("list", 45), ("below", 55)), 63), ("large", 37)),
+    across((down(("list", 40), ("below", 60)), 66), ("large", 34)),
 )
 PERFORM = Workspace(
     "perform",

@@ -158,11 +158,11 @@ COMMANDS = (
     Command("new", FILE, "project", tr_noop("&New project"), FileFeature.new, (Standard.New,)),
     Command("open", FILE, "project", tr_noop("&Open…"), FileFeature.ask_open, (Standard.Open,)),
     Command("recent", FILE, "project", tr_noop("Open &recent"), fill=FileFeature.fill_recent),
-    Command("sample", FILE, "project", tr_noop("Open the &sample project"), FileFeature.open_sample),
+    Command("sample", FILE, "examples", tr_noop("Open the &sample project"), FileFeature.open_sample),
     Command(
         "seated",
         FILE,
-        "project",
+        "examples",
         tr_noop("Open the seate&d project"),
         FileFeature.open_seated,
         tip=tr_noop("A character that sits on a stool and gets up when asked"),
@@ -170,7 +170,7 @@ COMMANDS = (
     Command(
         "practice",
         FILE,
-        "project",
+        "examples",
         tr_noop("Open the &practice project"),
         FileFeature.open_practice,
         tip=tr_noop("152 clips to label"),
@@ -178,7 +178,7 @@ COMMANDS = (
     Command(
         "recover",
         FILE,
-        "project",
+        "kept",
         tr_noop("Reco&ver…"),
         FileFeature.recover,
         tip=tr_noop("Recover unsaved work from windows that were not closed properly"),
@@ -186,7 +186,7 @@ COMMANDS = (
     Command(
         "network",
         FILE,
-        "project",
+        "kept",
         tr_noop("Files on other &computers…"),
         FileFeature.ask_network,
         tip=tr_noop("Choose whether to open the files on other computers that this project names"),

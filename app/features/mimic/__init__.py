@@ -18,8 +18,8 @@ def contribute(shell: Shell) -> Contribution:
         commands=(
             Command(
                 "mimic",
-                "&Play",
-                "live",
+                "&Motion",
+                "make",
                 tr("Mimic &keypoints…"),
                 mimic,
                 tip=tr("Make the character copy the stances of a person on video"),

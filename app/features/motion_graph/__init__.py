@@ -22,8 +22,8 @@ def contribute(shell: Shell) -> Contribution:
         commands=(
             Command(
                 "motion_graph",
-                "&Graph",
-                "author",
+                "&Motion",
+                "make",
                 tr("Motion &graph of takes…"),
                 show,
                 tip=tr("Assemble new motion from takes, and cut clips from takes"),

@@ -69,7 +69,7 @@ def test_the_history_goes_back_to_where_it_is_clicked(toys):
     view = drive.shell.panel("history")
     assert drive.docks["history"].isVisible()
     texts = [view.model().index(n, 0).data() for n in range(view.model().rowCount())]
-    assert texts == ["When opened", "New stance one", "New stance two"]
+    assert texts == ["Before these steps", "New stance one", "New stance two"]
     view.setCurrentIndex(view.model().index(0, 0))
     assert drive.document.project == before
     drive.docks["history"].close()
