@@ -29,7 +29,9 @@ OVER_TALL, CLOSE_TALL = 0.50, 0.34  # of the height of who is seen; as much of i
 OVER_ROOM, OVER_UP = 0.09, 0.10  # of the height; how far the picture's middle is beside and below the face
 CLOSE_FOV, TWO_FOV = math.radians(22.0), math.radians(16.0)
 # Of the height: from the head to the ends of the picture of all, below, above and on the sides.
-TWO_BELOW, TWO_ABOVE, TWO_BESIDE = 0.33, 0.08, 0.08
+TWO_BELOW, TWO_ABOVE, TWO_BESIDE = 0.33, 0.08, 0.11
+WIDE = 1.6  # width divided by height of a picture above which heads must be large
+NARROW_BESIDE = 0.17  # in others: whoever leans back stays in the picture
 CLOSE_TURN = math.radians(24.0)  # between the line of sight and a close camera beside it
 LOOKING = 0.03  # of the height; how much more room there is before a face than behind it
 TWO_TURN = math.radians(16.0)  # between the middle and the camera that shows all
@@ -125,7 +127,7 @@ def _all(heads: Array, heights: Sequence[float], aspect: float) -> Camera:
     beside, height = camera_side(heads), float(max(heights))
     camera = Camera(fov=TWO_FOV).facing(math.atan2(beside[0], beside[2]) - TWO_TURN, math.radians(4.0))
     low, high = heads.min(axis=0), heads.max(axis=0)
-    room = height * TWO_BESIDE
+    room = height * (TWO_BESIDE if aspect > WIDE else NARROW_BESIDE)
     return camera.frame(
         (low - (room, height * TWO_BELOW, room), high + (room, height * TWO_ABOVE, room)), aspect, 1.0
     )

@@ -62,7 +62,7 @@ def read_conversation(
     speaking: Speaking | None = None,
     most: int = MOST_SPEAKERS,
 ) -> Read:
-    """Read a conversation of two or more.
+    """Read a conversation of two or more, or one who speaks while another listens.
 
     audio: one file with a channel for each side, the first one side 0's; or a file for each; or one with all
     mixed, when a transcript names the speakers. transcripts: one for all sides, or one a side, in the sides'
@@ -118,6 +118,8 @@ def read_conversation(
         _side(reading, n, found, folder, spoken[n], lists[n], lists[n] != lists[shared])
         for n in range(len(found))
     )
+    if len(made) == 1:
+        made += (Side(),)  # who listens
     title = name or Path(audio[0]).stem
     made_of = Conversation(
         name=title[:200],

@@ -50,7 +50,7 @@ def length_of(voice: SideVoice) -> float:
 def read_side_voices(
     reading: ConversationReading, audio: list[Path], worded: bool, most: int
 ) -> tuple[SideVoice, ...]:
-    """Return the sound of each side; a single one if all share it."""
+    """Return the sound of each side; a single one if all share it, or if one speaks alone."""
     if len(audio) > 1:
         return _files(reading, audio)
     path = audio[0]
@@ -105,18 +105,17 @@ def read_side_voices(
     )
     if hushed or channels == 1:
         why = phrase("is silent" if hushed else "has one channel")
-    if not worded:
-        raise FileError(
-            path,
-            phrase("{why}, so the speakers cannot be told apart", why=why),
-            remedy=phrase(
-                "Add a channel or a file for each speaker, or a transcript that names the speakers."
-            ),
-        )
     _tell_clipped(reading, path.name, max(read.clipped))
     reading.notes.append(
         phrase(
             "{name} {why}: all sides share it, and only the transcript shows who speaks.",
+            name=path.name,
+            why=why,
+        )
+        if worded
+        else phrase(
+            "{name} {why}: one person speaks, and another one listens. If several speak, add a channel or a "
+            "file for each, or a transcript that names them.",
             name=path.name,
             why=why,
         )

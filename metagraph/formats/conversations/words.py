@@ -59,8 +59,8 @@ def sides_of(
     """Return the sides: the sound of each, and what the transcripts say of it. voices: one a channel or file,
     a single one if all share it. most: sides at most.
 
-    Two at least. There are as many as there are voices, or more where the words name more speakers: those
-    share the sound in which they are loudest.
+    There are as many as there are voices, or more where the words name more speakers: those share the sound
+    in which they are loudest. One sound without words, or with one speaker's, is a single side.
     """
     if len(said) > 1:
         return _one_a_side(notes, voices, said)
@@ -68,8 +68,7 @@ def sides_of(
     if len(speakers) == 1:
         return _one_speaker(notes, voices, said[0][0], speakers[0])
     if len(voices) == 1:
-        speakers += [TranscribedSide()] * (2 - len(speakers))
-        return tuple((voices[0], one) for one in speakers)
+        return tuple((voices[0], one) for one in speakers or [TranscribedSide()])
     if len(speakers) > len(voices):
         return _sharing(notes, voices, said[0][0], speakers)
     of = _best(voices, speakers)
@@ -174,12 +173,12 @@ def _one_speaker(
     if len(voices) == 1:
         notes.append(
             phrase(
-                "{name} does not name two speakers, and there is only one sound, so the "
-                "first speaker gets all words. Name the speakers in the transcript.",
+                "{name} does not name two speakers, and there is only one sound, so one person says all "
+                "words, and another one listens. If two speak, name them in the transcript.",
                 name=path.name,
             )
         )
-        return (voices[0], one), (voices[0], TranscribedSide())
+        return ((voices[0], one),)
     if one.segments is not None or not one.words:
         first = _best(voices, [one])[0]
     else:

@@ -74,3 +74,14 @@ def test_conditions_combine():
         assert any_met(first, second)((a, b)) == (a or b)
         assert not_met(all_met(first, not_met(second)))((a, b)) == (not a or b)
     assert all_met()(()) and not any_met()(())
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_no_menu_has_more_than_fifteen_entries(toys):
+    for name, menu in toys.menus.items():
+        menu.aboutToShow.emit()
+        entries = [a for a in menu.actions() if a.isVisible() and not a.isSeparator()]
+        assert 0 < len(entries) <= 15, name
+        inside = [a.menu() for a in entries if a.menu() is not None and a.objectName() == ""]
+        assert all(0 < len(sub.actions()) <= 20 for sub in inside), name

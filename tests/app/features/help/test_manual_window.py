@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QApplication, QMessageBox
 
 from app.features.help import manual_pages
 from app.features.help.manual_window import ManualWindow
+from app.shell.actions import SUBMENUS
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 ROOT = Path(__file__).resolve().parents[4]
@@ -108,7 +109,9 @@ WORDS = re.compile(r"(?<!\*)\*([^*\n]+(?:\n[^*\n]+)?)\*(?!\*)")
 def test_menus_that_pages_for_animators_name_are_there(toys):
     menus: dict[str, set[str]] = {}
     for command in toys.actions.commands:
-        menus.setdefault(command.menu.replace("&", ""), set()).add(command.plain)
+        inside = SUBMENUS.get(command.menu, {}).get(command.group)
+        path = f"{inside} > {command.plain}" if inside else command.plain
+        menus.setdefault(command.menu.replace("&", ""), set()).add(path.replace("&", ""))
     wrong = []
     for place in ("README.md", "docs/index.md", *(p for f in ("start", "animators") for p in files(f))):
         for words in WORDS.findall((ROOT / place).read_text(encoding="utf-8")):
