@@ -1,8 +1,5 @@
 """Draw the picture of the character: one painter for two widgets, an OpenGL widget and, where there is no
 OpenGL, an image.
-
-Left drag orbits, right or middle drag (or Shift + left) pans, the wheel zooms, a double click frames the
-character.
 """
 
 from __future__ import annotations
@@ -28,21 +25,21 @@ from PySide6.QtGui import (
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QLayout, QVBoxLayout, QWidget
 
-from app.translation import tr, tr_error, tr_noop
+from app.stage.navigation import Move, chosen_navigation
+from app.translation import tr, tr_error
 from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, SceneTheme
 
 Compose = Callable[[], Scene]
 GL_RENDERER = 0x1F01
+ZOOMED = 16.0  # notches of the wheel for a drag as long as the view is high
+NOTCH = 4.0  # parts of an angle delta to a pixel, where a touchpad tells none
 _Base: Any = QWidget if TYPE_CHECKING else object
 
 
-MOUSE = tr_noop("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
-
-
 class CameraMouse(_Base):
-    """Moves the camera with the mouse, for any widget that has `frame_wanted`."""
+    """Moves the camera with the mouse as the user has chosen, for any widget that has `frame_wanted`."""
 
     camera: Camera
     failed: Any
@@ -73,12 +70,20 @@ class CameraMouse(_Base):
             return
         delta = event.position() - self._last
         self._last = event.position()
-        buttons, height = event.buttons(), max(1, self.height())
-        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-        if buttons & Qt.MouseButton.LeftButton and not shift:
-            self.camera = self.camera.orbit(delta.x() / height, delta.y() / height)
+        self._move(chosen_navigation().move_of(event.buttons(), event.modifiers()), delta)
+
+    def _move(self, move: Move | None, delta: QPointF) -> None:
+        """Move the camera by a drag in pixels."""
+        height = max(1, self.height())
+        right, down = delta.x() / height, delta.y() / height
+        if move == "orbit":
+            self.camera = self.camera.orbit(right, down)
+        elif move == "pan":
+            self.camera = self.camera.pan(right, down)
+        elif move == "zoom":
+            self.camera = self.camera.zoom((right - down) * ZOOMED)
         else:
-            self.camera = self.camera.pan(delta.x() / height, delta.y() / height)
+            return
         self.moved_by_hand = True
         self.update()
 
@@ -89,10 +94,15 @@ class CameraMouse(_Base):
         self.frame_wanted.emit()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
+        event.accept()
+        held, fingers = event.modifiers(), event.pixelDelta()
+        if chosen_navigation().scroll_orbits and not held & Qt.KeyboardModifier.ControlModifier:
+            by = QPointF(fingers) if not fingers.isNull() else QPointF(event.angleDelta()) / NOTCH
+            self._move("pan" if held & Qt.KeyboardModifier.ShiftModifier else "orbit", by)
+            return
         self.camera = self.camera.zoom(event.angleDelta().y() / 120)
         self.moved_by_hand = True
         self.update()
-        event.accept()
 
 
 class GLView(CameraMouse, QOpenGLWidget):
@@ -219,7 +229,7 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
     image = QGuiApplication.platformName() in without or (sys.platform.startswith("linux") and _in_software())
     view = (ImageView if image else GLView)(compose, parent)
     view.setAccessibleName(tr("Character"))
-    view.setAccessibleDescription(tr(MOUSE))
+    view.setAccessibleDescription(tr(chosen_navigation().words))
     return view
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
+from PySide6.QtWidgets import QMenu
+
 from app.features.character import character_choice
 from app.features.character.character_panel import PreviewPanel
 from app.features.character.mesh_menu import MeshButton
@@ -13,6 +15,7 @@ from app.shell.command_table import Feature, any_met, has_actions_selected, has_
 from app.shell.context import Shell
 from app.shell.places import PanelPlaces
 from app.shell.workspace_keeper import Workspaces
+from app.stage.navigation import NAVIGATIONS, choose_navigation, chosen_navigation
 from app.translation import tr, tr_noop
 from metagraph.graph import edits
 
@@ -118,6 +121,20 @@ class CharacterFeature(Feature):
 
     def frame_face(self) -> None:
         self.panel.frame_face()
+
+    def fill_navigation(self, menu: QMenu) -> None:
+        """Offer the ways in which the mouse moves the camera."""
+        for ident, navigation in NAVIGATIONS.items():
+            action = menu.addAction(tr(navigation.title))
+            action.triggered.connect(lambda _, chosen=ident: self.navigate_as(chosen))
+            action.setToolTip(tr(navigation.words))
+            action.setCheckable(True)
+            action.setChecked(chosen_navigation().id == ident)
+        menu.setToolTipsVisible(True)
+
+    def navigate_as(self, ident: str) -> None:
+        choose_navigation(ident)
+        self.panel.show_navigation()
 
     def see_from(self, side: str) -> None:
         self.panel.looking.see_from(side)
@@ -329,6 +346,15 @@ COMMANDS = (
         tr_noop("T&urntable"),
         CharacterFeature.toggle_turntable,
         checked=CharacterFeature.turns,
+        study=True,
+    ),
+    Command(
+        "navigation",
+        VIEW,
+        "sides",
+        tr_noop("&Navigation"),
+        tip=tr_noop("Choose how the mouse or touchpad moves the camera"),
+        fill=CharacterFeature.fill_navigation,
         study=True,
     ),
     Command(

@@ -20,7 +20,8 @@ from app.look import icons
 from app.look.names import plain_action_name
 from app.look.theme import theme
 from app.stage.figures import Figures
-from app.stage.gl_view import MOUSE, GLView, ImageView, make_view
+from app.stage.gl_view import GLView, ImageView, make_view
+from app.stage.navigation import chosen_navigation
 from app.stage.performance import StagePerformance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
@@ -92,7 +93,7 @@ class PreviewPanel(QWidget):
         """Make the view and what lies over it."""
         self.view = make_view(self.scene, self)
         self.view.frame_wanted.connect(self.frame_all)
-        self.view.setToolTip(tr(MOUSE))
+        self.show_navigation()
         self.bare = False
         self._margins: list[QMargins] = []  # of what is hidden then
         self.hint = QLabel(tr("Press F11 to show the other panels again"), self.view)
@@ -133,6 +134,12 @@ class PreviewPanel(QWidget):
         layout.addLayout(self._row)
         self._lines = self._captions()
         layout.addLayout(self._lines)
+
+    def show_navigation(self) -> None:
+        """Say how the mouse moves the camera."""
+        words = tr(chosen_navigation().words)
+        self.view.setToolTip(words)
+        self.view.setAccessibleDescription(words)
 
     def _follow(self) -> None:
         """Draw again, and show anew, what changes."""
