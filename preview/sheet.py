@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.outputs import claim_output
+from preview.typeface import typeface_file
 
 Array = NDArray[Any]
 Color = tuple[int, int, int]
@@ -86,10 +87,10 @@ def write_png(path: str | Path, picture: Array) -> None:
 
 
 def _font(size: int) -> Any:
-    """Return the scalable font of Pillow, so that text looks the same on every system."""
+    """Return the window's typeface, so that text looks the same on every system."""
     from PIL import ImageFont
 
-    return ImageFont.load_default(size)
+    return ImageFont.truetype(typeface_file("Regular"), size)
 
 
 def _fit(draw: Any, words: str, font: Any, width: int) -> str:

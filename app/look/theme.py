@@ -8,11 +8,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from PySide6.QtGui import QColor, QFont, QPalette
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QPushButton
 
 from app.look.domain_words import KIND_TITLES as KIND_TITLES
 from metagraph.graph.model import Kind
+from preview.typeface import FAMILY, WEIGHTS, typeface_file
+
+FONT_PIXELS = 15
 
 
 @dataclass(frozen=True)
@@ -137,7 +140,7 @@ def style_sheet(look: WindowTheme) -> str:
     """
     t, marks = look, MARKS
     return f"""
-    * {{ font-size: 13px; }}
+    * {{ font-size: {FONT_PIXELS}px; }}
     QLabel[textFormat="AutoText"], QToolTip {{ qproperty-textFormat: PlainText; }}
     QMainWindow, QMainWindow::separator {{ background: {t.ground}; }}
     QMainWindow::separator {{ width: 6px; height: 6px; }}
@@ -206,7 +209,7 @@ def style_sheet(look: WindowTheme) -> str:
     QToolButton[over="true"]:hover {{ background: {t.hover}; }}
     QFrame[card="true"] {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}
     QLabel[dim="true"] {{ color: {t.dim}; }}
-    QLabel[heading="true"] {{ font-size: 16px; font-weight: 600; }}
+    QLabel[heading="true"] {{ font-size: 18px; font-weight: 600; }}
     QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
     QLabel[title="true"] {{ font-weight: 600; }}
     QFileDialog {{ min-width: 900px; min-height: 560px;
@@ -217,11 +220,22 @@ def style_sheet(look: WindowTheme) -> str:
         backward-icon: url({marks}/back_{t.name}.svg); forward-icon: url({marks}/forth_{t.name}.svg);
         filedialog-backward-icon: url({marks}/back_{t.name}.svg); }}
     QFileDialog QToolButton {{ padding: 3px; min-width: 20px; min-height: 20px; }}
-    QFileDialog QTreeView {{ font-size: 12px; }}
+    QFileDialog QTreeView {{ font-size: 14px; }}
     QFileDialog QTreeView::item {{ padding: 4px 0; }}
     QGroupBox {{ border: none; margin-top: 18px; font-weight: 600; color: {t.dim}; }}
     QGroupBox::title {{ subcontrol-origin: margin; left: 0; }}
     """
+
+
+def window_font() -> QFont:
+    """Return the typeface of the window, the same on every system: Source Sans Pro, and the system's own for
+    letters that it does not have.
+    """
+    for weight in WEIGHTS:
+        QFontDatabase.addApplicationFont(str(typeface_file(weight)))
+    font = QFont(FAMILY)
+    font.setPixelSize(FONT_PIXELS)
+    return font
 
 
 def apply_theme(app: QApplication, look: WindowTheme) -> None:
@@ -229,9 +243,7 @@ def apply_theme(app: QApplication, look: WindowTheme) -> None:
     if not app.property("styled"):  # once: each of these polishes every widget anew
         app.setProperty("styled", True)
         app.setStyle("Fusion")
-        font = QFont(app.font())
-        font.setPixelSize(13)
-        app.setFont(font)
+        app.setFont(window_font())
     if app.property("look") != look.name:
         app.setProperty("look", look.name)
         app.setPalette(palette(look))

@@ -33,7 +33,7 @@ LEGIBLE = 26.0  # pixels a second from which on words are shown
 DOTS = 20.0  # pixels a second from which on peaks are shown
 NARROW = 16.0  # pixels up to which a segment is a plain stroke without words
 MOST = 300  # narrow ones that are outlined where all of them are selected
-SMALL = 11  # pixels of what stands beside
+SMALL = 13  # pixels of what stands beside
 
 
 @dataclass(frozen=True)
@@ -200,7 +200,7 @@ def _words(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, la
     """The words where they are said, as far as there is room before the next."""
     scale, font = scene.scale, QFont(painter.font())
     own = painter.font()
-    font.setPixelSize(12)
+    font.setPixelSize(14)
     painter.setFont(font)
     key = font.toString()
     painter.setPen(QColor(t.text))

@@ -159,7 +159,7 @@ class GroupSheet(QWidget):
             painter.drawImage(QRect(rect.left() + 4, rect.top() + 4, CARD - 8, CARD - 8), picture)
         painter.setOpacity(1.0)
         font = self.font()
-        font.setPixelSize(12)
+        font.setPixelSize(14)
         painter.setFont(font)
         line = QRect(rect.left() + 8, rect.top() + CARD - 2, rect.width() - 16, 16)
         painter.setPen(QColor(look.dim if out else look.text))

@@ -94,7 +94,7 @@ class ReviewFields(QWidget):
 
     def _small(self) -> QFont:
         font = QFont(self.font())
-        font.setPixelSize(12)
+        font.setPixelSize(14)
         return font
 
     def _arrange(self) -> None:

@@ -91,7 +91,7 @@ def draw_clip_card(
     draw_picture(painter, picture_of("cards", ink.side, place), ink.pictures, entry, look)
     draw_stripe(painter, rect, facts, entry, look)
     font = QFont(painter.font())
-    font.setPixelSize(12)
+    font.setPixelSize(14)
     painter.setFont(font)
     line = QRect(rect.left() + 11, rect.bottom() - 53, rect.width() - 16, 16)
     front, rest = names.of(entry)

@@ -11,7 +11,7 @@ from app.widgets.lane_geometry import LEFT, LaneScale, text_width
 from app.widgets.waveforms import join_columns, paint_columns
 
 TEXT = 15.0  # pixels of the words' line
-LETTERS = 12  # pixels high
+LETTERS = 14  # pixels high
 GAP = 5.0  # pixels between words at least
 FADED, BEHIND = 0.62, 0.4  # of the waveform beside words, and behind them
 LOW = 30.0  # pixels below which words stand over the waveform

@@ -161,7 +161,7 @@ class TimingView(QWidget):
 
     def _look(self) -> paint.TimingLook:
         small = QFont(self.font())
-        small.setPointSizeF(max(7.0, small.pointSizeF() * 0.9))
+        small.setPixelSize(13)
         small.setFeature(QFont.Tag("tnum"), 1)
         return paint.TimingLook(theme(self.session.look.name), small)
 
