@@ -48,11 +48,24 @@ class Running:
     reason: Reason | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Leaving:
+    """A request of a client that is over and still begins, because it is too late to change that. until: when
+    it has begun, seconds. event: of its end.
+    """
+
+    owner: int
+    ident: str
+    until: float
+    event: Event
+
+
 class Happenings:
     """What runs, by the requests of the plan."""
 
     def __init__(self) -> None:
         self.running: dict[str, Running] = {}
+        self._leaving: dict[str, Leaving] = {}
         self._told: list[tuple[int | None, str | None, Event]] = []  # whose, called what, which
 
     def stop(self, request: str, reason: Reason) -> None:
@@ -60,14 +73,21 @@ class Happenings:
         if request in self.running:
             self.running[request].reason = reason
 
-    def end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str, now: float) -> None:
-        """Tell that something ends which was promised and never began."""
+    def end_waiting(
+        self, key: str, ask: OpenAsk, reason: Reason, why: str, now: float, plan: Plan, fixed: float
+    ) -> None:
+        """Tell that something ends which was promised and never began; what begins before `fixed` seconds
+        cannot be stopped, and ends a moment later.
+        """
         if not ask.settled or ask.ended or key in self.running or ask.lane not in TOLD:
             return
         ask.ended = True
         layer = ask.lane if ask.lane in LAYERS else None
         event = Event(event="ended", t=round_seconds(now), layer=layer, reason=reason, why=why)
-        self._told.append((ask.client, ask.ident, event))
+        if _begins(plan, key, layer, now, fixed):
+            self._leaving[key] = Leaving(ask.client, ask.ident, fixed, event)
+        else:
+            self._tell(ask.client, ask.ident, event)
 
     def list_happenings(
         self, plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]
@@ -105,6 +125,9 @@ class Happenings:
             if crosses or (runs and ledger.owner(speech.id) is not None):
                 event = _event_of_speech(speech, "started", t)
                 self._start(speech.id, speech.id, speech.start, event, plan, ledger, now)
+        for request in [x for x, late in self._leaving.items() if late.until < now]:
+            late = self._leaving.pop(request)  # it was held up after all
+            self._tell(late.owner, late.ident, late.event)
         for request in [x for x, one in self.running.items() if not _lasts(plan, one, now)]:
             self._end(request, plan, ledger, now)
 
@@ -126,6 +149,12 @@ class Happenings:
             self._end(request, plan, ledger, now)
             before = None
         owner = ledger.owner(request)
+        leaving = self._leaving.pop(request, None)
+        if leaving is not None:
+            self._tell(leaving.owner, leaving.ident, event)
+            reason = leaving.event.reason
+            self.running[request] = Running(leaving.owner, leaving.ident, played, event, start, reason)
+            return
         if owner is None and before is None:
             if request == played:
                 self._tell(None, None, event)
@@ -161,6 +190,15 @@ class Happenings:
         self._tell(one.owner, one.ident, event)
         if request in ledger.known:
             ledger.known[request].ended = True
+
+
+def _begins(plan: Plan, request: str, layer: Layer | None, now: float, fixed: float) -> bool:
+    """Whether something of a request begins before `fixed` seconds."""
+    if layer is None:
+        return any(s.id == request and now < s.start < fixed for s in plan.track.speeches)
+    low, high = plan.layers[layer].starts.searchsorted((now, fixed), "right")
+    cues = plan.layers[layer].cues[int(low) : int(high)]
+    return any(c.meta.partition("+")[0] == request and c.start < fixed for c in cues)
 
 
 def _said_again(plan: Plan, speech: Speech) -> bool:

@@ -51,6 +51,7 @@ from metagraph.live.messages import (
     OwnMessage,
     Part,
     Partner,
+    Reason,
     Reply,
     Status,
     read_live_request,
@@ -250,7 +251,7 @@ class LiveSession:
             notes = tuple(str(phrase("left out: {what}", what=what)) for what in left_out)
             more = ask.words or ask.visemes or ask.audio or ask.line or ask.duration
             if not telling(ALPHABET, text) and not more:
-                silent = phrase("nothing of the text is to be said")
+                silent = str(phrase("nothing of the text is to be said"))
                 return Reply(id=ident, state="refused", why=silent, notes=notes)
             ask = msgspec.structs.replace(ask, text=text)
         before = work.open.get(key)
@@ -430,7 +431,7 @@ class LiveSession:
             self.happenings.stop(key, "withdrawn")
             for each, ask in self.ledger.drop(key):
                 self.happenings.stop(each, "withdrawn")
-                self.happenings.end_waiting(each, ask, "withdrawn", "taken back", self.now)
+                self._end_waiting(each, ask, "withdrawn", "taken back")
                 work.close(each, "taken back")
                 work.asks.pop(each, None)
             work.asks.pop(key, None)
@@ -577,8 +578,12 @@ class LiveSession:
         for key, ask in gone:
             if key != open_.key:
                 self.happenings.stop(key, "replaced")
-            why = "asked again under the same id"
-            self.happenings.end_waiting(key, ask, "replaced", why, self.now)
+            self._end_waiting(key, ask, "replaced", "asked again under the same id")
+
+    def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
+        """Tell that something has ended which was promised and has not begun."""
+        fixed = self.now + self.project.settings.lookahead
+        self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
 
     def _tell_added(self, open_: Open, reply: Reply) -> Reply:
         """Return a reply with what has become of what was added to a line."""
@@ -657,7 +662,7 @@ class LiveSession:
             out.events.append((client.number, event))
         if found.state in ("refused", "done"):
             why = reword_for_client(found.why, ask.client)
-            self.happenings.end_waiting(key, ask, "dropped", why, self.now)
+            self._end_waiting(key, ask, "dropped", why)
 
     # --- the past
 
@@ -670,7 +675,7 @@ class LiveSession:
             why = reword_for_client(
                 "; ".join(r.message for r in self.plan.reports if r.request == key), ask.client
             )
-            self.happenings.end_waiting(key, ask, "dropped", why or "something else plays", now)
+            self._end_waiting(key, ask, "dropped", why or "something else plays")
         recent = max(RECENT, self.project.settings.memory)
         if now > self._begin + recent + CUT:
             begin, self._begin = self._begin, now - recent
