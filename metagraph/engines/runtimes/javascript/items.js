@@ -178,7 +178,7 @@ export function goingOn(old, new_, now) {
   if (old.end <= now && !tellsOn(old.timing, shifted(new_.timing, old.timing.later))) {
     return new_;
   }
-  const told = placed(old.timing, new_.timing, said);
+  const told = old.start > now ? new_.timing : placed(old.timing, new_.timing, said);
   const timing = extended(old.timing, told, said);
   const length = Math.max(timedSeconds(timing, null), new_.end - new_.start);
   const more = new_.text === "" || new_.text === toldText(new_.timing);
