@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 from msgspec.structs import replace
 
@@ -21,12 +21,14 @@ from metagraph.playback.planning.extend_performance import find_served
 
 LONGEST = 60.0  # seconds a speech is looked back for
 TOLD: tuple[str, ...] = (*LAYERS, "say", ADDED)  # of which it is told when they begin and end
+Word = Literal["started", "ended"]
 WHY: dict[Reason, str] = {"withdrawn": "taken back", "replaced": "asked again under the same id"}
 
 
 class Listener(Protocol):
     """A client. events: "" for none, "own" or "all"."""
 
+    number: int
     events: str
 
     @property
@@ -36,13 +38,14 @@ class Listener(Protocol):
 @dataclass(slots=True)
 class Running:
     """A request of a client that has started and not ended. owner, ident: whose it is, and what that one
-    calls it. request: of the plan, that plays it. start: of what plays, seconds. reason: why it ends, "" as
-    long as nothing but its own end is known.
+    calls it. request: of the plan, that plays it. layer: None for speech. start: of what plays, seconds.
+    reason: why it ends, None as long as nothing but its own end is known.
     """
 
     owner: int
     ident: str
     request: str
+    layer: Layer | None
     event: Event
     start: float
     reason: Reason | None = None
@@ -82,7 +85,7 @@ class Happenings:
         if not ask.settled or ask.ended or key in self.running or ask.lane not in TOLD:
             return
         ask.ended = True
-        layer = ask.lane if ask.lane in LAYERS else None
+        layer = next((x for x in LAYERS if x == ask.lane), None)
         event = Event(event="ended", t=round_seconds(now), layer=layer, reason=reason, why=why)
         if _begins(plan, key, layer, now, fixed):
             self._leaving[key] = Leaving(ask.client, ask.ident, fixed, event)
@@ -109,14 +112,15 @@ class Happenings:
             lane = plan.layers[layer]
             low, high = lane.ends.searchsorted((before, now), "right")
             for cue in lane.cues[int(low) : int(high)]:
-                if cue.meta.partition("+")[0] not in self.running:
+                request = cue.meta.partition("+")[0]
+                if request not in self.running and ledger.owner(request) is None:
                     self._tell(None, None, _event_of(cue, layer, "ended", t))
             low, high = lane.starts.searchsorted((before, now), "right")
             for cue in lane.cues[int(low) : int(high)]:
                 request = cue.meta.partition("+")[0]
                 event = _event_of(cue, layer, "started", t)
                 for each in (request, *served.get(cue.meta, ())):
-                    self._start(each, request, cue.start, event, plan, ledger, now)
+                    self._start(each, request, layer, cue.start, event, plan, ledger, now)
         for speech in plan.track.speeches:
             if speech.end < before - LONGEST:
                 continue
@@ -124,7 +128,7 @@ class Happenings:
             runs = speech.start <= now < speech.end and speech.id not in self.running
             if crosses or (runs and ledger.owner(speech.id) is not None):
                 event = _event_of_speech(speech, "started", t)
-                self._start(speech.id, speech.id, speech.start, event, plan, ledger, now)
+                self._start(speech.id, speech.id, None, speech.start, event, plan, ledger, now)
         for request in [x for x, late in self._leaving.items() if late.until < now]:
             late = self._leaving.pop(request)  # it was held up after all
             self._tell(late.owner, late.ident, late.event)
@@ -138,6 +142,7 @@ class Happenings:
         self,
         request: str,
         played: str,
+        layer: Layer | None,
         start: float,
         event: Event,
         plan: Plan,
@@ -153,7 +158,7 @@ class Happenings:
         if leaving is not None:
             self._tell(leaving.owner, leaving.ident, event)
             reason = leaving.event.reason
-            self.running[request] = Running(leaving.owner, leaving.ident, played, event, start, reason)
+            self.running[request] = Running(leaving.owner, leaving.ident, played, layer, event, start, reason)
             return
         if owner is None and before is None:
             if request == played:
@@ -165,7 +170,7 @@ class Happenings:
             ask = ledger.known[str(owner)]
             whose, ident = ask.client, ask.ident + request.removeprefix(str(owner))
         self._tell(whose, ident, event)
-        self.running[request] = Running(whose, ident, played, event, start)
+        self.running[request] = Running(whose, ident, played, layer, event, start)
 
     def _end(self, request: str, plan: Plan, ledger: Ledger, now: float) -> None:
         """Tell that a request that ran has ended, and why."""
@@ -180,8 +185,8 @@ class Happenings:
                 spoken, word = spoken_until(plan.track.speeches, speech, speech.end)
                 reason = reason or ("replaced" if _said_again(plan, speech) else "interrupted")
                 why = WHY.get(reason, "something else is said")
-        elif cue is not None and one.event.layer is not None:
-            event = _event_of(cue, one.event.layer, "ended", event.t)
+        elif cue is not None and one.layer is not None:
+            event = _event_of(cue, one.layer, "ended", event.t)
             cuts = [r for r in plan.reports if r.request == request and r.outcome in ("cut", "covered")]
             if reason is None and cuts:
                 reason, why = "interrupted", reword_for_client(cuts[-1].message, one.owner)
@@ -208,13 +213,13 @@ def _said_again(plan: Plan, speech: Speech) -> bool:
 def _lasts(plan: Plan, one: Running, now: float) -> bool:
     """Whether something of a request still plays, or comes."""
     latest = float("inf") if one.reason is None else one.start
-    if one.event.layer is None:
+    if one.layer is None:
         pieces = [s for s in plan.track.speeches if s.id == one.request and s.start <= min(now, latest)]
         if not pieces or pieces[-1].end <= now:
             return False
         ran = next((s for s in pieces if s.start == one.start), pieces[-1])
         return ran is pieces[-1] or ran.length is None
-    lane = plan.layers[one.event.layer]
+    lane = plan.layers[one.layer]
     for cue in reversed(lane.cues):
         if cue.end <= now:
             break
@@ -227,19 +232,17 @@ def _lasts(plan: Plan, one: Running, now: float) -> bool:
 
 def _cue_of(plan: Plan, one: Running) -> Cue | None:
     """Return the last action of a request that has ended."""
-    if one.event.layer is None:
+    if one.layer is None:
         return None
-    cues = reversed(plan.layers[one.event.layer].cues)
+    cues = reversed(plan.layers[one.layer].cues)
     return next((c for c in cues if c.meta.partition("+")[0] == one.request and c.start <= one.start), None)
 
 
-def _event_of(cue: Cue, layer: Layer, word: str, t: float) -> Event:
+def _event_of(cue: Cue, layer: Layer, word: Word, t: float) -> Event:
     at, until = round_seconds(cue.start), round_seconds(cue.end)
-    kind = "started" if word == "started" else "ended"
-    return Event(event=kind, t=t, layer=layer, action=cue.action.name, at=at, until=until)
+    return Event(event=word, t=t, layer=layer, action=cue.action.name, at=at, until=until)
 
 
-def _event_of_speech(speech: Speech, word: str, t: float) -> Event:
+def _event_of_speech(speech: Speech, word: Word, t: float) -> Event:
     at, until = round_seconds(speech.start), round_seconds(speech.end)
-    kind = "started" if word == "started" else "ended"
-    return Event(event=kind, t=t, line=speech.line, text=speech.text or None, at=at, until=until)
+    return Event(event=word, t=t, line=speech.line, text=speech.text or None, at=at, until=until)

@@ -18,7 +18,8 @@ def spoken_until(said: Sequence[Speech], speech: Speech, seconds: float) -> tupl
     for other in reversed([s for s in said if s.id == speech.id and s.start < speech.start]):
         if other.length is None and abs(other.end - pieces[0].start) < TOGETHER:
             pieces.insert(0, other)
-    texts, last = [], ""
+    texts: list[str] = []
+    last = ""
     for piece in pieces:
         text, word = _spoken_of(piece, seconds - piece.start)
         texts, last = [*texts, text], word or last
