@@ -348,7 +348,7 @@ def _over_time(project: Project) -> Iterator[ScriptCase]:
         ScriptStep(2.0, 20.0, (_ask("w", "withdraw", what="gone"),)),
         ScriptStep(4.6, 20.0, (_ask("v", "withdraw", what="keep"),)),
     )
-    yield ScriptCase("withdrawn", "what has not begun is taken back; what has plays on", steps)
+    yield ScriptCase("withdrawn", "what has not begun is taken back; what has goes back to its stance", steps)
     steps = (ScriptStep(0.0, 20.0, asks), ScriptStep(2.0, 20.0, (_ask("w", "withdraw"),)))
     yield ScriptCase("all withdrawn", "with no name everything is taken back", steps, idle=True)
     steps = (ScriptStep(0.0, 20.0, asks), ScriptStep(2.0, 20.0, (_ask("keep", "gesture", 7.0, layer=layer),)))

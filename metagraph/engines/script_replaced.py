@@ -63,6 +63,27 @@ def list_replaced_cases(project: Project) -> Iterator[ScriptCase]:
             )
     yield from _sets()
     yield from _named(project)
+    yield _pieces()
+
+
+def _pieces() -> ScriptCase:
+    """Return a case of what is said piece by piece, with gestures made for it, and is taken back."""
+    words = [["one", 0.0, 0.4], ["two", 0.5, 0.9]]
+    made = [ask(f"s/{n}", "gesture", AT + n) for n in (1, 3)]
+    steps = (
+        ScriptStep(0.0, 30.0, (ask("u", "look", 1.0), ask("v", "look", 2.0, to="ahead"))),
+        ScriptStep(5.9, 30.0, (ask("s", "say", words=words), *made)),
+        ScriptStep(6.1, 30.0, (ask("s", "say", words=[["three", 0.0, 0.3], ["four", 0.3, 0.8]]),)),
+        ScriptStep(7.4, 30.0, (ask("w", "withdraw", what="s"),)),
+        ScriptStep(9.0, 30.0, (ask("t", "say", text="One thing."),)),
+        ScriptStep(9.1, 30.0, (ask("t", "say", text="一二三四。", mood="happy"),)),
+        ScriptStep(14.0, 30.0, (ask("l", "say", words=words),)),
+        ScriptStep(18.0, 30.0, (ask("l", "say", words=[["late", 1.0, 1.4]]),)),
+        ScriptStep(18.2, 30.0, (ask("l", "say", words=[["later", 1.5, 2.0]]),)),
+        ScriptStep(18.4, 30.0, (ask("all", "withdraw"),)),
+    )
+    times = (6.7, 7.3, 7.6, 8.0, 9.5, 10.3, 11.5, 18.3, 18.45, 19.0)
+    return ScriptCase("said in pieces", "pieces follow each other and end together", steps, times=times)
 
 
 def _sets() -> Iterator[ScriptCase]:

@@ -172,10 +172,10 @@ class Say(Request, frozen=True, tag="say"):
     are shut between them; `text` may then be left out. visemes: [seconds, name] and, if known, how fully it
     is made, 0..1; each lasts until the next. Both may be objects, as in Amazon Polly's speech marks and
     Azure's events. set: the naming of the visemes; null to detect it. While a line is said, a later request
-    with its id adds to it what comes after now. audio: only in a live session, the next samples of the line's
-    sound, 16-bit little-endian numbers in base64, one channel, `rate` a second: the lips follow its loudness
-    if there are neither words nor visemes. mood, intensity: while it is said, null for the line's own, else
-    as the character is then.
+    with its id adds to it what comes after now; text alone is said behind text alone. audio: only in a live
+    session, the next samples of the line's sound, 16-bit little-endian numbers in base64, one channel, `rate`
+    a second: the lips follow its loudness if there are neither words nor visemes. mood, intensity: while it
+    is said, null for the line's own, else as the character is then.
     """
 
     line: Annotated[str, Meta(min_length=1, max_length=200)] | int | None = None
@@ -217,7 +217,9 @@ class Place(Request, frozen=True, tag="place"):
 
 
 class Withdraw(Request, frozen=True, tag="withdraw"):
-    """Withdraw the request with an id, or all requests if `what` is empty. What has begun plays on."""
+    """Withdraw the request with an id and what was made for what it says (`<id>/1`), or all requests if
+    `what` is empty. What has begun is left, but for changes of stance and a look at the user.
+    """
 
     what: Annotated[str, Meta(max_length=200)] = ""
 

@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
-from metagraph.playback.life.track import Item, LookAt, Speech
+from metagraph.playback.life.track import Item, LookAt, MoodFrom, Speech
 from metagraph.playback.plan import MetaAction, Plan, Report
-from metagraph.playback.planning.extend_performance import find_served
+from metagraph.playback.planning.extend_performance import find_served, item_end
 
 ENDLESS = 1e8  # seconds; what ends later than this ends when something else begins
 
@@ -61,7 +61,14 @@ class FoundAnswer:
         return "nothing came of it" if self.state == "refused" else "chosen when its time is nearer"
 
 
-WORDS = {"LookAt": "look", "Speech": "speech", "ModeFrom": "mode", "PlaceFrom": "place", "BlinkAt": "blink"}
+WORDS = {
+    "LookAt": "look",
+    "Speech": "speech",
+    "ModeFrom": "mode",
+    "PlaceFrom": "place",
+    "BlinkAt": "blink",
+    "MoodFrom": "mood",
+}
 
 
 def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, FoundAnswer]:
@@ -94,7 +101,7 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
         found = of(item.id)
         if found is not None:
             found.starts.append(item.start)
-            found.ends.append(getattr(item, "end", item.start))
+            found.ends.append(item_end(item))
             found.what.append(WORDS[type(item).__name__])
     for report in plan.reports:
         found = of(report.request)
@@ -135,5 +142,5 @@ def _near(plan: Plan, since: float) -> Iterator[Item]:
                 break
             yield item
     latest = {speech.id: speech for speech in track.speeches}  # an earlier one of the id was cut short
-    lasting: tuple[LookAt | Speech, ...] = (*track.looks, *latest.values())
+    lasting: tuple[LookAt | Speech | MoodFrom, ...] = (*track.looks, *latest.values(), *track.moods)
     yield from (x for x in lasting if x.end >= since)

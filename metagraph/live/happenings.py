@@ -1,19 +1,28 @@
-"""What has begun and ended between two ticks, told to the clients that want to know."""
+"""What has begun and ended between two ticks, told to the clients that want to know. What a client asked for
+ends once, whatever becomes of it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from msgspec.structs import replace
 
-from metagraph.graph.model import LAYERS
-from metagraph.live.ledger import Ledger
-from metagraph.live.messages import Event, round_seconds
-from metagraph.playback.plan import Plan
+from metagraph.graph.model import LAYERS, Layer
+from metagraph.live.ledger import Ledger, OpenAsk, reword_for_client
+from metagraph.live.limits import ADDED
+from metagraph.live.messages import Event, Reason, round_seconds
+from metagraph.live.spoken_so_far import spoken_until
+from metagraph.playback.life.track import Speech
+from metagraph.playback.plan import Cue, Plan
+from metagraph.playback.planning.extend_performance import find_served
 
-HAPPENED: tuple[Literal["started", "ended"], ...] = ("started", "ended")
 LONGEST = 60.0  # seconds a speech is looked back for
+TOLD: tuple[str, ...] = (*LAYERS, "say", ADDED)  # of which it is told when they begin and end
+Word = Literal["started", "ended"]
+WHY: dict[Reason, str] = {"withdrawn": "taken back", "replaced": "asked again under the same id"}
 
 
 class Listener(Protocol):
@@ -22,38 +31,218 @@ class Listener(Protocol):
     number: int
     events: str
 
-
-def list_happenings(
-    plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]
-) -> Iterator[tuple[int, Event]]:
-    """Yield whom to tell what: actions and speeches that started or ended after `before`, until `now`."""
-    listening = [client for client in clients if client.events]
-    for request, event in _changes(plan, before, now) if listening else ():
-        owner = ledger.owner(request)
-        ask = ledger.known[owner] if owner is not None else None
-        for client in listening:
-            own = ask is not None and ask.client == client.number
-            if own or client.events == "all":
-                yield client.number, replace(event, id=ask.ident if ask is not None and own else None)
+    @property
+    def owner(self) -> int: ...
 
 
-def _changes(plan: Plan, before: float, now: float) -> Iterator[tuple[str, Event]]:
-    """Yield of what request something has started or ended, and the event."""
-    t = round_seconds(now)
-    for layer in LAYERS:
-        lane = plan.layers[layer]
-        for word in reversed(HAPPENED):
-            times = lane.starts if word == "started" else lane.ends
-            low, high = times.searchsorted((before, now), "right")
+@dataclass(slots=True)
+class Running:
+    """A request of a client that has started and not ended. owner, ident: whose it is, and what that one
+    calls it. request: of the plan, that plays it. layer: None for speech. start: of what plays, seconds.
+    reason: why it ends, None as long as nothing but its own end is known.
+    """
+
+    owner: int
+    ident: str
+    request: str
+    layer: Layer | None
+    event: Event
+    start: float
+    reason: Reason | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Leaving:
+    """A request of a client that is over and still begins, because it is too late to change that. until: when
+    it has begun, seconds. event: of its end.
+    """
+
+    owner: int
+    ident: str
+    until: float
+    event: Event
+
+
+class Happenings:
+    """What runs, by the requests of the plan."""
+
+    def __init__(self) -> None:
+        self.running: dict[str, Running] = {}
+        self._leaving: dict[str, Leaving] = {}
+        self._told: list[tuple[int | None, str | None, Event]] = []  # whose, called what, which
+
+    def stop(self, request: str, reason: Reason) -> None:
+        """Take note why a request ends."""
+        if request in self.running:
+            self.running[request].reason = reason
+
+    def end_waiting(
+        self, key: str, ask: OpenAsk, reason: Reason, why: str, now: float, plan: Plan, fixed: float
+    ) -> None:
+        """Tell that something ends which was promised and never began; what begins before `fixed` seconds
+        cannot be stopped, and ends a moment later.
+        """
+        if not ask.settled or ask.ended or key in self.running or ask.lane not in TOLD:
+            return
+        ask.ended = True
+        layer = next((x for x in LAYERS if x == ask.lane), None)
+        event = Event(event="ended", t=round_seconds(now), layer=layer, reason=reason, why=why)
+        if _begins(plan, key, layer, now, fixed):
+            self._leaving[key] = Leaving(ask.client, ask.ident, fixed, event)
+        else:
+            self._tell(ask.client, ask.ident, event)
+
+    def list_happenings(
+        self, plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]
+    ) -> Iterator[tuple[Listener, Event]]:
+        """Yield whom to tell what: actions and speeches that started or ended after `before`, until `now`."""
+        self._follow(plan, ledger, before, now)
+        told, self._told = self._told, []
+        listening = [client for client in clients if client.events]
+        for owner, ident, event in told if listening else ():
+            for client in listening:
+                own = owner == client.owner
+                if own or client.events == "all":
+                    yield client, replace(event, id=ident if own else None)
+
+    def _follow(self, plan: Plan, ledger: Ledger, before: float, now: float) -> None:
+        t = round_seconds(now)
+        served = find_served(plan)
+        for layer in LAYERS:
+            lane = plan.layers[layer]
+            low, high = lane.ends.searchsorted((before, now), "right")
             for cue in lane.cues[int(low) : int(high)]:
-                at, until = round_seconds(cue.start), round_seconds(cue.end)
-                event = Event(event=word, t=t, layer=layer, action=cue.action.name, at=at, until=until)
-                yield cue.meta.partition("+")[0], event
-    for speech in reversed(plan.track.speeches):
-        if speech.start < before - LONGEST and speech.end < before:
+                request = cue.meta.partition("+")[0]
+                if request not in self.running and ledger.owner(request) is None:
+                    self._tell(None, None, _event_of(cue, layer, "ended", t))
+            low, high = lane.starts.searchsorted((before, now), "right")
+            for cue in lane.cues[int(low) : int(high)]:
+                request = cue.meta.partition("+")[0]
+                event = _event_of(cue, layer, "started", t)
+                for each in (request, *served.get(cue.meta, ())):
+                    self._start(each, request, layer, cue.start, event, plan, ledger, now)
+        for speech in plan.track.speeches:
+            if speech.end < before - LONGEST:
+                continue
+            crosses = before < speech.start <= now
+            runs = speech.start <= now < speech.end and speech.id not in self.running
+            if crosses or (runs and ledger.owner(speech.id) is not None):
+                event = _event_of_speech(speech, "started", t)
+                self._start(speech.id, speech.id, None, speech.start, event, plan, ledger, now)
+        for request in [x for x, late in self._leaving.items() if late.until < now]:
+            late = self._leaving.pop(request)  # it was held up after all
+            self._tell(late.owner, late.ident, late.event)
+        for request in [x for x, one in self.running.items() if not _lasts(plan, one, now)]:
+            self._end(request, plan, ledger, now)
+
+    def _tell(self, owner: int | None, ident: str | None, event: Event) -> None:
+        self._told.append((owner, ident, event))
+
+    def _start(
+        self,
+        request: str,
+        played: str,
+        layer: Layer | None,
+        start: float,
+        event: Event,
+        plan: Plan,
+        ledger: Ledger,
+        now: float,
+    ) -> None:
+        before = self.running.get(request)
+        if before is not None and not _lasts(plan, before, now):
+            self._end(request, plan, ledger, now)
+            before = None
+        owner = ledger.owner(request)
+        leaving = self._leaving.pop(request, None)
+        if leaving is not None:
+            self._tell(leaving.owner, leaving.ident, event)
+            reason = leaving.event.reason
+            self.running[request] = Running(leaving.owner, leaving.ident, played, layer, event, start, reason)
+            return
+        if owner is None and before is None:
+            if request == played:
+                self._tell(None, None, event)
+            return
+        if owner is None and before is not None:
+            whose, ident = before.owner, before.ident
+        else:
+            ask = ledger.known[str(owner)]
+            whose, ident = ask.client, ask.ident + request.removeprefix(str(owner))
+        self._tell(whose, ident, event)
+        self.running[request] = Running(whose, ident, played, layer, event, start)
+
+    def _end(self, request: str, plan: Plan, ledger: Ledger, now: float) -> None:
+        """Tell that a request that ran has ended, and why."""
+        one = self.running.pop(request)
+        reason, why, spoken, word = one.reason, "", None, None
+        event = replace(one.event, event="ended", t=round_seconds(now))
+        speech = next((s for s in plan.track.speeches if s.id == request and s.start == one.start), None)
+        cue = _cue_of(plan, one)
+        if speech is not None:
+            event = _event_of_speech(speech, "ended", event.t)
+            if speech.length is not None:
+                spoken, word = spoken_until(plan.track.speeches, speech, speech.end)
+                reason = reason or ("replaced" if _said_again(plan, speech) else "interrupted")
+                why = WHY.get(reason, "something else is said")
+        elif cue is not None and one.layer is not None:
+            event = _event_of(cue, one.layer, "ended", event.t)
+            cuts = [r for r in plan.reports if r.request == request and r.outcome in ("cut", "covered")]
+            if reason is None and cuts:
+                reason, why = "interrupted", reword_for_client(cuts[-1].message, one.owner)
+        reason = reason or "finished"
+        event = replace(event, reason=reason, why=WHY.get(reason, why), spoken=spoken, last_word=word)
+        self._tell(one.owner, one.ident, event)
+        if request in ledger.known:
+            ledger.known[request].ended = True
+
+
+def _begins(plan: Plan, request: str, layer: Layer | None, now: float, fixed: float) -> bool:
+    """Whether something of a request begins before `fixed` seconds."""
+    if layer is None:
+        return any(s.id == request and now < s.start < fixed for s in plan.track.speeches)
+    low, high = plan.layers[layer].starts.searchsorted((now, fixed), "right")
+    cues = plan.layers[layer].cues[int(low) : int(high)]
+    return any(c.meta.partition("+")[0] == request and c.start < fixed for c in cues)
+
+
+def _said_again(plan: Plan, speech: Speech) -> bool:
+    return any(s.id == speech.id and s.start == speech.end for s in plan.track.speeches)
+
+
+def _lasts(plan: Plan, one: Running, now: float) -> bool:
+    """Whether something of a request still plays, or comes."""
+    latest = float("inf") if one.reason is None else one.start
+    if one.layer is None:
+        pieces = [s for s in plan.track.speeches if s.id == one.request and s.start <= min(now, latest)]
+        if not pieces or pieces[-1].end <= now:
+            return False
+        ran = next((s for s in pieces if s.start == one.start), pieces[-1])
+        return ran is pieces[-1] or ran.length is None
+    lane = plan.layers[one.layer]
+    for cue in reversed(lane.cues):
+        if cue.end <= now:
             break
-        at, until = round_seconds(speech.start), round_seconds(speech.end)
-        for word, seconds in zip(HAPPENED, (speech.start, speech.end), strict=True):
-            if before < seconds <= now:
-                said = speech.text or None
-                yield speech.id, Event(event=word, t=t, line=speech.line, text=said, at=at, until=until)
+        if cue.start <= latest and cue.meta.partition("+")[0] == one.request:
+            return True
+    return one.reason is None and any(
+        m.request.id == one.request for m in reversed(lane.metas) if m.start >= plan.end
+    )
+
+
+def _cue_of(plan: Plan, one: Running) -> Cue | None:
+    """Return the last action of a request that has ended."""
+    if one.layer is None:
+        return None
+    cues = reversed(plan.layers[one.layer].cues)
+    return next((c for c in cues if c.meta.partition("+")[0] == one.request and c.start <= one.start), None)
+
+
+def _event_of(cue: Cue, layer: Layer, word: Word, t: float) -> Event:
+    at, until = round_seconds(cue.start), round_seconds(cue.end)
+    return Event(event=word, t=t, layer=layer, action=cue.action.name, at=at, until=until)
+
+
+def _event_of_speech(speech: Speech, word: Word, t: float) -> Event:
+    at, until = round_seconds(speech.start), round_seconds(speech.end)
+    return Event(event=word, t=t, line=speech.line, text=speech.text or None, at=at, until=until)

@@ -15,14 +15,18 @@ from metagraph.live.limits import Limits
 OVER = 2.0  # seconds for which an ask that has ended is remembered
 MOMENTS = ("place", "blink", "mode")  # asks that are over as soon as they have begun
 _SAFE = re.compile(r"[\w# -]{1,100}")
+_MADE = re.compile(r"(.+)/(\d{1,9})", re.DOTALL)
 _CLIENTS = re.compile(r"c\d+/")
 _NAMED = re.compile(r"'c(\d+)/([^']*)'")
 
 
 def plan_key(client: int, ident: str) -> str:
     """Return what a client's id is called in the plan: apart from other clients', and free of what has a
-    meaning there.
+    meaning there, but for a number behind a "/": "answer/2" was made for what "answer" says.
     """
+    made = _MADE.fullmatch(ident)
+    if made:
+        return f"{plan_key(client, made[1])}/{made[2]}"
     if _SAFE.fullmatch(ident) or not ident:
         return f"c{client}/{ident}"
     return f"c{client}/~{hashlib.blake2s(ident.encode('utf-8', 'surrogatepass'), digest_size=12).hexdigest()}"
@@ -45,7 +49,8 @@ def reword_for_client(why: str, client: int) -> str:
 @dataclass(slots=True)
 class OpenAsk:
     """An ask that has not ended. ident: its id as its client says it. at: when it begins, as far as known.
-    missed: seconds by which it was asked for too late. settled: whether it was answered.
+    missed: seconds by which it was asked for too late. settled: whether it was answered. ended: whether it
+    was told that it has.
     """
 
     client: int
@@ -57,6 +62,7 @@ class OpenAsk:
     state: str = ""
     actions: tuple[str, ...] = ()
     missed: float = 0.0
+    ended: bool = False
 
     @property
     def settled(self) -> bool:
@@ -64,7 +70,7 @@ class OpenAsk:
 
     def over(self, now: float) -> bool:
         """Whether one that has begun has ended, or lasts until something else comes."""
-        if self.lane in MOMENTS or (self.until is None and self.lane == "look"):
+        if self.lane in MOMENTS or (self.until is None and self.lane in ("look", "mood")):
             return True
         return (self.at if self.until is None else self.until) < now - OVER
 
@@ -127,8 +133,9 @@ class Ledger:
         return (key for key, ask in self.known.items() if ask.client == client)
 
     def belonging(self, key: str) -> list[str]:
-        """Every key that is this ask, or a part of it."""
-        return [k for k in (key, *self.blocks.get(key, ())) if k in self.known]
+        """Every key that is this ask, a part of it, or made for what it says."""
+        made = [k for k in self.known if k.rpartition("/")[0] == key and k != key]
+        return [k for k in (key, *self.blocks.get(key, ()), *made) if k in self.known]
 
     def owner(self, request: str) -> str | None:
         """Return which ask a request of the plan belongs to."""
@@ -138,12 +145,12 @@ class Ledger:
         """How many have not begun."""
         return sum(1 for ask in self.known.values() if ask.at > now)
 
-    def forget(self, now: float) -> None:
-        """Drop what is over."""
+    def forget(self, now: float) -> list[tuple[str, OpenAsk]]:
+        """Drop what is over; return it."""
         over = [key for key, ask in self.known.items() if ask.settled and ask.at < now and ask.over(now)]
-        for key in over:
-            self.drop(key)
+        gone = [one for key in over for one in self.drop(key)]
         for key in [
             key for key, parts in self.blocks.items() if not any(part in self.known for part in parts)
         ]:
             del self.blocks[key]
+        return gone

@@ -20,11 +20,11 @@ from metagraph.common.wording import phrase
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
-from metagraph.live.answers import FoundAnswer, find, find_owning_ask
+from metagraph.live.answers import FoundAnswer, find
 from metagraph.live.camera_mimicry import see
 from metagraph.live.generating import Generating
 from metagraph.live.graph_motion import LiveGraph
-from metagraph.live.happenings import list_happenings
+from metagraph.live.happenings import Happenings
 from metagraph.live.ledger import Ledger, OpenAsk, plan_key, reword_for_client
 from metagraph.live.limits import (
     ADDED,
@@ -51,6 +51,7 @@ from metagraph.live.messages import (
     OwnMessage,
     Part,
     Partner,
+    Reason,
     Reply,
     Status,
     read_live_request,
@@ -59,25 +60,30 @@ from metagraph.live.messages import (
 )
 from metagraph.live.partner_mood import LAUGH, MOOD, partner_feel
 from metagraph.live.pose_stream import Stream, due
-from metagraph.live.said_sound import SaidSounds, merge_line_timing
+from metagraph.live.said_sound import SaidSounds, join_asks
+from metagraph.live.spoken_so_far import spoken_until
 from metagraph.live.tape import Tape
-from metagraph.live.tick_work import Client, Open, Out, TickWork, order_requests, thin_track
+from metagraph.live.tick_work import Agent, Client, Open, Out, TickWork, order_requests, thin_track
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml.reader import BmlBlock, read_block
 from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.track import Speech
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.hearing import makers
 from metagraph.playback.planning.plan_head import RECENT
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
 from metagraph.playback.posing.overlay import Overlay
 from metagraph.playback.posing.weight import LOOKS_BACK
 from metagraph.playback.timing.phases import phases
 from metagraph.speech.spoken_text import read_spoken_line
+from metagraph.speech.word_gestures import telling
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two clean-ups of what is over
 KEPT = 10.0  # seconds for which reports and requests of the plan are kept after they are over
 TOLD = 100  # latest reports that are kept in any case
+AGENTS = 1000  # names of clients that are remembered
 
 
 class LiveSession:
@@ -103,6 +109,8 @@ class LiveSession:
         self.now = 0.0
         self.clients: dict[int, Client] = {}
         self.ledger = Ledger()
+        self.happenings = Happenings()
+        self._agents: dict[str, Agent] = {}
         self.generating = Generating(models, graphs)
         self._words = RequestWords(project)
         self._names: set[str] = set()
@@ -136,10 +144,10 @@ class LiveSession:
 
     def join(self, client: int) -> None:
         """Add a client. Its number is the caller's and must not be used twice."""
-        self.clients[client] = Client(client)
+        self.clients[client] = Client(client, Agent(client))
 
     def leave(self, client: int) -> None:
-        """Remove a client. Its requests are still played."""
+        """Remove a client. Its requests are still played; who says its name next can take them back."""
         self.clients.pop(client, None)
 
     def receive(self, client: int, data: bytes | str) -> None:
@@ -196,8 +204,11 @@ class LiveSession:
                 out.replies[place] = Reply() if found is None else found
         self._plan(work, out)
         self.generating.reach(self.now, self.plan, self.project, self.clients)
-        out.events += list_happenings(self.plan, self.ledger, before, self.now, self.clients.values())
         self._tidy()
+        told = self.happenings.list_happenings(
+            self.plan, self.ledger, before, self.now, self.clients.values()
+        )
+        out.events += ((client.number, event) for client, event in told)
         self.warm(1)
         out.frames = due(
             self.now,
@@ -224,9 +235,9 @@ class LiveSession:
             return self._own(client, message)
         ident = message.id
         if not ident:
-            client.count += 1
-            ident = f"#{client.count}"
-        key = plan_key(client.number, ident)
+            client.agent.count += 1
+            ident = f"#{client.agent.count}"
+        key = plan_key(client.owner, ident)
         ask: Any = msgspec.structs.replace(
             message, at=message.at if heard.after is None else self.now + heard.after, told=self.now
         )
@@ -237,21 +248,26 @@ class LiveSession:
         notes: tuple[str, ...] = ()
         if isinstance(ask, a.Say) and ask.text:
             text, left_out = read_spoken_line(ask.text)
-            notes = tuple(phrase("left out: {what}", what=what) for what in left_out)
-            if not text and not (ask.words or ask.visemes or ask.audio or ask.line):
-                silent = phrase("nothing of the text is to be said")
+            notes = tuple(str(phrase("left out: {what}", what=what)) for what in left_out)
+            more = ask.words or ask.visemes or ask.audio or ask.line or ask.duration
+            if not telling(ALPHABET, text) and not more:
+                silent = str(phrase("nothing of the text is to be said"))
                 return Reply(id=ident, state="refused", why=silent, notes=notes)
             ask = msgspec.structs.replace(ask, text=text)
+        before = work.open.get(key)
+        adds = self.plan.track.last_speech(key) if isinstance(ask, a.Say) else None
+        waits = self.ledger.known.get(key)
         why = self._admit(client, ident, key, ask, work)
         if why:
             return Reply(id=ident, state="refused", why=why, notes=notes)
-        work.open[key] = Open(place, ident, key, notes=notes)
+        also = [before, *before.also] if before is not None and before not in work.over else []
+        work.open[key] = Open(place, ident, key, notes=notes, adds=adds, replaces=waits, also=also)
         return None
 
     def _partner(self, client: Client, message: Partner, work: TickWork, place: int) -> Reply | bytes | None:
         """Take up what the partner feels, or laugh along."""
         ident = message.id or (MOOD if message.laughs is None else LAUGH)
-        key = plan_key(client.number, ident)
+        key = plan_key(client.owner, ident)
         feel = partner_feel(message, ident, key, self.project, self.plan.track, self.now)
         if feel is None:
             return Reply(id=message.id or None, state="done", why="it does not laugh along")
@@ -272,7 +288,7 @@ class LiveSession:
                 )
             self.ledger.limits.characters += len(self._told["project"])
             return describe.with_id(self._told["project"], message.id)
-        client.name = message.name or client.name
+        self._name(client, message.name)
         if message.events is not msgspec.UNSET:
             client.events = "all" if message.events == "all" else "own" if message.events else ""
         if message.poses is not msgspec.UNSET:
@@ -283,6 +299,15 @@ class LiveSession:
             except a.RequestError as error:
                 return Reply(id=message.id or None, error=str(error))
         return describe.greeting(self, client.stream, message.id)
+
+    def _name(self, client: Client, name: str) -> None:
+        """Take note of a client's name: what was asked for under it is that client's from now on."""
+        if not name or name == client.name:
+            return
+        client.name = name
+        client.agent = self._agents.setdefault(name, client.agent)
+        while len(self._agents) > AGENTS:
+            del self._agents[next(iter(self._agents))]
 
     # --- what becomes of a request
 
@@ -317,11 +342,14 @@ class LiveSession:
         if key in ledger.blocks:
             self._take_back([key], work)
         before = work.asks.get(key)
-        if isinstance(ask, a.Say) and isinstance(before, a.Say):
-            ask = merge_line_timing(before, ask)
-        work.close(key, "asked again under the same id")
+        both = join_asks(before, ask) if isinstance(ask, a.Say) and isinstance(before, a.Say) else None
+        if both is None:
+            work.close(key, "asked again under the same id")
+        ask = both or ask
         ledger.limits.planned[client.number] += 1
-        ledger.add(key, OpenAsk(client.number, ident, lane, ask.priority, wanted, missed=in_time.missed))
+        if not isinstance(ask, a.Say):
+            self.happenings.stop(key, "replaced")
+        ledger.add(key, OpenAsk(client.owner, ident, lane, ask.priority, wanted, missed=in_time.missed))
         work.asks[key] = msgspec.structs.replace(ask, id=key)
         return ""
 
@@ -349,7 +377,7 @@ class LiveSession:
         """Return the reason if so many requests wait that a client has used up its share."""
         ledger = self.ledger
         if key not in ledger.known and len(ledger.known) >= PENDING and ledger.pending(self.now) >= PENDING:
-            own = sum(1 for _ in ledger.of(client.number))
+            own = sum(1 for _ in ledger.of(client.owner))
             if own >= PENDING // max(1, len(self.clients)):
                 return f"{PENDING} requests wait already; try again when some of them have played"
         return ""
@@ -365,32 +393,49 @@ class LiveSession:
         return self._speech(key) is not None or isinstance(work.asks.get(key), a.Say)
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: TickWork) -> Reply:
-        """Withdraw what a client itself requested; what has begun plays on."""
+        """Withdraw what an agent requested: what waits does not play, and what has begun is left."""
         if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now, client.number):
             return Reply(id=ident, state="refused", why=BUSY)
-        target, mine = plan_key(client.number, ask.what), plan_key(client.number, "")
-        keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
+        owner, until = client.owner, self.now + self.project.settings.lookahead
+        target, mine = plan_key(owner, ask.what), plan_key(owner, "")
+        # Who takes everything back still looks at whom it talks with.
+        stays = {x.id for x in self.plan.track.looks if x.to == "user" and x.start <= until}
+        known = self.ledger.known
+        keys = self.ledger.belonging(target) if ask.what else [x for x in known if known[x].client == owner]
+        keys = [x for x in keys if not known[x].ended and (ask.what or x not in stays)]
         # What has begun and lasts is no longer in the ledger, but can still be ended.
-        lasting = [
-            x.id
-            for x in self.plan.track.items
-            if getattr(x, "end", 0.0) > self.now and x.id not in self.ledger.known
+        lasting = [x.id for x in self.plan.track.items if getattr(x, "end", 0.0) > until]
+        lasting += [x for x, one in self.happenings.running.items() if one.reason is None]
+        lasting = [x for x in dict.fromkeys(lasting) if x not in known]
+        keys += [
+            x for x in lasting if (target in makers(x) if ask.what else x.startswith(mine) and x not in stays)
         ]
-        keys += [x for x in lasting if (find_owning_ask(x, (target,)) if ask.what else x.startswith(mine))]
         if not keys:
-            return Reply(
-                id=ident, state="done", why="nothing waits under that id" if ask.what else "nothing waits"
-            )
-        self._take_back([target] if ask.what else keys, work)
-        return Reply(id=ident, state="done", why=f"{len(keys)} taken back; what has begun plays on")
+            return Reply(id=ident, state="done", why=self._why_nothing(target, ask.what))
+        speech = next((s for s in self.plan.track.speeches if s.id in keys and s.end > until), None)
+        spoken, word = None, None
+        if speech is not None:
+            spoken, word = spoken_until(self.plan.track.speeches, speech, until)
+        self._take_back([target, *keys] if ask.what else keys, work)
+        why = f"{len(keys)} taken back; what has begun is left, but for changes of stance"
+        return Reply(id=ident, state="done", why=why, spoken=spoken, last_word=word or None)
+
+    def _why_nothing(self, key: str, what: str) -> str:
+        """Return why there is nothing to take back under an id."""
+        ended = key in self.ledger.known and self.ledger.known[key].ended
+        return "it has ended" if ended else "nothing waits under that id" if what else "nothing waits"
 
     def _take_back(self, keys: Iterable[str], work: TickWork) -> None:
         for key in keys:
             work.close(key, "taken back")
-            for each, _ in self.ledger.drop(key):
+            self.happenings.stop(key, "withdrawn")
+            for each, ask in self.ledger.drop(key):
+                self.happenings.stop(each, "withdrawn")
+                self._end_waiting(each, ask, "withdrawn", "taken back")
                 work.close(each, "taken back")
                 work.asks.pop(each, None)
-            work.asks[key] = a.Withdraw(id=key, what=key, told=self.now)
+            work.asks.pop(key, None)
+            work.gone[key] = a.Withdraw(id=key, what=key, told=self.now)
 
     def _block(self, client: Client, open_: Open, ask: a.Bml, work: TickWork) -> Reply | None:
         """Accept the behaviours of a block, each separately."""
@@ -403,7 +448,7 @@ class LiveSession:
         try:
             block = read_block(ask.bml, begin, ask.priority, self.project)
             if block.composition == "append":
-                last = [k.until or k.at for k in self.ledger.known.values() if k.client == client.number]
+                last = [k.until or k.at for k in self.ledger.known.values() if k.client == client.owner]
                 block = read_block(ask.bml, max(begin, *last, begin), ask.priority, self.project)
         except a.RequestError as error:
             return Reply(id=open_.ident, error=str(error))
@@ -430,7 +475,7 @@ class LiveSession:
             word = str(ask.__struct_config__.tag)
             if isinstance(ask, a.Withdraw):
                 self._take_back(
-                    [plan_key(client.number, ask.what)] if ask.what else [*self.ledger.of(client.number)],
+                    [plan_key(client.owner, ask.what)] if ask.what else [*self.ledger.of(client.owner)],
                     work,
                 )
                 continue
@@ -445,14 +490,14 @@ class LiveSession:
             return Reply(id=ident, state="refused", why=BUSY)
         try:
             client.camera, asks, seen = see(
-                client.camera, message, self.project, self.plan, self.now, plan_key(client.number, "mimic")
+                client.camera, message, self.project, self.plan, self.now, plan_key(client.owner, "mimic")
             )
         except ValueError as error:
             return Reply(id=ident, error=str(error))
         if not asks:
             return Reply(id=ident, state="done", seen=seen)
-        key = f"{plan_key(client.number, 'keypoints')}.{place}"
-        parts = [(plan_key(client.number, x.id), x.id, str(x.__struct_config__.tag), x) for x in asks]
+        key = f"{plan_key(client.owner, 'keypoints')}.{place}"
+        parts = [(plan_key(client.owner, x.id), x.id, str(x.__struct_config__.tag), x) for x in asks]
         taken = [(k, called, word, self._admit(client, called, k, x, work)) for k, called, word, x in parts]
         work.open[key] = Open(place, message.id, key, taken, seen=seen)
         return None
@@ -463,15 +508,17 @@ class LiveSession:
         """Plan a tick's requests, answer them, and report others that changed because of them."""
         now, ledger = self.now, self.ledger
         self.running.reach(now, self._edited)
-        if work.asks:
-            asks = list(work.asks.values())
+        if work.asks or work.gone:
+            asks = [*work.gone.values(), *work.asks.values()]
             self.tape.keep(asks, now)
             self.running.hear(now, asks)
         for done in work.over:
             out.replies[done.place] = Reply(id=done.ident, state="refused", why=done.why)
-        if not (work.asks or work.open or self._edited):
+        if not (work.asks or work.gone or work.open or self._edited):
             return
         self._edited = False
+        for open_ in work.open.values():
+            self._end_replaced(open_)
         watched = {key: ask for key, ask in ledger.known.items() if not ask.settled or ask.at > now}
         found = find(self.plan, watched, now - 1.0)
         for key, ask in watched.items():
@@ -480,7 +527,8 @@ class LiveSession:
         for open_ in work.open.values():
             if open_.parts is None:
                 reply = self._settle(open_.key, found.get(open_.key, FoundAnswer()))
-                out.replies[open_.place] = msgspec.structs.replace(reply, notes=open_.notes)
+                for each in (open_, *open_.also):
+                    out.replies[each.place] = self._tell_added(each, reply)
             else:
                 out.replies[open_.place] = self._settle_block(open_, found)
 
@@ -496,6 +544,8 @@ class LiveSession:
         else:
             self.ledger.settle(key, found)
         why = f"asked for {ask.missed:.2f} s ago" if ask.missed > 0 and not found.why else found.why
+        if found.state == "refused" and not found.reports and ask.lane in ("say", ADDED):
+            why = "something more important is said then"
         return Reply(
             id=ask.ident,
             state=found.said(ask.missed),  # type: ignore[arg-type]
@@ -505,6 +555,56 @@ class LiveSession:
             actions=tuple(found.what),
             why=reword_for_client(why, ask.client),
         )
+
+    def _goes_on_from(self, open_: Open) -> bool:
+        """Return whether what is said goes on from what was said last under its id."""
+        speech, before = self.plan.track.last_speech(open_.key), open_.adds
+        if speech is None or before is None or before.length is not None or speech is before:
+            return False
+        told = speech.timing is not None and before.timing is not None
+        return (told and speech.start == before.start) or (not told and speech.start == before.end)
+
+    def _end_replaced(self, open_: Open) -> None:
+        """Tell that what waited under an id has ended, if something else has taken its place; so have the
+        gestures that were made for what was said.
+        """
+        if self._goes_on_from(open_):
+            return
+        gone = [] if open_.replaces is None else [(open_.key, open_.replaces)]
+        if open_.adds is not None:
+            made = [key for key in self.ledger.belonging(open_.key) if makers(key)[-1] == open_.key != key]
+            made = [key for key in made if self.ledger.known[key].settled]
+            gone += [one for key in made for one in self.ledger.drop(key)]
+        for key, ask in gone:
+            if key != open_.key:
+                self.happenings.stop(key, "replaced")
+            self._end_waiting(key, ask, "replaced", "asked again under the same id")
+
+    def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
+        """Tell that something has ended which was promised and has not begun."""
+        fixed = self.now + self.project.settings.lookahead
+        self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
+
+    def _tell_added(self, open_: Open, reply: Reply) -> Reply:
+        """Return a reply with what has become of what was added to a line."""
+        speech, before, notes, at = (
+            self.plan.track.last_speech(open_.key),
+            open_.adds,
+            open_.notes,
+            reply.at,
+        )
+        if speech is None or before is None or not self._goes_on_from(open_):
+            return msgspec.structs.replace(reply, notes=notes)
+        if speech.timing is not None and before.timing is not None:
+            words = {(w.start, w.text) for w in speech.timing.words}
+            marks = {(m.at, m.viseme) for m in speech.timing.marks}
+            words -= {(w.start, w.text) for w in before.timing.words}
+            marks -= {(m.at, m.viseme) for m in before.timing.marks}
+            if words or marks:
+                at = round_seconds(speech.start + min(words | marks)[0])
+            else:
+                notes = (*notes, str(phrase("nothing new is said: it was told before, or its time is over")))
+        return msgspec.structs.replace(reply, at=at, since=round_seconds(before.start), notes=notes)
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:
         """Return the reply to a block of BML: for each behaviour, and for all of them."""
@@ -547,8 +647,7 @@ class LiveSession:
             self.ledger.drop(key)
         else:
             self.ledger.settle(key, found)
-        client = self.clients.get(ask.client)
-        if client is not None and client.events:
+        for client in [c for c in self.clients.values() if c.owner == ask.client and c.events]:
             event = Event(
                 event="changed",
                 t=round_seconds(self.now),
@@ -560,7 +659,10 @@ class LiveSession:
                 actions=tuple(found.what),
                 why=reword_for_client(found.why, ask.client),
             )
-            out.events.append((ask.client, event))
+            out.events.append((client.number, event))
+        if found.state in ("refused", "done"):
+            why = reword_for_client(found.why, ask.client)
+            self._end_waiting(key, ask, "dropped", why)
 
     # --- the past
 
@@ -569,7 +671,11 @@ class LiveSession:
         if self.now < self._tidied + TIDY:
             return
         now = self._tidied = self.now
-        self.ledger.forget(now)
+        for key, ask in self.ledger.forget(now):
+            why = reword_for_client(
+                "; ".join(r.message for r in self.plan.reports if r.request == key), ask.client
+            )
+            self._end_waiting(key, ask, "dropped", why or "something else plays")
         recent = max(RECENT, self.project.settings.memory)
         if now > self._begin + recent + CUT:
             begin, self._begin = self._begin, now - recent

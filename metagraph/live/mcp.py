@@ -7,7 +7,6 @@ Revisions 2024-11-05 to 2025-11-25 of the protocol (modelcontextprotocol.io): JS
 
 from __future__ import annotations
 
-import re
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -44,8 +43,6 @@ def mcp_tools(project: Project) -> list[dict[str, Any]]:
 
 
 _NOBODY = object()  # whose call it is that the line itself made
-_GESTURE = object()  # the same, of a gesture that is taken back
-SAID = 200  # things said whose gestures are remembered
 BATCH = 100  # messages
 
 
@@ -93,9 +90,6 @@ class McpLine(StdioLine):
             for layer, graph in project.graphs.items()
         }
         self._gestured = 0
-        # Ids of the gestures that were asked for, by the id of what is said.
-        self._gestures: dict[str, list[str]] = {}
-        self._also = 0  # gestures that were taken back with what was said
         self._batch: _Batch | None = None  # the one that is being heard
 
     def _heard(self, line: bytes | None) -> None:
@@ -169,8 +163,6 @@ class McpLine(StdioLine):
         request = {key: value for key, value in given.items() if key not in ("do", "after")}
         if "after" in given:
             request["in"] = given["after"]  # as the session calls it
-        if name in ("say", "withdraw"):
-            self._take_gestures_back(str(request.get("id" if name == "say" else "what") or ""))
         alone = name == "say" and request.get("gestures", True) is True and not request.get("line")
         text = request.get("text") if alone else None
         if isinstance(text, str):
@@ -179,26 +171,19 @@ class McpLine(StdioLine):
         self._ask(msgspec.json.encode({**request, "do": name}))
         return True
 
-    def _take_gestures_back(self, said: str) -> None:
-        """Withdraw the gestures of something said that is taken back, or said anew."""
-        for ident in self._gestures.pop(said, ()):
-            self._calls.append(_Call(_GESTURE))
-            self._ask(msgspec.json.encode({"do": "withdraw", "what": ident}))
-
-    def _gesture(self, said: _Call, begins: float, ident: str) -> None:
-        """Ask for the gestures that go with what is said. `ident` is its id."""
+    def _gesture(self, said: _Call, reply: dict[str, Any]) -> None:
+        """Ask for the gestures that go with what is said, by its id."""
         try:
             told = [(str(word), float(start), float(end)) for word, start, end in said.words or ()]
         except (TypeError, ValueError):
             told = []  # as objects, or without ends: as long as lips take
-        self._gestured += 1
+        begins = float(reply["at"])
+        if told and "since" in reply:  # it is when the first of these words is said
+            begins -= told[0][1]
         lexicon = gesture_words_for(said.text)
-        made = propose_gestures(timed_words(said.text, told), self._tags, lexicon, self._gestured)
-        requests = gesture_requests(made, begins, f"said{self._gestured}")
-        if ident:
-            self._gestures[ident] = [request["id"] for request in requests]
-        while len(self._gestures) > SAID:
-            del self._gestures[next(iter(self._gestures))]
+        made = propose_gestures(timed_words(said.text, told), self._tags, lexicon, self._gestured + 1)
+        requests = gesture_requests(made, begins, str(reply.get("id", "said")), self._gestured)
+        self._gestured += len(requests) or 1
         for request in requests:
             self._calls.append(_Call(_NOBODY))
             self._ask(msgspec.json.encode(request))
@@ -212,16 +197,8 @@ class McpLine(StdioLine):
             call = self._calls.popleft()
             if call.ident is _NOBODY:
                 continue
-            why = told.get("why") if isinstance(told.get("why"), str) else ""
-            if call.ident is _GESTURE:
-                self._also += why.startswith("1 taken back")
-                continue
-            if self._also and "taken back" in why:
-                told["why"] = re.sub(r"^\d+", lambda n: str(int(n[0]) + self._also), why)
-                data = msgspec.json.encode(told)
-            self._also = 0
             if call.text and isinstance(told.get("at"), int | float):
-                self._gesture(call, float(told["at"]), str(told.get("id", "")))
+                self._gesture(call, told)
             self._answer(call.ident, {
                 "content": [{"type": "text", "text": data.decode()}],
                 "structuredContent": told,

@@ -151,6 +151,7 @@ class HeardMessage(Struct, frozen=True, array_like=True):
 
 
 State = Literal["planned", "late", "refused", "done"]
+Reason = Literal["finished", "withdrawn", "replaced", "interrupted", "dropped"]
 
 
 class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -166,9 +167,11 @@ class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What becomes of a request. at, until: seconds of the session at which it plays. actions: what plays.
-    notes: what was left out of it. seen: for keypoints, layer -> the stance the person is in. error: what is
-    wrong with it if it could not be understood; then there is nothing else.
+    """What becomes of a request. at, until: seconds of the session at which it plays. since: when the line
+    began that it adds to, where it does. actions: what plays. notes: what was left out of it. spoken,
+    last_word: of something said that is withdrawn, what was spoken until then. seen: for keypoints, layer ->
+    the stance the person is in. error: what is wrong with it if it could not be understood; then there is
+    nothing else.
     """
 
     id: str | None = None
@@ -176,9 +179,12 @@ class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
     layer: str | None = None
     at: float | None = None
     until: float | None = None
+    since: float | None = None
     actions: tuple[str, ...] = ()
     why: str = ""
     notes: tuple[str, ...] = ()
+    spoken: str | None = None
+    last_word: str | None = None
     parts: tuple[Part, ...] = ()
     seen: dict[Layer, str] = {}
     error: str | None = None
@@ -186,7 +192,8 @@ class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 class Event(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Something that happened. changed: the plan for a request changed; state and times are as in a reply.
-    started, ended: an action, or speech, with its words.
+    started, ended: an action, or speech, with its words. reason: why it ended; of speech that did not end by
+    itself, spoken and last_word tell what was spoken.
     """
 
     event: Literal["changed", "started", "ended", "closed"]
@@ -200,6 +207,9 @@ class Event(Struct, frozen=True, kw_only=True, omit_defaults=True):
     action: str | None = None
     line: str | None = None
     text: str | None = None
+    reason: Reason | None = None
+    spoken: str | None = None
+    last_word: str | None = None
     why: str = ""
 
 

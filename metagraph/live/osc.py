@@ -12,13 +12,16 @@ from typing import Any
 
 from metagraph.graph.words import LAYERS
 from metagraph.live.hub import BACKLOG, Hub
-from metagraph.live.messages import LONGEST_MESSAGE, encode
+from metagraph.live.messages import LONGEST_MESSAGE, Reply, encode
 from metagraph.live.osc_bytes import OscError, messages_of, pad_osc, seconds_ahead
 
 ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
 SENDERS = 32  # known at once
 AT_ONCE = ("hello", "status", "describe", "withdraw")  # whatever the time tag of their bundle says
+# Addresses that take no number, so that a number tells of a button: 0 when it is let go.
+BUTTONS = ("gesture", "fidget", "change", "nod", "shake", "action", "stance", "blink", "text", "withdraw")
+LET_GO = "it is a button that is let go: send another number than 0"
 LARGEST = 60_000  # bytes of one datagram that is sent
 
 
@@ -130,10 +133,10 @@ def _field(text: str) -> tuple[str, Any]:
 
 def texts_of(
     datagram: bytes, now: float | None = None
-) -> Iterator[tuple[str, bytes | str | OscError | bool]]:
-    """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, or whether
-    replies are wanted. A request of a bundle begins when the bundle's time tag says. `now` is in seconds
-    since 1970, the system's if None.
+) -> Iterator[tuple[str, bytes | str | OscError | Reply | bool]]:
+    """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, the reply where
+    nothing is asked, or whether replies are wanted. A request of a bundle begins when the bundle's time tag
+    says. `now` is in seconds since 1970, the system's if None.
     """
     try:
         messages = list(messages_of(datagram))
@@ -147,6 +150,8 @@ def texts_of(
                 yield address, bool(values[0]) if values else True
             elif address == ROOT + "json":
                 yield address, str(values[0]) if values else ""
+            elif _is_let_go(address, values):
+                yield address, Reply(state="done", why=LET_GO)
             else:
                 asked = dict(request(address, values))
                 if ahead > 0 and asked["do"] not in AT_ONCE and not {"in", "at"} & asked.keys():
@@ -154,6 +159,12 @@ def texts_of(
                 yield address, encode(asked)
         except (OscError, TypeError, ValueError) as error:
             yield address, OscError(str(error))
+
+
+def _is_let_go(address: str, values: Sequence[Any]) -> bool:
+    """Whether a message tells that a button is let go."""
+    numbers = [x for x in values if isinstance(x, int | float)]
+    return address.removeprefix(ROOT) in BUTTONS and len(numbers) == 1 and numbers[0] == 0
 
 
 class _Sender:
@@ -208,6 +219,8 @@ class OscLine(asyncio.DatagramProtocol):
                 sender.wants = text
             elif isinstance(text, OscError):
                 sender.send([(encode({"error": str(text)}), False)])
+            elif isinstance(text, Reply):
+                sender.send([(encode(text), False)])
             elif sender.number:
                 self.hub.message(sender.number, text)
 

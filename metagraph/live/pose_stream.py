@@ -135,8 +135,9 @@ def frame(
     data: dict[str, Any] = {"t": round(now, 4), "root": _plain(root), "rotations": _plain(rotations)}
     if places is not None:
         data["positions" if wish.space == "model" else "translations"] = _plain(places)
-    if weights:
-        data["weights"] = {name: round(value, 4) for name, value in weights.items()}
+    shown = dict.fromkeys(stream.morphs, 0.0) | weights  # those at rest, too
+    if shown:
+        data["weights"] = {name: round(value, 4) for name, value in shown.items()}
     return encode(data)
 
 
@@ -163,7 +164,7 @@ def _osc(
     ]
     parts += [
         pad_osc("/metagraph/weight") + pad_osc(",sf") + pad_osc(name) + struct.pack(">f", x)
-        for name, x in weights.items()
+        for name, x in (dict.fromkeys(stream.morphs, 0.0) | weights).items()
     ]
     return (
         b"#bundle\0" + struct.pack(">Q", 1) + b"".join(struct.pack(">i", len(part)) + part for part in parts)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.requests import RequestError, Say
+from metagraph.playback.life.line_timing import extended, placed
 from metagraph.playback.timing.told_timing import read_given_timing
 
 Array = NDArray[Any]
@@ -58,18 +59,34 @@ class SaidSound:
         return [*marks, [max(over, start), "sil"]]
 
 
-def merge_line_timing(before: Say, ask: Say) -> Say:
-    """Return an ask with what another one of the same tick told of its line before it."""
-    if not (ask.words or ask.visemes):
-        return ask
-    both = msgspec.structs.replace(
-        ask, words=(*before.words, *ask.words), visemes=(*before.visemes, *ask.visemes), at=before.at
-    )
+def join_asks(before: Say, ask: Say) -> Say | None:
+    """Return an ask with what another one of the same tick said before it under its id; None where it is in
+    the place of that.
+    """
+    if before.line is not None or ask.line is not None or ask.at is not None:
+        return None
     try:
-        read_given_timing(both)
-    except RequestError:  # it tells everything again
-        return ask
-    return both
+        old, new = read_given_timing(before), read_given_timing(ask)
+    except RequestError:
+        return None
+    if old is None and new is None:
+        seconds = None
+        if before.duration is not None and ask.duration is not None:
+            seconds = before.duration + ask.duration
+        text = f"{before.text} {ask.text}"
+        return msgspec.structs.replace(ask, text=text, duration=seconds, at=before.at)
+    if old is None or new is None:
+        return None
+    both = extended(old, placed(old, new, 0.0), 0.0)
+    texts = [x.text for x in (before, ask) if x.text]
+    return msgspec.structs.replace(
+        ask,
+        text=" ".join(texts) if len(texts) == 2 else "",
+        words=tuple([w.text, w.start, w.start if w.end is None else w.end] for w in both.words),
+        visemes=tuple([m.at, m.viseme, m.weight] for m in both.marks),
+        set="oculus" if both.marks else None,
+        at=before.at,
+    )
 
 
 class SaidSounds:

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field, replace
 from metagraph.graph import requests as a
 from metagraph.graph.words import Layer
 from metagraph.live.camera_mimicry import ClientCamera
+from metagraph.live.ledger import OpenAsk
 from metagraph.live.messages import Event, Reply
 from metagraph.live.pose_stream import PoseFrame, Stream
-from metagraph.playback.life.track import Track
+from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.plan import Plan
 
 THIN = 20.0  # seconds after which of a moving point only some places are kept
@@ -18,15 +19,30 @@ COARSE = 0.25  # seconds between those
 
 
 @dataclass(slots=True)
-class Client:
-    """Someone who asks. count: of ids made up. events: "" for none, "own" or "all"."""
+class Agent:
+    """Whose requests they are: of one client, or of all that have said the same name, one after the other.
+    number: of its first client. count: of ids made up.
+    """
 
     number: int
+    count: int = 0
+
+
+@dataclass(slots=True)
+class Client:
+    """Someone who asks. events: "" for none, "own" or "all"."""
+
+    number: int
+    agent: Agent
     name: str = ""
     events: str = ""
     stream: Stream | None = None
-    count: int = 0
     camera: ClientCamera | None = None
+
+    @property
+    def owner(self) -> int:
+        """The number that its requests are kept under."""
+        return self.agent.number
 
 
 @dataclass
@@ -44,7 +60,8 @@ class Out:
 class Open:
     """A request that waits for the plan. place: among the replies. parts: of a block, or of keypoints: key,
     what it is called, ask, why it was refused already. seen: of keypoints. why: what has become of it in the
-    meantime.
+    meantime. adds: what was said last under its id; replaces: what
+    waited under it. also: those of the same tick that it is joined with.
     """
 
     place: int
@@ -53,23 +70,27 @@ class Open:
     parts: list[tuple[str, str, str, str]] | None = None
     notes: tuple[str, ...] = ()
     why: str = ""
+    adds: Speech | None = None
+    replaces: OpenAsk | None = None
+    also: list[Open] = field(default_factory=list)
     seen: dict[Layer, str] = field(default_factory=dict)
 
 
 @dataclass
 class TickWork:
-    """A tick's asks on their way into the plan."""
+    """A tick's asks on their way into the plan. gone: what is taken back before they count, by its key."""
 
     asks: dict[str, a.AnyRequest] = field(default_factory=dict)
+    gone: dict[str, a.AnyRequest] = field(default_factory=dict)
     open: dict[str, Open] = field(default_factory=dict)
     over: list[Open] = field(default_factory=list)
 
     def close(self, key: str, why: str) -> None:
         """Answer a request at once: something else has taken its place."""
         found = self.open.pop(key, None)
-        if found is not None:
-            found.why = why
-            self.over.append(found)
+        for each in () if found is None else (*found.also, found):
+            each.why = why
+            self.over.append(each)
 
 
 def order_requests(clients: Sequence[int]) -> list[int]:

@@ -25,11 +25,13 @@ from metagraph.playback.planning.strand import join_sequence
 class Revision:
     """Other changes to a plan that is extended.
 
-    `withdrawn` has the ids of requests that are withdrawn. `leave` has the layers that are planned to the end
+    `withdrawn` has the ids of requests that are withdrawn, `stopped` those of them whose running action is
+    left, too. `leave` has the layers that are planned to the end
     already and that no new request concerns; planning them again would change nothing.
     """
 
     withdrawn: frozenset[str] = frozenset()
+    stopped: frozenset[str] = frozenset()
     leave: Collection[Layer] = ()
 
 
@@ -87,7 +89,8 @@ def extend_plan(
         stance = (stances or {}).get(layer)
         drafted = draft(
             project, graph, chain if idle else None, {kind for _, kind in graph.index},
-            old if head is None else head.rest(old), told, plan.seed, now, fresh, again, end, stance, moods,
+            old if head is None else head.rest(old), told, plan.seed, now, fresh, again,
+            revision.stopped, end, stance, moods,
         )  # fmt: skip
         metas = [m for m in drafted.placed if not m.written or _performed(chain, plan, layer, m, moods)]
         made = drafted.performed(metas, end)

@@ -137,12 +137,15 @@ def propose_gestures(
     return proposed_for(words, set(tags.get("arms", ())), bool(tags.get("head")), known, small, Bits(seed))
 
 
-def gesture_requests(every: Sequence[ProposedGesture], at: float, ident: str) -> list[dict[str, Any]]:
+def gesture_requests(
+    every: Sequence[ProposedGesture], at: float, ident: str, first: int = 0
+) -> list[dict[str, Any]]:
     """Return gestures as requests for a text that begins at `at` seconds of the session. Those that could not
-    be in time are refused rather than made late. ident: what their ids begin with.
+    be in time are refused rather than made late. ident: of the text, with which they are taken back, too.
+    first: the number of the first of them.
     """
     out: list[dict[str, Any]] = []
-    for n, ask in enumerate(gesture_asks(every, at)):
+    for n, ask in enumerate(gesture_asks(every, at), first):
         request: dict[str, Any] = {"do": ask.do, "id": f"{ident}/{n}", "late": round(ask.late, 3)}
         if ask.stroke is not None:
             stroke = round(ask.stroke, 3)

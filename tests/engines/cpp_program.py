@@ -84,7 +84,7 @@ MUTANTS = [
     ("lips.hpp", "(time - speech.end) / CLOSING", "(time - speech.end) / 1e-9", "quiet: stressed syllables"),
     ("schedule.hpp", "ways->breathing", "1.0", "calm: the models in four moods"),
     ("items.hpp", "speech->priority < last->priority", "false", "quiet: words that are said"),
-    ("hearing.hpp", "bool turns = holds3;", "bool turns = false;", "sparse: modes asked for live"),
+    ("hearing.hpp", "bool turns = holds6;", "bool turns = false;", "sparse: modes asked for live"),
     ("meaning.hpp", "at + *inner->at", "at", "stick: lines"),
     ("planner.hpp", "plan.track->stays_at(meta->request->layer, meta->start)", "false", "sparse: arms: to stay"),
 ]  # fmt: skip

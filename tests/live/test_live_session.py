@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import tracemalloc
+from collections import Counter
 from typing import Any
 
 import msgspec
@@ -20,6 +21,7 @@ from metagraph.live import limits, live_session
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Event, Reply, encode
 from metagraph.live.tick_work import Out
+from metagraph.playback.planning.cue_shapes import STOPPED
 from metagraph.playback.planning.running_plan import plan_performance
 from tests.live.traffic import mixed, valid
 from tests.posing import pose_at
@@ -55,6 +57,15 @@ def one(session: LiveSession, request: dict[str, Any] | str, client: int = 1) ->
     replies = ask(session, request, client=client)
     assert len(replies) == 1
     return replies[0]
+
+
+def heard(
+    session: LiveSession, request: dict[str, Any], client: int = 1
+) -> tuple[dict[str, Any], list[tuple[int, Event]]]:
+    """Return the reply to a request, and what is told at the same tick."""
+    session.receive(client, json.dumps(request))
+    out = session.tick(session.now + TICK)
+    return msgspec.to_builtins(out.replies[0]), out.events
 
 
 def listen(session: LiveSession, client: int = 1, events: Any = True) -> None:
@@ -151,6 +162,189 @@ def test_a_line_after_one_that_was_withdrawn_under_its_id_begins_when_the_reply_
     speech = session.plan.track.speeches[-1]
     assert told["at"] == pytest.approx(speech.start, abs=1e-3) and [*told["actions"]] == ["speech"]
     assert told["at"] > first["at"]
+
+
+def spaced(text: str, at: float = 0.0) -> list[Any]:
+    """Return the words of a text, half a second each."""
+    return [[word, at + 0.5 * n, at + 0.5 * n + 0.45] for n, word in enumerate(text.split())]
+
+
+def test_a_mood_and_a_mode_are_planned_until_something_else_comes(session: LiveSession) -> None:
+    for request in ({"do": "mood", "mood": "sad"}, {"do": "mode", "mode": "listening"}):
+        reply = one(session, request)
+        assert (reply["state"], *reply["actions"]) == ("planned", request["do"]) and "until" not in reply
+    short = one(session, {"do": "mood", "mood": "happy", "duration": 2.0})
+    assert short["until"] == pytest.approx(short["at"] + 2.0, abs=1e-3)
+
+
+def test_pieces_that_count_their_times_from_0_are_said_one_after_the_other(session: LiveSession) -> None:
+    first = one(session, {"do": "say", "id": "s", "words": spaced("the boat left early")})
+    second = one(session, {"do": "say", "id": "s", "words": spaced("and nobody")})
+    session.tick(session.now + 0.7)
+    third = one(session, {"do": "say", "id": "s", "words": spaced("saw the light")})
+    speech = session.plan.track.last_speech("c1/s")
+    assert speech is not None and speech.text == "the boat left early and nobody saw the light"
+    assert first["at"] < second["at"] < third["at"] and third["since"] == second["since"] == first["at"]
+    starts = [word.start for word in speech.timing.words] if speech.timing else []
+    assert starts == sorted(starts)
+
+
+def test_pieces_of_one_tick_are_said_one_after_the_other_too(session: LiveSession) -> None:
+    replies = ask(
+        session,
+        {"do": "say", "id": "s", "words": spaced("the boat")},
+        {"do": "say", "id": "s", "words": spaced("left early")},
+        {"do": "say", "id": "t", "text": "A first one.", "priority": 0},
+        {"do": "say", "id": "t", "text": "A second one.", "priority": 0},
+    )
+    assert [r["state"] for r in replies[:2]] == ["planned"] * 2
+    assert [s.text for s in session.plan.track.speeches] == ["the boat left early"]
+    assert [r["why"] for r in replies[2:]] == ["something more important is said then"] * 2
+
+
+def test_a_text_is_said_behind_one_of_its_id(session: LiveSession) -> None:
+    first = one(session, {"do": "say", "id": "s", "text": "It rains all day."})
+    second = one(session, {"do": "say", "id": "s", "text": "Take a coat."})
+    assert (second["at"], second["since"]) == (first["until"], first["at"])
+    ask(session, {"do": "withdraw", "what": "s"}, {"do": "say", "id": "s", "text": "Or stay here."})
+    events(session, session.now + 0.2)
+    assert session.plan.track.last_speech("c1/s").text == "Or stay here."  # type: ignore[union-attr]
+    assert session.plan.track.last_speech("c1/s").start < session.now  # type: ignore[union-attr]
+
+
+def test_words_that_come_after_their_time_are_said_when_they_come(session: LiveSession) -> None:
+    first = one(session, {"do": "say", "id": "s", "words": spaced("so we wait")})
+    events(session, first["until"] + 2.0)
+    late = one(session, {"do": "say", "id": "s", "words": spaced("for them", at=1.6)})
+    assert late["state"] == "planned" and late["at"] > session.now and late["since"] == first["at"]
+    following = one(session, {"do": "say", "id": "s", "words": spaced("all", at=2.8)})
+    assert following["at"] == pytest.approx(late["at"] + 1.2, abs=0.02)
+    told = one(session, {"do": "say", "id": "s", "words": spaced("so we")})
+    assert "told before" in told["notes"][0]
+
+
+def test_what_has_nothing_to_be_heard_is_refused(session: LiveSession) -> None:
+    reply = one(session, {"do": "say", "text": "\U0001f600 ..."})
+    assert (reply["state"], reply["why"]) == ("refused", "nothing of the text is to be said")
+    left = one(session, {"do": "say", "text": "<think>Well?</think>Good."})
+    assert (left["state"], *left["notes"]) == ("planned", "left out: thinking")
+
+
+def said_with_gestures(session: LiveSession) -> dict[str, Any]:
+    """Say something with two gestures and a look that were made for it."""
+    said = one(session, {"do": "say", "id": "s", "words": spaced("we only have to wait until it is dark")})
+    ask(
+        session,
+        {"do": "gesture", "id": "s/0", "tags": ["emphasis"], "at": said["at"] + 0.2},
+        {"do": "gesture", "id": "s/1", "tags": ["emphasis"], "at": said["at"] + 3.5},
+        {"do": "nod", "id": "s/2", "at": said["at"] + 3.0},
+        {"do": "look", "id": "s/3", "to": [1, 1, 1]},
+        {"do": "nod", "id": "apart", "at": said["at"] + 6.0},
+    )
+    return said
+
+
+def test_what_was_made_for_an_utterance_is_taken_back_with_it(session: LiveSession) -> None:
+    listen(session, 1)
+    one(session, {"do": "look", "id": "user", "to": "user"})
+    said = said_with_gestures(session)
+    told = events(session, said["at"] + 1.2)
+    gone, more = heard(session, {"do": "withdraw", "what": "s"})
+    assert (gone["spoken"], gone["last_word"]) == ("we only have", "have")
+    cut = session.now + session.project.settings.lookahead
+    (gesture,) = session.plan.layers["arms"].cues
+    assert gesture.start < session.now and gesture.end == pytest.approx(cut + STOPPED) and STOPPED <= 0.3
+    assert session.plan.track.speeches[-1].end == pytest.approx(cut)
+    assert [x.end < 1e8 for x in session.plan.track.looks] == [False, True]
+    again = one(session, {"do": "withdraw", "what": "s"})
+    assert again["why"] == "nothing waits under that id"
+    told += [*more, *events(session, said["at"] + 9.0)]
+    ends = [(e.id, e.reason) for _, e in told if e.event == "ended"]
+    assert sorted(ends, key=str) == [
+        ("apart", "finished"), *((f"s{part}", "withdrawn") for part in ("", "/0", "/1", "/2")),
+    ]  # fmt: skip
+    speech = next(e for _, e in told if e.event == "ended" and e.id == "s")
+    assert (speech.spoken, speech.last_word) == ("we only have", "have")
+
+
+def test_gestures_of_words_that_are_said_no_more_do_not_begin(session: LiveSession) -> None:
+    listen(session, 1)
+    said = said_with_gestures(session)
+    told = events(session, said["at"] + 1.0)
+    told += heard(session, {"do": "say", "id": "s", "text": "No, we go now."})[1]
+    told += events(session, said["at"] + 9.0)
+    started = [e.id for _, e in told if e.event == "started"]
+    assert started == ["s", "s/0", "s", "apart"]
+    ends = sorted((str(e.id), e.reason) for _, e in told if e.event == "ended" and e.id != "apart")
+    assert ends == [
+        ("s", "finished"), ("s", "replaced"), *((f"s/{n}", "replaced") for n in range(3)),
+    ]  # fmt: skip
+
+
+def test_withdrawing_all_leaves_the_look_at_the_user(session: LiveSession) -> None:
+    ask(session, {"do": "look", "to": "user"}, {"do": "say", "text": "It rains all day."})
+    events(session, session.now + 0.5)
+    gone = one(session, {"do": "withdraw"})
+    assert gone["why"].startswith("1 taken back") and gone["spoken"] == "It rains"
+    assert [look.end for look in session.plan.track.looks] == [pytest.approx(1e9)]
+
+
+def test_who_is_interrupted_is_told_so(session: LiveSession) -> None:
+    listen(session, 1)
+    said = one(session, {"do": "say", "id": "s", "text": "It rains all day.", "duration": 4.0}, client=1)
+    told = events(session, said["at"] + 1.9)
+    one(session, {"do": "say", "text": "Stop."}, client=2)
+    told += events(session, said["at"] + 6.0)
+    (end,) = [e for _, e in told if e.event == "ended"]
+    assert (end.id, end.reason, end.spoken) == ("s", "interrupted", "It rains all")
+
+
+def test_who_comes_back_under_a_name_owns_what_was_asked_under_it(session: LiveSession) -> None:
+    one(session, {"do": "hello", "name": "Ada"}, client=1)
+    said = one(session, {"do": "say", "text": "It rains all day.", "duration": 5.0}, client=1)
+    one(session, {"do": "gesture", "id": "g", "at": 6.0}, client=1)
+    events(session, said["at"] + 1.0)
+    session.leave(1)
+    one(session, {"do": "hello", "name": "Ben", "events": True}, client=2)
+    assert one(session, {"do": "withdraw"}, client=2)["why"] == "nothing waits"
+    one(session, {"do": "hello", "name": "Ada", "events": True}, client=3)
+    gone, told = heard(session, {"do": "withdraw", "what": said["id"]}, client=3)
+    assert gone["why"].startswith("1 taken back") and gone["id"] not in (said["id"], "#1")
+    told += heard(session, {"do": "withdraw", "what": "g"}, client=3)[1]
+    assert not session.plan.layers["arms"].cues
+    told += events(session, session.now + 1.0)
+    assert {(c, e.event, e.id) for c, e in told} == {(3, "ended", said["id"]), (3, "ended", "g")}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_was_promised_ends_once(sample: Project, seed: int) -> None:
+    r = random.Random(seed)
+    session = LiveSession(sample, idle=seed % 2 == 0)
+    listen(session, 1)
+    promised: Counter[str] = Counter()
+    told = []
+    for _ in range(30):
+        ident = r.choice("ab")
+        request = r.choice([
+            {"do": "say", "id": ident, "text": "It rains all day."},
+            {"do": "say", "id": ident, "words": spaced("we wait here", at=r.choice([0.0, 1.5]))},
+            {"do": "gesture", "id": f"{ident}/{r.randint(0, 1)}", "late": r.choice([0.0, 2.0])},
+            {"do": "withdraw", "what": r.choice([ident, f"{ident}/1", ""])},
+        ])  # fmt: skip
+        session.receive(r.choice([1, 1, 1, 2]) if request["do"] == "say" else 1, json.dumps(request))
+        out = session.tick(session.now + TICK)
+        told += out.events
+        (reply,) = out.replies
+        if isinstance(reply, Reply) and reply.state in ("planned", "late") and request["do"] != "withdraw":
+            promised[str(request["id"])] += 1
+        told += events(session, session.now + r.choice([0.0, 0.1, 0.7]))
+    told += events(session, session.now + 20.0)
+    ends = Counter(str(e.id) for _, e in told if e.event == "ended")
+    assert ends and all(ends[ident] <= count for ident, count in promised.items())
+    runs: set[str] = set()
+    for _, event in told:
+        (runs.add if event.event == "started" else runs.discard)(str(event.id))
+    assert not runs
 
 
 @pytest.mark.parametrize(
@@ -590,7 +784,10 @@ def test_an_edited_project_is_played_on(sample: Project) -> None:
     )
     session.change(gone)
     told = session.tick(session.now + TICK).events
-    assert [(e.event, e.id, e.state) for _, e in told] == [("changed", "w", "refused")]
+    assert [(e.event, e.id, e.state, e.reason) for _, e in told] == [
+        ("changed", "w", "refused", None),
+        ("ended", "w", None, "dropped"),
+    ]
     assert one(session, {"do": "action", "action": "wave_hello_rt_01"})["state"] == "refused"
 
 

@@ -184,21 +184,20 @@ def test_a_client_that_is_not_ours_moves_the_character(tmp_path: Path) -> None:
     assert described["told"]["project"] == "sample" and playing["told"]["t"] > 0
 
 
-def test_what_a_text_made_is_taken_back_with_it(session: Session) -> None:
+def test_what_a_text_made_goes_by_its_id_and_begins_with_its_own_words(session: Session) -> None:
     said = {"text": "Hello there! This is a very big idea.", "id": "answer"}
     session.called("tools/call", name="say", arguments=said)
     session.line.send([(b'{"id":"answer","state":"planned","at":1.0}', False)])
-    made = [json.loads(x or b"")["id"] for x in session.asked[1:]]
-    assert made
+    made = [json.loads(x or b"") for x in session.asked[1:]]
+    assert made and [x["id"] for x in made] == [f"answer/{n}" for n in range(len(made))]
     session.line.send([(b'{"state":"planned"}', False)] * len(made))
     before = len(session.asked)
-    session.called("tools/call", name="withdraw", arguments={"what": "answer"})
-    asked = [json.loads(x or b"") for x in session.asked[before:]]
-    assert [x["what"] for x in asked] == [*made, "answer"] and {x["do"] for x in asked} == {"withdraw"}
-    gone = b'{"state":"done","why":"1 taken back; what has begun plays on"}'
-    session.line.send([(gone, False)] * len(asked))
-    result = session.told[-1]["result"]["structuredContent"]
-    assert result["why"].startswith(f"{len(asked)} taken back")
+    words = [["Hello", 2.0, 2.4], ["again", 2.5, 3.0]]
+    more = {"text": "Hello again", "id": "answer", "words": words}
+    session.called("tools/call", name="say", arguments=more)
+    session.line.send([(b'{"id":"answer","state":"planned","at":4.0,"since":1.0}', False)])
+    added = [json.loads(x or b"") for x in session.asked[before + 1 :]]
+    assert added[0]["id"] == f"answer/{len(made)}" and added[0]["stroke"] == pytest.approx(4.0, abs=0.5)
 
 
 @pytest.mark.parametrize("count", [0, 101])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import struct
 from typing import Any
 
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import requests as a
 from metagraph.live.hub import Hub
-from metagraph.live.messages import HeardMessage, Hello, Poses, encode, read_live_request
+from metagraph.live.messages import HeardMessage, Hello, Poses, Reply, encode, read_live_request
 from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, request, texts_of
 from metagraph.live.osc_bytes import pad_osc
 
@@ -176,6 +177,23 @@ def test_a_bundle_begins_when_its_time_tag_says(ahead: float | None, begins: flo
     data = b"#bundle\0" + tag.to_bytes(8, "big") + b"".join(len(m).to_bytes(4, "big") + m for m in messages)
     gesture, nod, status = (json.loads(text) for _, text in texts_of(data, now))  # type: ignore[arg-type]
     assert gesture.get("in") == begins and nod["in"] == 0.5 and "in" not in status
+
+
+def message(address: str, value: Any) -> bytes:
+    """Return an OSC message of one number or truth value."""
+    if isinstance(value, bool):
+        return pad_osc(address) + pad_osc(",T" if value else ",F")
+    return pad_osc(address) + pad_osc(",f") + struct.pack(">f", value)
+
+
+@pytest.mark.parametrize("value", [0, 0.0, False])
+def test_a_button_that_is_let_go_asks_for_nothing_and_is_told_so(value: Any) -> None:
+    ((_, let_go),) = texts_of(message("/metagraph/nod", value))
+    assert isinstance(let_go, Reply) and let_go.state == "done" and "let go" in let_go.why
+    ((_, pressed),) = texts_of(message("/metagraph/nod", 1))
+    assert isinstance(pressed, bytes)
+    ((_, line),) = texts_of(message("/metagraph/say", value))
+    assert isinstance(line, bytes), "a line may be called 0"
 
 
 def test_a_bundle_for_too_far_ahead_is_refused_with_a_reason() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,15 @@ def test_weights_of_morph_targets_come_in_the_order_of_the_greeting(sample: Proj
     data = frame(stream, 2.5, pose_at(LiveSession(sample).plan, sample, 1.0), None, {"b": 0.5, "other": 1.0})
     assert HEADER.unpack_from(data)[1:] == (0, 0, 3, 0, 2.5)
     assert np.frombuffer(data, "<f4", offset=HEADER.size)[3:].tolist() == [0.0, 0.5, 0.0]
+
+
+def test_weights_are_there_at_rest_too(sample: Project) -> None:
+    stream = Stream.of(Poses(joints=()), sample, 0.0)
+    stream.morphs = ("a", "b")
+    pose = pose_at(LiveSession(sample).plan, sample, 1.0)
+    assert json.loads(frame(stream, 2.5, pose, None, {"b": 0.5}))["weights"] == {"a": 0.0, "b": 0.5}
+    stream.wish = Poses(joints=(), format="osc")
+    assert b"/metagraph/weight\0\0\0,sf\0a" in frame(stream, 2.5, pose, None, {})
 
 
 def test_what_is_not_there_cannot_be_streamed(sample: Project) -> None:

@@ -41,9 +41,28 @@ _VOWEL_LENGTH = 1.25  # of one character's time
 _CONSONANT_LENGTH = 0.8
 _STOPS: dict[str, float] = {
     ",": 1.5, ";": 2.0, ":": 2.0, ".": 3.0, "!": 3.0, "?": 3.0, "…": 3.0, "-": 0.3, "–": 1.5, "—": 1.5,
-    "(": 1.0, ")": 1.0,
+    "(": 1.0, ")": 1.0, "，": 1.5, "、": 1.5, "。": 3.0, "！": 3.0, "？": 3.0,
 }  # fmt: skip
 _BLANK = 0.35  # characters' time of anything else between words
+
+
+@dataclass(frozen=True, slots=True)
+class Syllabary:
+    """Letters that are syllables, by their code points. size: characters' time of one."""
+
+    first: int
+    last: int
+    size: float
+
+
+_SYLLABARIES: tuple[Syllabary, ...] = (
+    Syllabary(0x3041, 0x30FF, 2.0),  # kana
+    Syllabary(0xFF66, 0xFF9D, 2.0),  # kana of half the width
+    Syllabary(0x3400, 0x9FFF, 3.0),  # Han characters
+    Syllabary(0xF900, 0xFAFF, 3.0),
+    Syllabary(0x20000, 0x323AF, 3.0),
+    Syllabary(0xAC00, 0xD7A3, 3.0),  # Hangul
+)
 
 
 def shapes(alphabet: Alphabet, word: str) -> list[str]:
@@ -150,7 +169,18 @@ class Spelled:
 
 def read_aloud(alphabet: Alphabet, text: str) -> float:
     """Return how long a text takes to say, seconds."""
-    return max(SHORTEST, len(alphabet.letters(alphabet.stripped(text))) / PACE)
+    letters = alphabet.letters(alphabet.stripped(text))
+    return max(SHORTEST, sum([_size_of(alphabet.code(letter)) for letter in letters]) / PACE)
+
+
+def _size_of(code: int) -> float:
+    """Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean
+    is a syllable.
+    """
+    for script in _SYLLABARIES:
+        if script.first <= code and code <= script.last:
+            return script.size
+    return 1.0
 
 
 def spelled(alphabet: Alphabet, text: str, duration: float) -> Spelled:

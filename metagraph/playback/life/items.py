@@ -14,6 +14,8 @@ from metagraph.playback.life.line_timing import (
     LineTiming,
     alike_timings,
     extended,
+    placed,
+    shifted,
     tells_on,
     timed_seconds,
     told_text,
@@ -123,6 +125,18 @@ def apart(speeches: Sequence[Speech]) -> list[Speech]:
     return out
 
 
+def behind(said: Sequence[Speech], new: Speech, now: float) -> Speech:
+    """Return a text that comes while another one of its id is said: it is said after that. said: in order."""
+    if new.timing is not None or new.line is not None or new.start > now:
+        return new
+    end = new.start
+    for speech in said:
+        plain = speech.timing is None and speech.line is None and speech.length is None
+        if speech.id == new.id and plain and speech.start <= end and end < speech.end:
+            end = speech.end
+    return new if end == new.start else replace(new, start=end, end=end + (new.end - new.start))
+
+
 def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
     """Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it
     keeps its start and what has been said of it. Only lines whose words or shapes were told with their times
@@ -132,9 +146,11 @@ def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
         return new
     if max(old.start, new.start) > now and old.start != new.start:
         return new
-    if old.end <= now and not tells_on(old.timing, new.timing):
+    said = max(now - old.start, 0.0)
+    if old.end <= now and not tells_on(old.timing, shifted(new.timing, old.timing.later)):
         return new
-    timing = extended(old.timing, new.timing, max(now - old.start, 0.0))
+    told = new.timing if old.start > now else placed(old.timing, new.timing, said)
+    timing = extended(old.timing, told, said)
     length = max(timed_seconds(timing, None), new.end - new.start)
     more = new.text == "" or new.text == told_text(new.timing)
     return replace(

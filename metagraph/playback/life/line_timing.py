@@ -69,10 +69,13 @@ class VisemeMark:
 
 @dataclass(frozen=True, slots=True)
 class LineTiming:
-    """A line's words and mouth shapes, each by time."""
+    """A line's words and mouth shapes, each by time. later: seconds by which what is told later is said
+    later, because something came after its time.
+    """
 
     words: tuple[SpokenWord, ...] = ()
     marks: tuple[VisemeMark, ...] = ()
+    later: float = 0.0
 
 
 def alike_timings(one: LineTiming | None, other: LineTiming | None) -> bool:
@@ -185,12 +188,7 @@ def timed_seconds(timing: LineTiming, duration: float | None) -> float:
     """Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves
     nothing. duration: of its sound, None for as long as its words and shapes need.
     """
-    last = 0.0
-    for word in timing.words:
-        last = max(last, word.start if word.end is None else word.end)
-    if len(timing.marks) > 0:
-        mark = timing.marks[-1]
-        last = max(last, mark.at + (0.0 if mark.viseme == "sil" else SHAPE))
+    last = _end_of(timing)
     return ceil((last + LATE if duration is None else max(duration, last)) / STEP - 1e-6) * STEP
 
 
@@ -251,6 +249,75 @@ def tells_on(old: LineTiming, new: LineTiming) -> bool:
     return False
 
 
+def shifted(timing: LineTiming, by: float) -> LineTiming:
+    """Return a timing `by` seconds later."""
+    if by == 0:
+        return timing
+    words = [
+        SpokenWord(word.text, word.start + by, None if word.end is None else word.end + by)
+        for word in timing.words
+    ]
+    return LineTiming(tuple(words), tuple([replace(mark, at=mark.at + by) for mark in timing.marks]))
+
+
+def placed(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
+    """Return what is told of a line later, when it is said: a piece that counts its times from its own
+    beginning comes after what was told, and what comes after its time is said at once, and so is what
+    follows it. said: seconds of the line that are over.
+    """
+    end = _end_of(old)
+    if restarts(old, new, said):
+        return replace(shifted(new, max(said, end)), later=old.later)
+    told = shifted(new, old.later)
+    by = 0.0
+    if len(old.words) > 0 and len(told.words) > 0:
+        words = [word for word in told.words if word.start > old.words[-1].start]
+        if len(words) > 0 and max([_end(word) for word in words]) <= said:
+            by = max(said, end) - words[0].start
+    elif len(old.marks) > 0 and len(told.marks) > 0:
+        marks = [mark for mark in told.marks if mark.at > old.marks[-1].at]
+        if len(marks) > 0 and marks[-1].at + SHAPE <= said:
+            by = max(said, end) - marks[0].at
+    return replace(shifted(told, by), later=old.later + by)
+
+
+def restarts(old: LineTiming, new: LineTiming, said: float) -> bool:
+    """Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line
+    begins, and does not tell that again.
+    """
+    if len(old.words) > 0 and len(new.words) > 0:
+        same = 0
+        while same < min(len(old.words), len(new.words)) and _alike(old.words[same], new.words[same]):
+            same += 1
+        again = same > 0 and len(new.words) >= len(old.words)
+        return same < len(new.words) and not again and new.words[0].start < _end(old.words[0])
+    if len(old.marks) > 0 and len(new.marks) > 0:
+        again = all(
+            a.viseme == b.viseme and abs(a.at - b.at) < SLACK
+            for a, b in zip(old.marks, new.marks, strict=False)
+        )
+        first = new.marks[0].at
+        return not again and first < old.marks[0].at + SLACK and first < said
+    return False
+
+
+def _alike(one: SpokenWord, other: SpokenWord) -> bool:
+    return one.text == other.text and abs(one.start - other.start) < SLACK
+
+
+def _end(word: SpokenWord) -> float:
+    return word.start if word.end is None else word.end
+
+
+def _end_of(timing: LineTiming) -> float:
+    """Return when the last word or shape is over."""
+    end = max([0.0, *[_end(word) for word in timing.words]])
+    if len(timing.marks) > 0:
+        mark = timing.marks[-1]
+        end = max(end, mark.at + (0.0 if mark.viseme == "sil" else SHAPE))
+    return end
+
+
 def extended(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
     """Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up
     to where the new begins; of a word or a shape that has begun meanwhile the rest is said.
@@ -284,7 +351,7 @@ def extended(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
         until = max(said, new.marks[0].at)
         marks = [mark for mark in old.marks if mark.at < until]
         marks.extend(shown)
-    return LineTiming(tuple(words), tuple(marks))
+    return LineTiming(tuple(words), tuple(marks), new.later)
 
 
 def _told(marks: Sequence[VisemeMark], mark: VisemeMark) -> bool:

@@ -16,6 +16,7 @@ from metagraph.playback.timing.phases import phases
 
 FITS = 1e-6  # seconds by which sums of times may be off
 HURRY = 2.0  # a hold is played at most this many times as fast as it was made
+STOPPED = 0.3  # seconds in which an action that is taken back goes back to its stance, from where it is
 RETRACTION = 0.4  # seconds in which an action whose retraction is cut goes back to its stance, at the least
 SHARED = 0.25  # seconds within which two strokes may be one
 

@@ -8,11 +8,12 @@ from typing import Any, Literal
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.playback.life.items import StayFrom
+from metagraph.playback.life.items import BlinkAt, ModeFrom, PlaceFrom, StayFrom
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import Revision, extend_plan
 from metagraph.playback.planning.hearing import heard, owners
 from metagraph.playback.planning.markov import model
+from metagraph.playback.planning.meaning import FOREVER
 from metagraph.playback.planning.remembering import remember
 from metagraph.playback.planning.understand import understand
 
@@ -48,7 +49,7 @@ def hear_asks(
         else []
     )
     plan = replace(plan, track=found.track)
-    revision = Revision(frozenset(found.withdrawn), leave)
+    revision = Revision(frozenset(found.withdrawn), frozenset(found.stopped), leave)
     after = extend_plan(project, plan, fixed, meant.requests, end, stances, idle, revision)
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
 
@@ -123,7 +124,7 @@ def _answer(ident: str, found: _Found) -> AskAnswer:
     why = "; ".join(dict.fromkeys(r.message for r in told))
     if cues or items:
         starts = [c.start for c in cues] + [i.start for i in items]
-        ends = [c.end for c in cues] + [getattr(i, "end", i.start) for i in items]
+        ends = [c.end for c in cues] + [item_end(i) for i in items]
         late = any(r.outcome in ("late", "queued", "resumed") for r in told)
         what = (*(c.action.name for c in cues), *(_words(i) for i in items))
         return AskAnswer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
@@ -139,6 +140,13 @@ def _answer(ident: str, found: _Found) -> AskAnswer:
             why or "chosen when its time is nearer",
         )
     return AskAnswer(ident, "refused", None, None, (), why or "nothing came of it")
+
+
+def item_end(item: Any) -> float:
+    """Return when something that lasts ends: a mode or a place when another one comes, a blink at once."""
+    if isinstance(item, ModeFrom | PlaceFrom):
+        return FOREVER
+    return float(item.start if isinstance(item, BlinkAt) else item.end)
 
 
 def _words(item: object) -> str:

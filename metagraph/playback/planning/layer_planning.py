@@ -78,6 +78,7 @@ def draft(
     now: float,
     fresh: Sequence[MetaRequest],
     replaced: AbstractSet[str],
+    stopped: AbstractSet[str],
     end: float,
     stance: str | None,
     moods: Moods,
@@ -86,7 +87,8 @@ def draft(
 
     chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of
     the plan so far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or
-    withdrawn. stance: which the layer would begin in. moods: what it is in the mood for, and when.
+    withdrawn; stopped: those withdrawn, whose running action is left. stance: which the layer would begin
+    in. moods: what it is in the mood for, and when.
     """
     layer = graph.layer
     asked = [meta_of(in_time(request, moods)) for request in fresh if request.layer == layer]
@@ -150,7 +152,7 @@ def draft(
     performer.begun = {cue.meta for cue in kept if cue.meta in waiting}
     if len(kept) > 0 and kept[-1].end > now:
         running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
-        performer.make_way(running, asked, now)
+        performer.make_way(running, asked, now, running is not None and running.request.id in stopped)
     performer.free = max(now - (performer.ready - performer.free), performer.free)
     asked, delayed = delay(asked, performer.ready, project.settings)
     busy = float("-inf")  # what runs keeps the time it was wanted for, from the models

@@ -16,6 +16,7 @@ from metagraph.playback.planning.choice import pick, uniform
 from metagraph.playback.planning.cue_shapes import (
     FITS,
     RETRACTION,
+    STOPPED,
     CueShape,
     fits_before,
     hurried,
@@ -278,14 +279,21 @@ class Performer:
                 return max(soonest, begins(other) - rest)
         return float("inf")
 
-    def make_way(self, running: MetaAction | None, asked: Sequence[MetaAction], now: float) -> None:
-        """Leave the running action early for the first of what is asked for that can be in time then. What a
-        model wrote is left at once, what was asked for where its retraction begins.
+    def make_way(
+        self, running: MetaAction | None, asked: Sequence[MetaAction], now: float, stopped: bool
+    ) -> None:
+        """Leave the running action early for the first of what is asked for that can be in time then, and
+        where it was `stopped` in any case. What a model wrote, or is less important, is left at once, the
+        rest where its retraction begins.
         """
+        if stopped:
+            self.retract(now)
+            return
         cue = self.cues[-1]
         if running is None or cue.action.kind == "transition" or cue.end - cue.blend_out <= now:
             return
-        soonest = now + max(cue.blend_out, RETRACTION)
+        at_once = now + max(cue.blend_out, RETRACTION)
+        retracts = at_once
         if not running.written:
             once = cue.end - cue.start
             if cue.repeats:
@@ -294,11 +302,12 @@ class Performer:
                 cue.start, cue.entry, cue.end - cue.start, once,
                 cue.hold_from, cue.hold_to, cue.hold, cue.tempo,
             )  # fmt: skip
-            soonest = max(soonest, cue.start + hurried(self.project, cue.action, shape))
+            retracts = max(at_once, cue.start + hurried(self.project, cue.action, shape))
         rest = self.project.settings.rest
         for meta in asked:
             request = meta.request
             in_time = self._latest(request) + slack_of(request)
+            soonest = at_once if meta.rank > running.rank else retracts
             if request.late is None or meta.rank < running.rank or in_time < soonest + rest - FITS:
                 continue
             end = max(soonest, begins(meta) - rest)
@@ -309,6 +318,18 @@ class Performer:
                 self.free = end
                 self.ended[cue.action.id] = end
             return
+
+    def retract(self, now: float) -> None:
+        """Leave the running action: it goes back to its stance from where it is. A transition ends where it
+        leads.
+        """
+        cue = self.cues[-1]
+        end = now + STOPPED
+        if cue.action.kind == "transition" or cue.end - cue.blend_out <= now or cue.end <= end:
+            return
+        self.cues[-1] = replace(cue, end=end, blend_out=STOPPED)
+        self.free = end
+        self.ended[cue.action.id] = end
 
     def _cooled(self, action: Action) -> float:
         """Return when an action may be drawn again."""

@@ -119,7 +119,7 @@ int main(int, char**) {{
     const auto extend = [&](double now, int first, int last, Set<std::string> gone, double end) {{
         const auto drafted = layer_planning::draft(
             project, graph, chain(), kinds, plan, reports, {LAYER_SEED}, now,
-            lang::part(every, first, last), gone, end, std::nullopt,
+            lang::part(every, first, last), gone, gone, end, std::nullopt,
             made<Moods>(made<Mood>(), List<Ref<MoodFrom>>{{made<MoodFrom>("sad", 600.0, -0.7, -0.4),
                 made<MoodFrom>("loud", 2400.0, 0.5, 0.9, 1.5)}}));
         plan = drafted->performed(drafted->placed, end);

@@ -75,7 +75,20 @@ def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, cpp_probe
         (3550.0, [], set[str](), 3660.0),
     ):
         drafted = layer_planning.draft(
-            project, graph, markov.ARMS, kinds, plan, reports, LAYER_SEED, now, fresh, gone, end, None, MOODS
+            project,
+            graph,
+            markov.ARMS,
+            kinds,
+            plan,
+            reports,
+            LAYER_SEED,
+            now,
+            fresh,
+            gone,
+            gone,
+            end,
+            None,
+            MOODS,
         )
         plan = drafted.performed(drafted.placed, end)
         reports = drafted.reports

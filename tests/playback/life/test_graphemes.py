@@ -35,6 +35,18 @@ def test_writing_without_letters_gives_a_syllable_a_sign() -> None:
     assert len(shapes(ALPHABET, "日本語")) == 6 and len(shapes(ALPHABET, "2024")) == 8
 
 
+@pytest.mark.parametrize(
+    ("text", "least", "most"),
+    [
+        ("今天下雨我们在家里看书", 2.0, 3.0),
+        ("きょうはあめがふります", 1.3, 2.2),
+        ("오늘은 비가 와요", 1.2, 2.0),
+    ],
+)
+def test_each_sign_that_is_a_syllable_takes_a_syllables_time(text: str, least: float, most: float) -> None:
+    assert least < read_aloud(ALPHABET, text) < most
+
+
 @pytest.mark.parametrize("text", ["", "   ", "?!", "…"])
 def test_nothing_to_say_has_no_shapes_but_a_length(text: str) -> None:
     said = spelled(ALPHABET, text, 1.0)

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.plan import Cue, Plan
+from metagraph.playback.planning.cue_shapes import STOPPED
 from metagraph.playback.planning.extend_performance import answer_ask, hear_asks, since
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
@@ -250,9 +251,37 @@ def test_a_withdrawn_ask_does_not_play_and_one_that_plays_goes_on(sample: Projec
     plan = plan_performance(sample, asks, 20, idle=False)
     after = hear_asks(sample, plan, 1.5, [a.Withdraw(id="w")], 20, idle=False)
     assert [c.meta for c in after.layers["arms"].cues] == ["early"]
-    assert not after.track.looks
+    assert not after.track.looks, "it has not begun"
     one = hear_asks(sample, plan, 1.5, [a.Withdraw(id="w", what="late")], 20, idle=False)
     assert [c.meta for c in one.layers["arms"].cues] == ["early"] and len(one.track.looks) == 1
+
+
+def test_a_withdrawn_action_is_left_from_where_it_is_and_a_change_of_stance_is_not(sample: Project) -> None:
+    asks = [a.Gesture(id="g", at=1.0), a.Go(id="go", at=1.0, stance="head tilt left", layer="head")]
+    plan = plan_performance(sample, asks, 20, idle=False)
+    (change, *_), (gesture,) = plan.layers["head"].cues, plan.layers["arms"].cues
+    after = hear_asks(sample, plan, 1.3, [a.Withdraw(id="w")], 20, idle=False)
+    (left,) = after.layers["arms"].cues
+    assert left.end == pytest.approx(1.3 + sample.settings.lookahead + STOPPED) and left.end < gesture.end
+    assert (left.blend_in, left.blend_out) == (gesture.blend_in, STOPPED)
+    assert after.layers["head"].cues[0] == change
+
+
+def test_what_is_said_takes_the_gestures_along_that_were_made_for_it(sample: Project) -> None:
+    said = [
+        a.Say(id="s", text="It rains all day, so take a coat.", at=1.0),
+        *(a.Gesture(id=f"s/{n}", at=2.0 + 4 * n) for n in range(2)),
+        a.Gesture(id="s/x", at=11.0),
+    ]
+    plan = plan_performance(sample, said, 20, idle=False)
+    gone = hear_asks(sample, plan, 3.0, [a.Withdraw(id="w", what="s")], 20, idle=False)
+    assert [c.meta for c in gone.layers["arms"].cues] == ["s/0", "s/x"]
+    anew = hear_asks(sample, plan, 3.0, [a.Say(id="s", words=(["Stop", 0.0, 0.5],))], 20, idle=False)
+    assert [c.meta for c in anew.layers["arms"].cues] == ["s/0", "s/x"]
+    more = hear_asks(sample, plan, 3.0, [a.Say(id="s", text="And boots.")], 20, idle=False)
+    assert [c.meta for c in more.layers["arms"].cues] == ["s/0", "s/1", "s/x"]
+    first, second = more.track.speeches
+    assert second.start == first.end and first.length is None
 
 
 def test_the_same_id_again_replaces_what_was_asked(sample: Project) -> None:

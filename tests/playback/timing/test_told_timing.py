@@ -203,7 +203,7 @@ def test_what_has_been_said_stands_whatever_comes_later(sample: Project) -> None
         1.0, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["two", 0.9, 1.2]]})]
     )
     running.hear(
-        1.6, [a.request_from({"do": "say", "id": "s", "words": [["won", 0.1, 0.4], ["too", 0.9, 1.3]]})]
+        1.6, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["too", 0.9, 1.3]]})]
     )
     (speech,) = running.plan.track.speeches
     assert speech.timing is not None and [w.text for w in speech.timing.words] == ["one", "too"]
@@ -240,6 +240,45 @@ def test_words_that_come_after_a_line_has_run_out_still_belong_to_it(
     running.hear(first.end + 0.2, [a.request_from({"do": "say", "id": "s", "words": more})])
     last = running.plan.track.last_speech("s")
     assert last is not None and last.start == first.start and last.text == "Hello there again"
+
+
+def hear_words(running: RunningPlan, now: float, *words: list[Any]) -> list[str]:
+    """Say words under one id; return all that is said under it, in order, with when it begins."""
+    running.hear(now, [a.request_from({"do": "say", "id": "s", "words": list(words)})])
+    speech = running.plan.track.last_speech("s")
+    assert speech is not None and speech.timing is not None
+    return [f"{word.text} {word.start:.1f}" for word in speech.timing.words]
+
+
+def test_a_piece_that_begins_at_0_again_comes_after_what_was_told(sample: Project) -> None:
+    running = RunningPlan(sample, idle=False)
+    hear_words(running, 1.0, ["I", 0.0, 0.3], ["saw", 0.4, 0.9])
+    assert hear_words(running, 1.1, ["I", 0.0, 0.3]) == ["I 0.0", "saw 0.4"], "it is told again"
+    hear_words(running, 1.2, ["a", 0.0, 0.1], ["bird", 0.1, 0.6])
+    said = hear_words(running, 2.0, ["today", 0.0, 0.5])
+    assert said == ["I 0.0", "saw 0.4", "a 0.9", "bird 1.0", "today 1.5"]
+
+
+def test_words_that_are_late_are_said_at_once_and_what_follows_them_keeps_its_distance(
+    sample: Project,
+) -> None:
+    running = RunningPlan(sample, idle=False)
+    hear_words(running, 1.0, ["I", 0.0, 0.3], ["saw", 0.4, 0.9])
+    hear_words(running, 4.0, ["a", 1.0, 1.1], ["bird", 1.2, 1.6])
+    assert hear_words(running, 4.2, ["today", 1.8, 2.2]) == [
+        "I 0.0", "saw 0.4", "a 3.0", "bird 3.2", "today 3.8",
+    ]  # fmt: skip
+
+
+def test_shapes_that_begin_at_0_again_come_after_those_that_were_told(sample: Project) -> None:
+    running = RunningPlan(sample, idle=False)
+    first, second = [[0.0, "aa"], [0.4, "sil"]], [[0.0, "O"], [0.3, "sil"]]
+    for now, marks in ((1.0, first), (1.3, second)):
+        running.hear(now, [a.request_from({"do": "say", "id": "s", "visemes": marks})])
+    (speech,) = running.plan.track.speeches
+    assert speech.timing is not None
+    assert [m.viseme for m in speech.timing.marks if m.viseme != "sil"] == ["aa", "O"]
+    assert speech.timing.marks[-1].at == pytest.approx(0.7)
 
 
 def test_another_line_is_another_line(sample: Project) -> None:

@@ -23,6 +23,8 @@ namespace cue_shapes {
 
 inline constexpr double FITS = 1e-06; // seconds by which sums of times may be off
 inline constexpr double HURRY = 2.0; // a hold is played at most this many times as fast as it was made
+// seconds in which an action that is taken back goes back to its stance, from where it is
+inline constexpr double STOPPED = 0.3;
 // seconds in which an action whose retraction is cut goes back to its stance, at the least
 inline constexpr double RETRACTION = 0.4;
 inline constexpr double SHARED = 0.25; // seconds within which two strokes may be one

@@ -11,6 +11,7 @@
 
 namespace metagraph {
 
+struct Syllabary;
 struct SpelledSound;
 struct Spelled;
 
@@ -162,9 +163,22 @@ inline const Map<std::string, double> _STOPS = Map<std::string, double>{
     {"–", 1.5},
     {"—", 1.5},
     {"(", 1.0},
-    {")", 1.0}
+    {")", 1.0},
+    {"，", 1.5},
+    {"、", 1.5},
+    {"。", 3.0},
+    {"！", 3.0},
+    {"？", 3.0}
 };
 inline constexpr double _BLANK = 0.35; // characters' time of anything else between words
+inline const List<Ref<Syllabary>> _SYLLABARIES = List<Ref<Syllabary>>{
+    lang::made<Syllabary>(12353, 12543, 2.0),
+    lang::made<Syllabary>(65382, 65437, 2.0),
+    lang::made<Syllabary>(13312, 40959, 3.0),
+    lang::made<Syllabary>(63744, 64255, 3.0),
+    lang::made<Syllabary>(131072, 205743, 3.0),
+    lang::made<Syllabary>(44032, 55203, 3.0)
+};
 inline List<std::string> shapes(const Ref<Alphabet>& alphabet, const std::string& word);
 inline List<std::string> _unknown(
     const Ref<Alphabet>& alphabet,
@@ -174,9 +188,20 @@ inline List<std::string> _unknown(
 inline List<std::tuple<std::string, double>> _words(const Ref<Alphabet>& alphabet, const std::string& text);
 inline List<Ref<SpelledSound>> sounds(const Ref<Alphabet>& alphabet, const std::string& word);
 inline double read_aloud(const Ref<Alphabet>& alphabet, const std::string& text);
+inline double _size_of(int code);
 inline Ref<Spelled> spelled(const Ref<Alphabet>& alphabet, const std::string& text, double duration);
 
 }  // namespace graphemes
+
+/// Letters that are syllables, by their code points. size: characters' time of one.
+struct Syllabary {
+    int first;
+    int last;
+    double size;
+
+    Syllabary(int first_, int last_, double size_)
+        : first(first_), last(last_), size(size_) {}
+};
 
 /// A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what is none.
 struct SpelledSound {
@@ -341,10 +366,23 @@ inline List<Ref<SpelledSound>> sounds(const Ref<Alphabet>& alphabet, const std::
 
 /// Return how long a text takes to say, seconds.
 inline double read_aloud(const Ref<Alphabet>& alphabet, const std::string& text) {
-    return std::max(
-        graphemes::SHORTEST,
-        lang::divided(lang::len(alphabet->letters(alphabet->stripped(text))), graphemes::PACE)
-    );
+    List<std::string> letters = alphabet->letters(alphabet->stripped(text));
+    List<double> found;
+    for (const auto& letter : letters) {
+        found.push_back(graphemes::_size_of(alphabet->code(letter)));
+    }
+    return std::max(graphemes::SHORTEST, lang::sum(found) / graphemes::PACE);
+}
+
+/// Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a
+/// syllable.
+inline double _size_of(int code) {
+    for (const auto& script : graphemes::_SYLLABARIES) {
+        if (script->first <= code && code <= script->last) {
+            return script->size;
+        }
+    }
+    return 1.0;
 }
 
 /// Return what a text says in `duration` seconds; nothing where no letter of it is known.

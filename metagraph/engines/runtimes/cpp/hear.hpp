@@ -43,8 +43,8 @@ inline Answer answer(const std::string& id, const Plan& plan) {
     }
     for (const auto& x : plan.track->looks) if (of(x->id)) plays(x->start, x->end, "look");
     for (const auto& x : plan.track->speeches) if (of(x->id)) plays(x->start, x->end, "speech");
-    for (const auto& x : plan.track->modes) if (of(x->id)) plays(x->start, x->start, "mode");
-    for (const auto& x : plan.track->places) if (of(x->id)) plays(x->start, x->start, "place");
+    for (const auto& x : plan.track->modes) if (of(x->id)) plays(x->start, meaning::FOREVER, "mode");
+    for (const auto& x : plan.track->places) if (of(x->id)) plays(x->start, meaning::FOREVER, "place");
     for (const auto& x : plan.track->blinks) if (of(x->id)) plays(x->start, x->start, "blink");
     for (const auto& x : plan.track->moods) if (of(x->id)) plays(x->start, x->end, "mood");
     List<std::string> why;
@@ -127,7 +127,7 @@ inline Ref<const Plan> hear(
     }
     Plan with = plan;
     with.track = heard->track;
-    const Ref<const Plan> after = planner::extend(graph, with, fixed, meant.requests, end, options, heard->withdrawn, leave);
+    const Ref<const Plan> after = planner::extend(graph, with, fixed, meant.requests, end, options, heard->withdrawn, leave, heard->stopped);
     if (meant.refused.empty()) return after;
     auto out = lang::made<Plan>(*after);
     lang::extend(out->reports, meant.refused);

@@ -23,6 +23,7 @@ namespace items {
 
 inline Ref<Speech> cut(const Ref<Speech>& speech, double at);
 inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches);
+inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_, double now);
 inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, double now);
 inline bool alike_looks(const List<Ref<LookAt>>& one, const List<Ref<LookAt>>& other);
 inline bool _same_look(const Ref<LookAt>& a, const Ref<LookAt>& b);
@@ -182,6 +183,32 @@ inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
     return out;
 }
 
+/// Return a text that comes while another one of its id is said: it is said after that. said: in order.
+inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_, double now) {
+    if (new_->timing != nullptr || new_->line.has_value() || new_->start > now) {
+        return new_;
+    }
+    double end = new_->start;
+    for (const auto& speech : said) {
+        bool plain = speech->timing == nullptr && !speech->line.has_value() && !speech->length.has_value();
+        if (speech->id == new_->id && plain && speech->start <= end && end < speech->end) {
+            end = speech->end;
+        }
+    }
+    return end == new_->start
+        ? new_
+        : lang::made<Speech>(
+            new_->id,
+            end,
+            end + (new_->end - new_->start),
+            new_->line,
+            new_->text,
+            new_->priority,
+            new_->length,
+            new_->timing
+        );
+}
+
 /// Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start
 /// and what has been said of it. Only lines whose words or shapes were told with their times do.
 inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, double now) {
@@ -191,10 +218,13 @@ inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, dou
     if (std::max(old->start, new_->start) > now && old->start != new_->start) {
         return new_;
     }
-    if (old->end <= now && !line_timing::tells_on(old->timing, new_->timing)) {
+    double said = std::max(now - old->start, 0.0);
+    if (old->end <= now
+        && !line_timing::tells_on(old->timing, line_timing::shifted(new_->timing, old->timing->later))) {
         return new_;
     }
-    Ref<LineTiming> timing = line_timing::extended(old->timing, new_->timing, std::max(now - old->start, 0.0));
+    Ref<LineTiming> told = old->start > now ? new_->timing : line_timing::placed(old->timing, new_->timing, said);
+    Ref<LineTiming> timing = line_timing::extended(old->timing, told, said);
     double length = std::max(line_timing::timed_seconds(timing, std::nullopt), new_->end - new_->start);
     bool more = new_->text == "" || new_->text == line_timing::told_text(new_->timing);
     return lang::made<Speech>(

@@ -32,6 +32,7 @@ inline Ref<LayerDraft> draft(
     double now,
     const List<Ref<MetaRequest>>& fresh,
     const Set<std::string>& replaced,
+    const Set<std::string>& stopped,
     double end,
     const std::optional<std::string>& stance,
     const Ref<Moods>& moods
@@ -105,8 +106,9 @@ namespace layer_planning {
 /// Return a layer's plan taken back to `now`, with what is asked for placed anew.
 ///
 /// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
-/// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the
-/// layer would begin in. moods: what it is in the mood for, and when.
+/// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those
+/// withdrawn, whose running action is left. stance: which the layer would begin in. moods: what it is in the mood for,
+/// and when.
 inline Ref<LayerDraft> draft(
     const Ref<Project>& project,
     const Ref<MetaGraph>& graph,
@@ -118,6 +120,7 @@ inline Ref<LayerDraft> draft(
     double now,
     const List<Ref<MetaRequest>>& fresh,
     const Set<std::string>& replaced,
+    const Set<std::string>& stopped,
     double end,
     const std::optional<std::string>& stance,
     const Ref<Moods>& moods
@@ -249,7 +252,7 @@ inline Ref<LayerDraft> draft(
             }
         }
         Ref<MetaAction> running = first;
-        performer->make_way(running, asked, now);
+        performer->make_way(running, asked, now, running != nullptr && lang::contains(stopped, running->request->id));
     }
     performer->free = std::max(now - (performer->ready() - performer->free), performer->free);
     List<Ref<Report>> delayed{};

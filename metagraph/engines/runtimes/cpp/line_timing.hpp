@@ -136,6 +136,12 @@ inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<d
 inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTiming>& timing);
 inline List<double> _ends(const List<Ref<VisemeMark>>& marks);
 inline bool tells_on(const Ref<LineTiming>& old, const Ref<LineTiming>& new_);
+inline Ref<LineTiming> shifted(const Ref<LineTiming>& timing, double by);
+inline Ref<LineTiming> placed(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
+inline bool restarts(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
+inline bool _alike(const Ref<SpokenWord>& one, const Ref<SpokenWord>& other);
+inline double _end(const Ref<SpokenWord>& word);
+inline double _end_of(const Ref<LineTiming>& timing);
 inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
 inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mark);
 
@@ -162,16 +168,19 @@ struct VisemeMark {
         : at(at_), viseme(std::move(viseme_)), weight(weight_) {}
 };
 
-/// A line's words and mouth shapes, each by time.
+/// A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because
+/// something came after its time.
 struct LineTiming {
     List<Ref<SpokenWord>> words;
     List<Ref<VisemeMark>> marks;
+    double later;
 
     explicit LineTiming(
         List<Ref<SpokenWord>> words_ = List<Ref<SpokenWord>>{},
-        List<Ref<VisemeMark>> marks_ = List<Ref<VisemeMark>>{}
+        List<Ref<VisemeMark>> marks_ = List<Ref<VisemeMark>>{},
+        double later_ = 0.0
     )
-        : words(std::move(words_)), marks(std::move(marks_)) {}
+        : words(std::move(words_)), marks(std::move(marks_)), later(later_) {}
 };
 
 namespace line_timing {
@@ -396,14 +405,7 @@ inline std::string told_text(const Ref<LineTiming>& timing) {
 /// Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing.
 /// duration: of its sound, None for as long as its words and shapes need.
 inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<double>& duration) {
-    double last = 0.0;
-    for (const auto& word : timing->words) {
-        last = std::max(last, !word->end.has_value() ? word->start : *word->end);
-    }
-    if (lang::len(timing->marks) > 0) {
-        Ref<VisemeMark> mark = lang::at(timing->marks, -1);
-        last = std::max(last, mark->at + (mark->viseme == "sil" ? 0.0 : line_timing::SHAPE));
-    }
+    double last = line_timing::_end_of(timing);
     return static_cast<int>(std::ceil((!duration.has_value() ? last + mouth::LATE : std::max(*duration, last))
                 / mouth::STEP
             - 1e-06))
@@ -482,6 +484,130 @@ inline bool tells_on(const Ref<LineTiming>& old, const Ref<LineTiming>& new_) {
     return false;
 }
 
+/// Return a timing `by` seconds later.
+inline Ref<LineTiming> shifted(const Ref<LineTiming>& timing, double by) {
+    if (by == 0) {
+        return timing;
+    }
+    List<Ref<SpokenWord>> words;
+    for (const auto& word : timing->words) {
+        words.push_back(lang::made<SpokenWord>(
+            word->text,
+            word->start + by,
+            !word->end.has_value() ? std::nullopt : std::optional<double>(*word->end + by)
+        ));
+    }
+    List<Ref<VisemeMark>> found;
+    for (const auto& mark : timing->marks) {
+        found.push_back(lang::made<VisemeMark>(mark->at + by, mark->viseme, mark->weight));
+    }
+    return lang::made<LineTiming>(words, found);
+}
+
+/// Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes
+/// after what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the
+/// line that are over.
+inline Ref<LineTiming> placed(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
+    double end = line_timing::_end_of(old);
+    if (line_timing::restarts(old, new_, said)) {
+        return lang::made<LineTiming>(
+            line_timing::shifted(new_, std::max(said, end))->words,
+            line_timing::shifted(new_, std::max(said, end))->marks,
+            old->later
+        );
+    }
+    Ref<LineTiming> told = line_timing::shifted(new_, old->later);
+    double by = 0.0;
+    if (lang::len(old->words) > 0 && lang::len(told->words) > 0) {
+        List<Ref<SpokenWord>> words;
+        for (const auto& word : told->words) {
+            if (word->start > lang::at(old->words, -1)->start) {
+                words.push_back(word);
+            }
+        }
+        bool holds = lang::len(words) > 0;
+        if (holds) {
+            List<double> found;
+            for (const auto& word : words) {
+                found.push_back(line_timing::_end(word));
+            }
+            holds = lang::max_of(found) <= said;
+        }
+        if (holds) {
+            by = std::max(said, end) - lang::at(words, 0)->start;
+        }
+    } else if (lang::len(old->marks) > 0 && lang::len(told->marks) > 0) {
+        List<Ref<VisemeMark>> marks;
+        for (const auto& mark : told->marks) {
+            if (mark->at > lang::at(old->marks, -1)->at) {
+                marks.push_back(mark);
+            }
+        }
+        if (lang::len(marks) > 0 && lang::at(marks, -1)->at + line_timing::SHAPE <= said) {
+            by = std::max(said, end) - lang::at(marks, 0)->at;
+        }
+    }
+    return lang::made<LineTiming>(
+        line_timing::shifted(told, by)->words,
+        line_timing::shifted(told, by)->marks,
+        old->later + by
+    );
+}
+
+/// Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and
+/// does not tell that again.
+inline bool restarts(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
+    bool again{};
+    if (lang::len(old->words) > 0 && lang::len(new_->words) > 0) {
+        int same = 0;
+        while (same < std::min(lang::len(old->words), lang::len(new_->words))
+            && line_timing::_alike(lang::at(old->words, same), lang::at(new_->words, same))) {
+            same += 1;
+        }
+        again = same > 0 && lang::len(new_->words) >= lang::len(old->words);
+        return same < lang::len(new_->words)
+            && !again
+            && lang::at(new_->words, 0)->start < line_timing::_end(lang::at(old->words, 0));
+    }
+    if (lang::len(old->marks) > 0 && lang::len(new_->marks) > 0) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(old->marks); n++) {
+            const auto& a = lang::at(old->marks, n);
+            const auto& b = lang::at(new_->marks, n);
+            if (!(a->viseme == b->viseme && std::abs(a->at - b->at) < line_timing::SLACK)) {
+                are_all = false;
+                break;
+            }
+        }
+        again = are_all;
+        double first = lang::at(new_->marks, 0)->at;
+        return !again && first < lang::at(old->marks, 0)->at + line_timing::SLACK && first < said;
+    }
+    return false;
+}
+
+inline bool _alike(const Ref<SpokenWord>& one, const Ref<SpokenWord>& other) {
+    return one->text == other->text && std::abs(one->start - other->start) < line_timing::SLACK;
+}
+
+inline double _end(const Ref<SpokenWord>& word) {
+    return !word->end.has_value() ? word->start : *word->end;
+}
+
+/// Return when the last word or shape is over.
+inline double _end_of(const Ref<LineTiming>& timing) {
+    List<double> found;
+    for (const auto& word : timing->words) {
+        found.push_back(line_timing::_end(word));
+    }
+    double end = lang::max_of(lang::together(List<double>{0.0}, found));
+    if (lang::len(timing->marks) > 0) {
+        Ref<VisemeMark> mark = lang::at(timing->marks, -1);
+        end = std::max(end, mark->at + (mark->viseme == "sil" ? 0.0 : line_timing::SHAPE));
+    }
+    return end;
+}
+
 /// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
 /// new begins; of a word or a shape that has begun meanwhile the rest is said.
 inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
@@ -553,7 +679,7 @@ inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming
         marks = found6;
         lang::extend(marks, shown);
     }
-    return lang::made<LineTiming>(words, marks);
+    return lang::made<LineTiming>(words, marks, new_->later);
 }
 
 inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mark) {

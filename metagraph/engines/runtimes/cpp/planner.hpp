@@ -22,10 +22,11 @@ inline bool performed(const LayerGraph& layer, const Plan& plan, const Ref<MetaA
 ///
 /// What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta actions, merged
 /// with the new ones and planned again. An extension in many steps gives what one in a single step does. leave: layers that
-/// are planned to `end` already and that nothing new concerns.
+/// are planned to `end` already and that nothing new concerns. stopped: those withdrawn whose running action is left, too.
 inline Ref<const Plan> extend(
     const Graph& graph, const Plan& plan, double now, const List<Ref<MetaRequest>>& requests, double end,
-    const PlanOptions& options, const Set<std::string>& withdrawn, const Set<std::string>& leave
+    const PlanOptions& options, const Set<std::string>& withdrawn, const Set<std::string>& leave,
+    const Set<std::string>& stopped = {}
 ) {
     Map<std::string, Ref<MetaRequest>> fresh; // of two with one id the later counts
     for (const auto& request : requests) fresh[request->id] = request;
@@ -45,7 +46,7 @@ inline Ref<const Plan> extend(
         const LayerGraph& own = graph.layer(layer);
         const Ref<LayerDraft> draft = layer_planning::draft(
             graph.project, own.graph, options.idle ? own.markov : nullptr, own.kinds, plan.layers.at(layer), plan.reports,
-            plan.seed, now, lang::values(fresh), again, end, lang::get(options.stances, layer), moods
+            plan.seed, now, lang::values(fresh), again, stopped, end, lang::get(options.stances, layer), moods
         );
         List<Ref<MetaAction>> metas;
         for (const auto& meta : draft->placed) {

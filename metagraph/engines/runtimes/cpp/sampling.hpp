@@ -140,9 +140,13 @@ struct Performer {
     /// follows that can be in time then, late enough for its own stroke; infinity for never.
     double _until(const Ref<Action>& action, const Ref<CueShape>& shape, const Ref<Bound>& bound);
 
-    /// Leave the running action early for the first of what is asked for that can be in time then. What a model wrote
-    /// is left at once, what was asked for where its retraction begins.
-    void make_way(const Ref<MetaAction>& running, const List<Ref<MetaAction>>& asked, double now);
+    /// Leave the running action early for the first of what is asked for that can be in time then, and where it was
+    /// `stopped` in any case. What a model wrote, or is less important, is left at once, the rest where its retraction
+    /// begins.
+    void make_way(const Ref<MetaAction>& running, const List<Ref<MetaAction>>& asked, double now, bool stopped);
+
+    /// Leave the running action: it goes back to its stance from where it is. A transition ends where it leads.
+    void retract(double now);
 
     /// Return when an action may be drawn again.
     double _cooled(const Ref<Action>& action);
@@ -523,12 +527,22 @@ inline double Performer::_until(const Ref<Action>& action, const Ref<CueShape>& 
     return INFINITY;
 }
 
-inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<MetaAction>>& asked, double now) {
+inline void Performer::make_way(
+    const Ref<MetaAction>& running,
+    const List<Ref<MetaAction>>& asked,
+    double now,
+    bool stopped
+) {
+    if (stopped) {
+        this->retract(now);
+        return;
+    }
     Ref<Cue> cue = lang::at(this->cues, -1);
     if (running == nullptr || cue->action->kind == "transition" || cue->end - cue->blend_out <= now) {
         return;
     }
-    double soonest = now + std::max(cue->blend_out, cue_shapes::RETRACTION);
+    double at_once = now + std::max(cue->blend_out, cue_shapes::RETRACTION);
+    double retracts = at_once;
     if (!running->written) {
         double once = cue->end - cue->start;
         if (cue->repeats()) {
@@ -547,12 +561,13 @@ inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<M
             cue->hold,
             cue->tempo
         );
-        soonest = std::max(soonest, cue->start + cue_shapes::hurried(this->project, cue->action, shape));
+        retracts = std::max(at_once, cue->start + cue_shapes::hurried(this->project, cue->action, shape));
     }
     double rest = this->project->settings->rest;
     for (const auto& meta : asked) {
         Ref<MetaRequest> request = meta->request;
         double in_time = this->_latest(request) + cue_shapes::slack_of(request);
+        double soonest = meta->rank() > running->rank() ? at_once : retracts;
         if (!request->late.has_value()
             || meta->rank() < running->rank()
             || in_time < soonest + rest - cue_shapes::FITS) {
@@ -585,6 +600,34 @@ inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<M
         }
         return;
     }
+}
+
+inline void Performer::retract(double now) {
+    Ref<Cue> cue = lang::at(this->cues, -1);
+    double end = now + cue_shapes::STOPPED;
+    if (cue->action->kind == "transition" || cue->end - cue->blend_out <= now || cue->end <= end) {
+        return;
+    }
+    lang::at(this->cues, -1) = lang::made<Cue>(
+        cue->action,
+        cue->start,
+        end,
+        cue->entry,
+        cue->blend_in,
+        cue_shapes::STOPPED,
+        cue->stance,
+        cue->then,
+        cue->meta,
+        cue->hold_from,
+        cue->hold_to,
+        cue->hold,
+        cue->extent,
+        cue->tempo,
+        cue->cycle_from,
+        cue->cycle_to
+    );
+    this->free = end;
+    this->ended[cue->action->id] = end;
 }
 
 inline double Performer::_cooled(const Ref<Action>& action) {

@@ -14,6 +14,7 @@ import { but } from "./basics.js";
 
 export const FITS = 1e-06; // seconds by which sums of times may be off
 export const HURRY = 2; // a hold is played at most this many times as fast as it was made
+export const STOPPED = 0.3; // seconds in which an action that is taken back goes back to its stance, from where it is
 export const RETRACTION = 0.4; // seconds in which an action whose retraction is cut goes back to its stance, at the least
 export const SHARED = 0.25; // seconds within which two strokes may be one
 

@@ -155,8 +155,34 @@ const _STOPS = new Map([
   ["—", 1.5],
   ["(", 1],
   [")", 1],
+  ["，", 1.5],
+  ["、", 1.5],
+  ["。", 3],
+  ["！", 3],
+  ["？", 3],
 ]);
 const _BLANK = 0.35; // characters' time of anything else between words
+
+/**
+ * Letters that are syllables, by their code points. size: characters' time of one.
+ *
+ * first: number; last: number; size: number.
+ */
+export class Syllabary {
+  constructor(first, last, size) {
+    this.first = first;
+    this.last = last;
+    this.size = size;
+  }
+}
+const _SYLLABARIES = [
+  new Syllabary(12353, 12543, 2),
+  new Syllabary(65382, 65437, 2),
+  new Syllabary(13312, 40959, 3),
+  new Syllabary(63744, 64255, 3),
+  new Syllabary(131072, 205743, 3),
+  new Syllabary(44032, 55203, 3),
+];
 
 /**
  * Return the mouth shapes of a word's letters, in turn.
@@ -308,7 +334,22 @@ export class Spelled {
  * @returns {number}
  */
 export function readAloud(alphabet, text) {
-  return Math.max(SHORTEST, alphabet.letters(alphabet.stripped(text)).length / PACE);
+  const letters = alphabet.letters(alphabet.stripped(text));
+  return Math.max(SHORTEST, sum(letters.map((letter) => _sizeOf(alphabet.code(letter)))) / PACE);
+}
+
+/**
+ * Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
+ * @param {number} code
+ * @returns {number}
+ */
+function _sizeOf(code) {
+  for (const script of _SYLLABARIES) {
+    if (script.first <= code && code <= script.last) {
+      return script.size;
+    }
+  }
+  return 1;
 }
 
 /**

@@ -3,6 +3,7 @@
 import { but } from "./basics.js";
 import { heard, owners } from "./hearing.js";
 import { Past } from "./meta_plan.js";
+import { FOREVER } from "./meaning.js";
 import { extend } from "./planner.js";
 import { remember } from "./remembering.js";
 import { understand } from "./understand.js";
@@ -24,12 +25,12 @@ export function hear(graph, plan, now, asks, end, options = {}) {
   const meant = understand(graph, asks, fixed);
   const turning = LAYERS.filter((layer) => graph.layers[layer].markov.modes.length);
   const refused = meant.refused.map((r) => r.request);
-  const { track, withdrawn, touched } = heard(
+  const { track, withdrawn, stopped, touched } = heard(
     plan.requests, plan.track, meant.requests, meant.track(), meant.withdrawn, refused, fixed, turning,
   );
   // Without any asks everything is planned on; with some, what they have to do with.
   const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];
-  const after = extend(graph, { ...plan, track }, fixed, meant.requests, end, options, withdrawn, leave);
+  const after = extend(graph, { ...plan, track }, fixed, meant.requests, end, options, withdrawn, leave, stopped);
   return meant.refused.length ? { ...after, reports: [...after.reports, ...meant.refused] } : after;
 }
 
@@ -53,7 +54,7 @@ export function answers(plan, ids) {
     for (const meta of metas) if (meta.start >= plan.end) each(meta.request.id, (x) => x.waiting.push(meta.start));
   }
   for (const [what, lane] of Object.entries(LANES)) {
-    for (const { id, start, end = start } of plan.track[lane]) each(id, (x) => x.plays.push({ start, end, what }));
+    for (const { id, start, end = what === "blink" ? start : FOREVER } of plan.track[lane]) each(id, (x) => x.plays.push({ start, end, what }));
   }
   for (const told of plan.reports) each(told.request, (x) => x.told.push(told));
   return new Map([...found].map(([id, x]) => [id, { id, ...answer(x) }]));

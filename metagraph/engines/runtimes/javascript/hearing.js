@@ -5,20 +5,23 @@
  */
 
 import { LAYERS } from "./words.js";
-import { goingOn } from "./items.js";
+import { behind, goingOn } from "./items.js";
+import { named, sameSpot } from "./spots.js";
 import { Track } from "./track.js";
-import { isDigits, partedLast, zip } from "./basics.js";
+import { MoodFrom } from "./mood.js";
+import { isDigits, partedLast } from "./basics.js";
 
 /**
- * track: what lasts. withdrawn: ids of what was asked for before and is not any more. touched: layers that asks have to do
- * with.
+ * track: what lasts. withdrawn: ids of what was asked for before and is not any more; stopped: those of them that were taken
+ * back and not asked for anew. touched: layers that asks have to do with.
  *
- * track: Track; withdrawn: Set<string>; touched: Set<string>.
+ * track: Track; withdrawn: Set<string>; stopped: Set<string>; touched: Set<string>.
  */
 export class Heard {
-  constructor(track, withdrawn, touched) {
+  constructor(track, withdrawn, stopped, touched) {
     this.track = track;
     this.withdrawn = withdrawn;
+    this.stopped = stopped;
     this.touched = touched;
   }
 }
@@ -40,6 +43,21 @@ export function owners(ident) {
     }
     out.push(left);
   }
+}
+
+/**
+ * Return what a request goes with when it is taken back: its `owners`, and what is said that a gesture was made for:
+ * "answer" for "answer/2".
+ * @param {string} ident
+ * @returns {string[]}
+ */
+export function makers(ident) {
+  const out = owners(ident);
+  const [said, slash, number] = partedLast(out[out.length - 1], "/");
+  if (slash !== "" && isDigits(number)) {
+    out.push(said);
+  }
+  return out;
 }
 
 /**
@@ -67,11 +85,42 @@ export function heard(requests, track, fresh, more, withdrawn, refused, now, tur
   for (const ident of more.idents()) {
     gone.add(ident);
   }
+  let said = [];
+  const begun = new Set([]); // of which more is said
+  const anew = new Set([]); // of which something else was said before
+  const later = new Map(); // by how much those begin that are said behind others of their id
+  for (const asked of more.speeches) {
+    const beforeIt = withdrawn.has(asked.id) ? null : track.lastSpeech(asked.id);
+    const last = [...said].reverse().find((s) => s.id === asked.id) ?? beforeIt;
+    let one = goingOn(last, asked, now);
+    if (one !== asked && last !== null && one.start === last.start) {
+      begun.add(one.id);
+      said = said.filter((s) => s.id !== one.id);
+    } else if (one === asked && !withdrawn.has(asked.id)) {
+      one = behind([...track.speeches, ...said], asked, now);
+      if (one !== asked) {
+        later.set(one.id, one.start - asked.start);
+      }
+    }
+    if (one === asked && track.lastSpeech(one.id) !== null) {
+      anew.add(one.id);
+    }
+    said.push(one);
+  }
   const before = requests.map((r) => r.id);
   before.push(...track.idents());
+  // Who takes everything back still looks at whom it talks with.
+  const user = new Set(track.looks.filter((x) => x.start < now && sameSpot(x.to, named("user"))).map((x) => x.id));
   const taken = new Set([]);
+  const stopped = new Set([]);
   for (const ident of before) {
-    if (withdrawn.has("") || gone.has(ident) || (ident.includes(".") && owners(ident).some((o) => gone.has(o)))) {
+    const every = withdrawn.has("") && !user.has(ident);
+    if (every || (withdrawn.size > 0 && makers(ident).some((o) => withdrawn.has(o)))) {
+      stopped.add(ident);
+    } else if (anew.size > 0 && !anew.has(ident) && makers(ident).some((o) => anew.has(o))) {
+      stopped.add(ident); // what was made for the words before
+    }
+    if (stopped.has(ident) || gone.has(ident) || (ident.includes(".") && owners(ident).some((o) => gone.has(o)))) {
       taken.add(ident);
     }
   }
@@ -108,20 +157,17 @@ export function heard(requests, track, fresh, more, withdrawn, refused, now, tur
       touched.add(layer);
     }
   }
-  const said = more.speeches.map((s) => goingOn(track.lastSpeech(s.id), s, now));
-  const begun = new Set([]); // of which more is said
-  for (const [new_, asked] of zip(said, more.speeches)) {
-    if (new_ !== asked) {
-      begun.add(new_.id);
-    }
-  }
   const over = new Set([]);
   for (const ident of taken) {
-    if (!begun.has(ident)) {
+    if (!begun.has(ident) && !later.has(ident)) {
       over.add(ident);
     }
   }
+  const moods = more.moods.map((m) =>
+    later.has(m.id)
+      ? new MoodFrom(m.id, m.start + later.get(m.id), m.valence, m.arousal, m.intensity, m.end + later.get(m.id))
+      : m);
   const left = track.without(over, now).without(begun);
-  const lasting = new Track(more.looks, [...said], more.modes, more.places, more.blinks, [...stays], more.moods);
-  return new Heard(left.joined(lasting), taken, touched);
+  const lasting = new Track(more.looks, [...said], more.modes, more.places, more.blinks, [...stays], [...moods]);
+  return new Heard(left.joined(lasting), taken, stopped, touched);
 }

@@ -5,7 +5,7 @@
  * Translated from metagraph/playback/life/items.py; change that, and translate anew.
  */
 
-import { alikeTimings, extended, tellsOn, timedSeconds, toldText } from "./line_timing.js";
+import { alikeTimings, extended, placed, shifted, tellsOn, timedSeconds, toldText } from "./line_timing.js";
 import { sameSpot } from "./spots.js";
 import { but, zip } from "./basics.js";
 
@@ -139,6 +139,27 @@ export function apart(speeches) {
 }
 
 /**
+ * Return a text that comes while another one of its id is said: it is said after that. said: in order.
+ * @param {Speech[]} said
+ * @param {Speech} new_
+ * @param {number} now
+ * @returns {Speech}
+ */
+export function behind(said, new_, now) {
+  if (new_.timing !== null || new_.line !== null || new_.start > now) {
+    return new_;
+  }
+  let end = new_.start;
+  for (const speech of said) {
+    const plain = speech.timing === null && speech.line === null && speech.length === null;
+    if (speech.id === new_.id && plain && speech.start <= end && end < speech.end) {
+      end = speech.end;
+    }
+  }
+  return end === new_.start ? new_ : but(new_, { start: end, end: end + (new_.end - new_.start) });
+}
+
+/**
  * Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start and
  * what has been said of it. Only lines whose words or shapes were told with their times do.
  * @param {?Speech} old
@@ -153,10 +174,12 @@ export function goingOn(old, new_, now) {
   if (Math.max(old.start, new_.start) > now && old.start !== new_.start) {
     return new_;
   }
-  if (old.end <= now && !tellsOn(old.timing, new_.timing)) {
+  const said = Math.max(now - old.start, 0);
+  if (old.end <= now && !tellsOn(old.timing, shifted(new_.timing, old.timing.later))) {
     return new_;
   }
-  const timing = extended(old.timing, new_.timing, Math.max(now - old.start, 0));
+  const told = old.start > now ? new_.timing : placed(old.timing, new_.timing, said);
+  const timing = extended(old.timing, told, said);
   const length = Math.max(timedSeconds(timing, null), new_.end - new_.start);
   const more = new_.text === "" || new_.text === toldText(new_.timing);
   return but(new_, { start: old.start, end: old.start + length, text: more ? toldText(timing) : new_.text, timing: timing });

@@ -57,8 +57,8 @@ export class LayerDraft {
  * Return a layer's plan taken back to `now`, with what is asked for placed anew.
  *
  * chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far.
- * fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the layer would
- * begin in. moods: what it is in the mood for, and when.
+ * fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those withdrawn,
+ * whose running action is left. stance: which the layer would begin in. moods: what it is in the mood for, and when.
  * @param {Project} project
  * @param {MetaGraph} graph
  * @param {?Markov} chain
@@ -69,12 +69,13 @@ export class LayerDraft {
  * @param {number} now
  * @param {MetaRequest[]} fresh
  * @param {Set<string>} replaced
+ * @param {Set<string>} stopped
  * @param {number} end
  * @param {?string} stance
  * @param {Moods} moods
  * @returns {LayerDraft}
  */
-export function draft(project, graph, chain, kinds, old, told, seed, now, fresh, replaced, end, stance, moods) {
+export function draft(project, graph, chain, kinds, old, told, seed, now, fresh, replaced, stopped, end, stance, moods) {
   const layer = graph.layer;
   let asked = fresh.filter((request) => request.layer === layer).map((request) => metaOf(inTime(request, moods)));
   const kept = old.cues.filter((cue) => cue.start < now);
@@ -143,7 +144,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
-    performer.makeWay(running, asked, now);
+    performer.makeWay(running, asked, now, running !== null && stopped.has(running.request.id));
   }
   performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
   let delayed;

@@ -129,14 +129,16 @@ export class VisemeMark {
 }
 
 /**
- * A line's words and mouth shapes, each by time.
+ * A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something
+ * came after its time.
  *
- * words: SpokenWord[]; marks: VisemeMark[].
+ * words: SpokenWord[]; marks: VisemeMark[]; later: number.
  */
 export class LineTiming {
-  constructor(words = [], marks = []) {
+  constructor(words = [], marks = [], later = 0) {
     this.words = words;
     this.marks = marks;
+    this.later = later;
   }
 }
 
@@ -304,14 +306,7 @@ export function toldText(timing) {
  * @returns {number}
  */
 export function timedSeconds(timing, duration) {
-  let last = 0;
-  for (const word of timing.words) {
-    last = Math.max(last, word.end === null ? word.start : word.end);
-  }
-  if (timing.marks.length > 0) {
-    const mark = timing.marks[timing.marks.length - 1];
-    last = Math.max(last, mark.at + (mark.viseme === "sil" ? 0 : SHAPE));
-  }
+  const last = _endOf(timing);
   return Math.ceil((duration === null ? last + LATE : Math.max(duration, last)) / STEP - 1e-06) * STEP;
 }
 
@@ -398,6 +393,108 @@ export function tellsOn(old, new_) {
 }
 
 /**
+ * Return a timing `by` seconds later.
+ * @param {LineTiming} timing
+ * @param {number} by
+ * @returns {LineTiming}
+ */
+export function shifted(timing, by) {
+  if (by === 0) {
+    return timing;
+  }
+  const words = timing.words.map((word) =>
+    new SpokenWord(word.text, word.start + by, word.end === null ? null : word.end + by));
+  return new LineTiming([...words], timing.marks.map((mark) => but(mark, { at: mark.at + by })));
+}
+
+/**
+ * Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes after
+ * what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line that
+ * are over.
+ * @param {LineTiming} old
+ * @param {LineTiming} new_
+ * @param {number} said
+ * @returns {LineTiming}
+ */
+export function placed(old, new_, said) {
+  const end = _endOf(old);
+  if (restarts(old, new_, said)) {
+    return but(shifted(new_, Math.max(said, end)), { later: old.later });
+  }
+  const told = shifted(new_, old.later);
+  let by = 0;
+  if (old.words.length > 0 && told.words.length > 0) {
+    const words = told.words.filter((word) => word.start > old.words[old.words.length - 1].start);
+    if (words.length > 0 && maxOf(words.map((word) => _end(word))) <= said) {
+      by = Math.max(said, end) - words[0].start;
+    }
+  } else if (old.marks.length > 0 && told.marks.length > 0) {
+    const marks = told.marks.filter((mark) => mark.at > old.marks[old.marks.length - 1].at);
+    if (marks.length > 0 && marks[marks.length - 1].at + SHAPE <= said) {
+      by = Math.max(said, end) - marks[0].at;
+    }
+  }
+  return but(shifted(told, by), { later: old.later + by });
+}
+
+/**
+ * Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and does
+ * not tell that again.
+ * @param {LineTiming} old
+ * @param {LineTiming} new_
+ * @param {number} said
+ * @returns {boolean}
+ */
+export function restarts(old, new_, said) {
+  let again;
+  if (old.words.length > 0 && new_.words.length > 0) {
+    let same = 0;
+    while (same < Math.min(old.words.length, new_.words.length) && _alike(old.words[same], new_.words[same])) {
+      same += 1;
+    }
+    again = same > 0 && new_.words.length >= old.words.length;
+    return same < new_.words.length && !again && new_.words[0].start < _end(old.words[0]);
+  }
+  if (old.marks.length > 0 && new_.marks.length > 0) {
+    again = zip(old.marks, new_.marks).every(([a, b]) => a.viseme === b.viseme && Math.abs(a.at - b.at) < SLACK);
+    const first = new_.marks[0].at;
+    return !again && first < old.marks[0].at + SLACK && first < said;
+  }
+  return false;
+}
+
+/**
+ * @param {SpokenWord} one
+ * @param {SpokenWord} other
+ * @returns {boolean}
+ */
+function _alike(one, other) {
+  return one.text === other.text && Math.abs(one.start - other.start) < SLACK;
+}
+
+/**
+ * @param {SpokenWord} word
+ * @returns {number}
+ */
+function _end(word) {
+  return word.end === null ? word.start : word.end;
+}
+
+/**
+ * Return when the last word or shape is over.
+ * @param {LineTiming} timing
+ * @returns {number}
+ */
+function _endOf(timing) {
+  let end = maxOf([0, ...timing.words.map((word) => _end(word))]);
+  if (timing.marks.length > 0) {
+    const mark = timing.marks[timing.marks.length - 1];
+    end = Math.max(end, mark.at + (mark.viseme === "sil" ? 0 : SHAPE));
+  }
+  return end;
+}
+
+/**
  * Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new
  * begins; of a word or a shape that has begun meanwhile the rest is said.
  * @param {LineTiming} old
@@ -429,7 +526,7 @@ export function extended(old, new_, said) {
     marks = old.marks.filter((mark) => mark.at < until);
     marks.push(...shown);
   }
-  return new LineTiming([...words], [...marks]);
+  return new LineTiming([...words], [...marks], new_.later);
 }
 
 /**

@@ -21,9 +21,10 @@ import { LAYERS } from "./words.js";
  * @param {import("./graph.js").Graph} graph @param {import("./plan.js").Plan} plan @param {number} now
  * @param {import("./plan.js").Request[]} requests @param {number} end
  * @param {{stances?: Record<string, string>, idle?: boolean}} options @param {Set<string>} withdrawn @param {string[]} leave
+ * @param {Set<string>} [stopped] those withdrawn whose running action is left, too
  * @returns {import("./plan.js").Plan}
  */
-export function extend(graph, plan, now, requests, end, { stances = {}, idle = true } = {}, withdrawn = new Set(), leave = []) {
+export function extend(graph, plan, now, requests, end, { stances = {}, idle = true } = {}, withdrawn = new Set(), leave = [], stopped = new Set()) {
   const fresh = [...new Map(requests.map((r) => [r.id, r])).values()]; // of two with one id the later counts
   const again = new Set([...fresh.map((r) => r.id), ...withdrawn]);
   const layers = {};
@@ -39,7 +40,7 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
     const chain = idle ? of.markov : null;
     const stance = stances?.[layer] ?? null;
     const drafted = draft(
-      graph, of, chain, of.kinds, plan.layers[layer], plan.reports, plan.seed, now, fresh, again, end, stance, moods,
+      graph, of, chain, of.kinds, plan.layers[layer], plan.reports, plan.seed, now, fresh, again, stopped, end, stance, moods,
     );
     // What a model wrote is not performed where it would leave a stance that was asked for, to stay in, and as often as its mode and mood say.
     const leaves = (m) => m.request.kind === "transition" && plan.track.staysAt(layer, m.start);

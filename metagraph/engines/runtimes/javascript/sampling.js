@@ -12,6 +12,7 @@ import {
   CueShape,
   FITS,
   RETRACTION,
+  STOPPED,
   fitsBefore,
   hurried,
   lateness,
@@ -328,15 +329,20 @@ export class Performer {
   }
 
   /**
-   * Leave the running action early for the first of what is asked for that can be in time then. What a model wrote is left
-   * at once, what was asked for where its retraction begins.
+   * Leave the running action early for the first of what is asked for that can be in time then, and where it was `stopped`
+   * in any case. What a model wrote, or is less important, is left at once, the rest where its retraction begins.
    */
-  makeWay(running, asked, now) {
+  makeWay(running, asked, now, stopped) {
+    if (stopped) {
+      this.retract(now);
+      return;
+    }
     const cue = this.cues[this.cues.length - 1];
     if (running === null || cue.action.kind === "transition" || cue.end - cue.blendOut <= now) {
       return;
     }
-    let soonest = now + Math.max(cue.blendOut, RETRACTION);
+    const atOnce = now + Math.max(cue.blendOut, RETRACTION);
+    let retracts = atOnce;
     if (!running.written) {
       let once = cue.end - cue.start;
       if (cue.repeats) {
@@ -352,12 +358,13 @@ export class Performer {
         cue.hold,
         cue.tempo,
       );
-      soonest = Math.max(soonest, cue.start + hurried(this.project, cue.action, shape));
+      retracts = Math.max(atOnce, cue.start + hurried(this.project, cue.action, shape));
     }
     const rest = this.project.settings.rest;
     for (const meta of asked) {
       const request = meta.request;
       const inTime = this.latest(request) + slackOf(request);
+      const soonest = meta.rank > running.rank ? atOnce : retracts;
       if (request.late === null || meta.rank < running.rank || inTime < soonest + rest - FITS) {
         continue;
       }
@@ -371,6 +378,18 @@ export class Performer {
       }
       return;
     }
+  }
+
+  /** Leave the running action: it goes back to its stance from where it is. A transition ends where it leads. */
+  retract(now) {
+    const cue = this.cues[this.cues.length - 1];
+    const end = now + STOPPED;
+    if (cue.action.kind === "transition" || cue.end - cue.blendOut <= now || cue.end <= end) {
+      return;
+    }
+    this.cues[this.cues.length - 1] = but(cue, { end: end, blendOut: STOPPED });
+    this.free = end;
+    this.ended.set(cue.action.id, end);
   }
 
   /** Return when an action may be drawn again. */

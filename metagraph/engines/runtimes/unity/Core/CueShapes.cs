@@ -45,6 +45,8 @@ namespace Metagraph
     {
         public const double Fits = 1e-06; // seconds by which sums of times may be off
         public const double Hurry = 2.0; // a hold is played at most this many times as fast as it was made
+        // seconds in which an action that is taken back goes back to its stance, from where it is
+        public const double Stopped = 0.3;
         // seconds in which an action whose retraction is cut goes back to its stance, at the least
         public const double Retraction = 0.4;
         public const double Shared = 0.25; // seconds within which two strokes may be one

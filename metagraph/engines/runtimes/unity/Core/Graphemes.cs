@@ -5,6 +5,21 @@ using System.Linq;
 
 namespace Metagraph
 {
+    /// <summary>Letters that are syllables, by their code points. size: characters' time of one.</summary>
+    public sealed class Syllabary
+    {
+        public readonly int First;
+        public readonly int Last;
+        public readonly double Size;
+
+        public Syllabary(int first, int last, double size)
+        {
+            First = first;
+            Last = last;
+            Size = size;
+        }
+    }
+
     /// <summary>
     /// A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what is none.
     /// </summary>
@@ -209,9 +224,22 @@ namespace Metagraph
             { "–", 1.5 },
             { "—", 1.5 },
             { "(", 1.0 },
-            { ")", 1.0 }
+            { ")", 1.0 },
+            { "，", 1.5 },
+            { "、", 1.5 },
+            { "。", 3.0 },
+            { "！", 3.0 },
+            { "？", 3.0 }
          };
         private const double Blank = 0.35; // characters' time of anything else between words
+        private static readonly List<Syllabary> Syllabaries = new List<Syllabary> {
+            new Syllabary(12353, 12543, 2.0),
+            new Syllabary(65382, 65437, 2.0),
+            new Syllabary(13312, 40959, 3.0),
+            new Syllabary(63744, 64255, 3.0),
+            new Syllabary(131072, 205743, 3.0),
+            new Syllabary(44032, 55203, 3.0)
+         };
 
         /// <summary>Return the mouth shapes of a word's letters, in turn.</summary>
         public static List<string> Shapes(Alphabet alphabet, string word)
@@ -317,7 +345,23 @@ namespace Metagraph
         /// <summary>Return how long a text takes to say, seconds.</summary>
         public static double ReadAloud(Alphabet alphabet, string text)
         {
-            return Math.Max(Shortest, ((double)alphabet.Letters(alphabet.Stripped(text)).Count / Pace));
+            var letters = alphabet.Letters(alphabet.Stripped(text));
+            return Math.Max(Shortest, letters.Select(letter => SizeOf(alphabet.Code(letter))).ToList().Sum() / Pace);
+        }
+
+        /// <summary>
+        /// Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
+        /// </summary>
+        private static double SizeOf(int code)
+        {
+            foreach (Syllabary script in Syllabaries)
+            {
+                if (script.First <= code && code <= script.Last)
+                {
+                    return script.Size;
+                }
+            }
+            return 1.0;
         }
 
         /// <summary>Return what a text says in `duration` seconds; nothing where no letter of it is known.</summary>

@@ -31,7 +31,7 @@ namespace Metagraph
             bool partly = asks.Count > 0 && now > 0 && end == plan.End;
             string[] leave = partly ? Basics.Layers.Where(layer => !heard.Touched.Contains(layer)).ToArray() : Basics.None;
             plan = plan.With(heard.Track);
-            Plan after = Planner.Extend(graph, plan, begins, meant.Requests, end, stances, idle, heard.Withdrawn, leave);
+            Plan after = Planner.Extend(graph, plan, begins, meant.Requests, end, stances, idle, heard.Withdrawn, leave, heard.Stopped);
             after.Reports.AddRange(meant.Refused);
             return after;
         }
@@ -66,8 +66,8 @@ namespace Metagraph
         {
             return track.Looks.Select(x => (x.Id, x.Start, x.End, "look"))
                 .Concat(track.Speeches.Select(x => (x.Id, x.Start, x.End, "speech")))
-                .Concat(track.Modes.Select(x => (x.Id, x.Start, x.Start, "mode")))
-                .Concat(track.Places.Select(x => (x.Id, x.Start, x.Start, "place")))
+                .Concat(track.Modes.Select(x => (x.Id, x.Start, MeaningRules.Forever, "mode")))
+                .Concat(track.Places.Select(x => (x.Id, x.Start, MeaningRules.Forever, "place")))
                 .Concat(track.Blinks.Select(x => (x.Id, x.Start, x.Start, "blink")))
                 .Concat(track.Moods.Select(x => (x.Id, x.Start, x.End, "mood")));
         }

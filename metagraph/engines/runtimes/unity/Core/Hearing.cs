@@ -6,19 +6,21 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// track: what lasts. withdrawn: ids of what was asked for before and is not any more. touched: layers that asks have to do
-    /// with.
+    /// track: what lasts. withdrawn: ids of what was asked for before and is not any more; stopped: those of them that were taken
+    /// back and not asked for anew. touched: layers that asks have to do with.
     /// </summary>
     public sealed class Heard
     {
         public readonly Track Track;
         public readonly HashSet<string> Withdrawn;
+        public readonly HashSet<string> Stopped;
         public readonly HashSet<string> Touched;
 
-        public Heard(Track track, HashSet<string> withdrawn, HashSet<string> touched)
+        public Heard(Track track, HashSet<string> withdrawn, HashSet<string> stopped, HashSet<string> touched)
         {
             Track = track;
             Withdrawn = withdrawn;
+            Stopped = stopped;
             Touched = touched;
         }
     }
@@ -46,6 +48,24 @@ namespace Metagraph
                 }
                 out_.Add(left);
             }
+        }
+
+        /// <summary>
+        /// Return what a request goes with when it is taken back: its `owners`, and what is said that a gesture was made for:
+        /// "answer" for "answer/2".
+        /// </summary>
+        public static List<string> Makers(string ident)
+        {
+            var out_ = Owners(ident);
+            var found = PlainText.PartedLast(out_[out_.Count - 1], "/");
+            string said = found.Item1;
+            string slash = found.Item2;
+            string number = found.Item3;
+            if (slash != "" && PlainText.Digits(number))
+            {
+                out_.Add(said);
+            }
+            return out_;
         }
 
         /// <summary>
@@ -77,12 +97,53 @@ namespace Metagraph
             {
                 gone.Add(ident);
             }
+            var said = new List<Speech>();
+            var begun = new HashSet<string>(); // of which more is said
+            var anew = new HashSet<string>(); // of which something else was said before
+            var later = new Dictionary<string, double>(); // by how much those begin that are said behind others of their id
+            foreach (Speech asked in more.Speeches)
+            {
+                var beforeIt = withdrawn.Contains(asked.Id) ? null : track.LastSpeech(asked.Id);
+                var last = said.AsEnumerable().Reverse().ToList().Where(s => s.Id == asked.Id).DefaultIfEmpty(beforeIt).First();
+                var one = ItemsRules.GoingOn(last, asked, now);
+                if (one != asked && last != null && one.Start == last.Start)
+                {
+                    begun.Add(one.Id);
+                    said = said.Where(s => s.Id != one.Id).ToList();
+                }
+                else if (one == asked && !withdrawn.Contains(asked.Id))
+                {
+                    one = ItemsRules.Behind(track.Speeches.Concat(said).ToList(), asked, now);
+                    if (one != asked)
+                    {
+                        later[one.Id] = one.Start - asked.Start;
+                    }
+                }
+                if (one == asked && track.LastSpeech(one.Id) != null)
+                {
+                    anew.Add(one.Id);
+                }
+                said.Add(one);
+            }
             var before = requests.Select(r => r.Id).ToList();
             before.AddRange(track.Idents());
+            // Who takes everything back still looks at whom it talks with.
+            var user = new HashSet<string>(track.Looks.Where(x => x.Start < now
+                && SpotsRules.SameSpot(x.To, SpotsRules.Named("user"))).Select(x => x.Id));
             var taken = new HashSet<string>();
+            var stopped = new HashSet<string>();
             foreach (string ident in before)
             {
-                if (withdrawn.Contains("")
+                var every = withdrawn.Contains("") && !user.Contains(ident);
+                if (every || (withdrawn.Count > 0 && Makers(ident).Any(o => withdrawn.Contains(o))))
+                {
+                    stopped.Add(ident);
+                }
+                else if (anew.Count > 0 && !anew.Contains(ident) && Makers(ident).Any(o => anew.Contains(o)))
+                {
+                    stopped.Add(ident); // what was made for the words before
+                }
+                if (stopped.Contains(ident)
                     || gone.Contains(ident)
                     || (ident.Contains(".") && Owners(ident).Any(o => gone.Contains(o))))
                 {
@@ -132,28 +193,28 @@ namespace Metagraph
                     touched.Add(layer);
                 }
             }
-            var said = more.Speeches.Select(s => ItemsRules.GoingOn(track.LastSpeech(s.Id), s, now)).ToList();
-            var begun = new HashSet<string>(); // of which more is said
-            foreach (var one in PlainLists.Pairs(said, more.Speeches))
-            {
-                var new_ = one.Item1;
-                var asked = one.Item2;
-                if (new_ != asked)
-                {
-                    begun.Add(new_.Id);
-                }
-            }
             var over = new HashSet<string>();
             foreach (string ident in taken)
             {
-                if (!begun.Contains(ident))
+                if (!begun.Contains(ident) && !later.ContainsKey(ident))
                 {
                     over.Add(ident);
                 }
             }
+            var moods = more.Moods.Select(m => later.ContainsKey(m.Id)
+                ? new MoodFrom(m.Id, m.Start + later[m.Id], m.Valence, m.Arousal, m.Intensity, m.End + later[m.Id])
+                : m).ToList();
             var left = track.Without(over, now).Without(begun);
-            var lasting = new Track(more.Looks, said.ToList(), more.Modes, more.Places, more.Blinks, stays.ToList(), more.Moods);
-            return new Heard(left.Joined(lasting), taken, touched);
+            var lasting = new Track(
+                more.Looks,
+                said.ToList(),
+                more.Modes,
+                more.Places,
+                more.Blinks,
+                stays.ToList(),
+                moods.ToList()
+            );
+            return new Heard(left.Joined(lasting), taken, stopped, touched);
         }
     }
 }

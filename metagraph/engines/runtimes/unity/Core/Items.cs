@@ -183,6 +183,38 @@ namespace Metagraph
         }
 
         /// <summary>
+        /// Return a text that comes while another one of its id is said: it is said after that. said: in order.
+        /// </summary>
+        public static Speech Behind(List<Speech> said, Speech new_, double now)
+        {
+            if (new_.Timing != null || new_.Line != null || new_.Start > now)
+            {
+                return new_;
+            }
+            var end = new_.Start;
+            foreach (Speech speech in said)
+            {
+                var plain = speech.Timing == null && speech.Line == null && speech.Length == null;
+                if (speech.Id == new_.Id && plain && speech.Start <= end && end < speech.End)
+                {
+                    end = speech.End;
+                }
+            }
+            return end == new_.Start
+                ? new_
+                : new Speech(
+                    new_.Id,
+                    end,
+                    end + (new_.End - new_.Start),
+                    new_.Line,
+                    new_.Text,
+                    new_.Priority,
+                    new_.Length,
+                    new_.Timing
+                );
+        }
+
+        /// <summary>
         /// Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start
         /// and what has been said of it. Only lines whose words or shapes were told with their times do.
         /// </summary>
@@ -196,11 +228,13 @@ namespace Metagraph
             {
                 return new_;
             }
-            if (old.End <= now && !LineTimingRules.TellsOn(old.Timing, new_.Timing))
+            var said = Math.Max(now - old.Start, 0.0);
+            if (old.End <= now && !LineTimingRules.TellsOn(old.Timing, LineTimingRules.Shifted(new_.Timing, old.Timing.Later)))
             {
                 return new_;
             }
-            var timing = LineTimingRules.Extended(old.Timing, new_.Timing, Math.Max(now - old.Start, 0.0));
+            var told = old.Start > now ? new_.Timing : LineTimingRules.Placed(old.Timing, new_.Timing, said);
+            var timing = LineTimingRules.Extended(old.Timing, told, said);
             var length = Math.Max(LineTimingRules.TimedSeconds(timing, null), new_.End - new_.Start);
             var more = new_.Text == "" || new_.Text == LineTimingRules.ToldText(new_.Timing);
             return new Speech(

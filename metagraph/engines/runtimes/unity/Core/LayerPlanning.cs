@@ -74,8 +74,9 @@ namespace Metagraph
         /// Return a layer's plan taken back to `now`, with what is asked for placed anew.
         ///
         /// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
-        /// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the
-        /// layer would begin in. moods: what it is in the mood for, and when.
+        /// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those
+        /// withdrawn, whose running action is left. stance: which the layer would begin in. moods: what it is in the mood for,
+        /// and when.
         /// </summary>
         public static LayerDraft Draft(
             Graph project,
@@ -88,6 +89,7 @@ namespace Metagraph
             double now,
             List<MetaRequest> fresh,
             HashSet<string> replaced,
+            HashSet<string> stopped,
             double end,
             string stance,
             Moods moods
@@ -173,7 +175,7 @@ namespace Metagraph
             if (kept.Count > 0 && kept[kept.Count - 1].End > now)
             {
                 var running = old.Metas.Where(meta => meta.Key == kept[kept.Count - 1].Meta).FirstOrDefault();
-                performer.MakeWay(running, asked, now);
+                performer.MakeWay(running, asked, now, running != null && stopped.Contains(running.Request.Id));
             }
             performer.Free = Math.Max(now - (performer.Ready - performer.Free), performer.Free);
             List<Report> delayed = default(List<Report>);

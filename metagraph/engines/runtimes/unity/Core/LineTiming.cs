@@ -38,16 +38,21 @@ namespace Metagraph
         }
     }
 
-    /// <summary>A line's words and mouth shapes, each by time.</summary>
+    /// <summary>
+    /// A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something
+    /// came after its time.
+    /// </summary>
     public sealed class LineTiming
     {
         public readonly List<SpokenWord> Words;
         public readonly List<VisemeMark> Marks;
+        public readonly double Later;
 
-        public LineTiming(List<SpokenWord> words = null, List<VisemeMark> marks = null)
+        public LineTiming(List<SpokenWord> words = null, List<VisemeMark> marks = null, double later = 0.0)
         {
             Words = words ?? new List<SpokenWord>();
             Marks = marks ?? new List<VisemeMark>();
+            Later = later;
         }
     }
 
@@ -346,16 +351,7 @@ namespace Metagraph
         /// </summary>
         public static double TimedSeconds(LineTiming timing, double? duration)
         {
-            var last = 0.0;
-            foreach (SpokenWord word in timing.Words)
-            {
-                last = Math.Max(last, word.End == null ? word.Start : word.End.Value);
-            }
-            if (timing.Marks.Count > 0)
-            {
-                var mark = timing.Marks[timing.Marks.Count - 1];
-                last = Math.Max(last, mark.At + (mark.Viseme == "sil" ? 0.0 : Shape));
-            }
+            var last = EndOf(timing);
             return (int)Math.Ceiling((duration == null ? last + MouthRules.Late : Math.Max(duration.Value, last))
                         / MouthRules.Step
                     - 1e-06)
@@ -452,6 +448,112 @@ namespace Metagraph
             return false;
         }
 
+        /// <summary>Return a timing `by` seconds later.</summary>
+        public static LineTiming Shifted(LineTiming timing, double by)
+        {
+            if (by == 0)
+            {
+                return timing;
+            }
+            var words = timing.Words.Select(word => new SpokenWord(
+                word.Text,
+                word.Start + by,
+                word.End == null ? (double?)null : word.End.Value + by
+            )).ToList();
+            return new LineTiming(
+                words.ToList(),
+                timing.Marks.Select(mark => new VisemeMark(mark.At + by, mark.Viseme, mark.Weight)).ToList()
+            );
+        }
+
+        /// <summary>
+        /// Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes after
+        /// what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line
+        /// that are over.
+        /// </summary>
+        public static LineTiming Placed(LineTiming old, LineTiming new_, double said)
+        {
+            var end = EndOf(old);
+            if (Restarts(old, new_, said))
+            {
+                return new LineTiming(
+                    Shifted(new_, Math.Max(said, end)).Words,
+                    Shifted(new_, Math.Max(said, end)).Marks,
+                    old.Later
+                );
+            }
+            var told = Shifted(new_, old.Later);
+            var by = 0.0;
+            if (old.Words.Count > 0 && told.Words.Count > 0)
+            {
+                var words = told.Words.Where(word => word.Start > old.Words[old.Words.Count - 1].Start).ToList();
+                if (words.Count > 0 && PlainNumbers.MaxOf(words.Select(word => End(word)).ToList()) <= said)
+                {
+                    by = Math.Max(said, end) - words[0].Start;
+                }
+            }
+            else if (old.Marks.Count > 0 && told.Marks.Count > 0)
+            {
+                var marks = told.Marks.Where(mark => mark.At > old.Marks[old.Marks.Count - 1].At).ToList();
+                if (marks.Count > 0 && marks[marks.Count - 1].At + Shape <= said)
+                {
+                    by = Math.Max(said, end) - marks[0].At;
+                }
+            }
+            return new LineTiming(Shifted(told, by).Words, Shifted(told, by).Marks, old.Later + by);
+        }
+
+        /// <summary>
+        /// Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and
+        /// does not tell that again.
+        /// </summary>
+        public static bool Restarts(LineTiming old, LineTiming new_, double said)
+        {
+            bool again = default(bool);
+            if (old.Words.Count > 0 && new_.Words.Count > 0)
+            {
+                var same = 0;
+                while (same < Math.Min(old.Words.Count, new_.Words.Count) && Alike(old.Words[same], new_.Words[same]))
+                {
+                    same += 1;
+                }
+                again = same > 0 && new_.Words.Count >= old.Words.Count;
+                return same < new_.Words.Count && !again && new_.Words[0].Start < End(old.Words[0]);
+            }
+            if (old.Marks.Count > 0 && new_.Marks.Count > 0)
+            {
+                again = PlainLists.Pairs(old.Marks, new_.Marks).All(pair => pair.Item1.Viseme == pair.Item2.Viseme
+                    && Math.Abs(pair.Item1.At - pair.Item2.At) < Slack);
+                var first = new_.Marks[0].At;
+                return !again && first < old.Marks[0].At + Slack && first < said;
+            }
+            return false;
+        }
+
+        private static bool Alike(SpokenWord one, SpokenWord other)
+        {
+            return one.Text == other.Text && Math.Abs(one.Start - other.Start) < Slack;
+        }
+
+        private static double End(SpokenWord word)
+        {
+            return word.End == null ? word.Start : word.End.Value;
+        }
+
+        /// <summary>Return when the last word or shape is over.</summary>
+        private static double EndOf(LineTiming timing)
+        {
+            var end = PlainNumbers.MaxOf(
+                new List<double> { 0.0 }.Concat(timing.Words.Select(word => End(word)).ToList()).ToList()
+            );
+            if (timing.Marks.Count > 0)
+            {
+                var mark = timing.Marks[timing.Marks.Count - 1];
+                end = Math.Max(end, mark.At + (mark.Viseme == "sil" ? 0.0 : Shape));
+            }
+            return end;
+        }
+
         /// <summary>
         /// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
         /// new begins; of a word or a shape that has begun meanwhile the rest is said.
@@ -495,7 +597,7 @@ namespace Metagraph
                 marks = old.Marks.Where(mark => mark.At < until).ToList();
                 marks.AddRange(shown);
             }
-            return new LineTiming(words.ToList(), marks.ToList());
+            return new LineTiming(words.ToList(), marks.ToList(), new_.Later);
         }
 
         private static bool Told(List<VisemeMark> marks, VisemeMark mark)

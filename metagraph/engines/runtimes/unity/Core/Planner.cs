@@ -10,10 +10,11 @@ namespace Metagraph
         /// <summary>
         /// The plan with new requests worked in, others withdrawn, and the horizon moved to `end`. What starts before `now` stays as
         /// it was; what was planned for later is taken back to its meta actions and planned again. leave: layers that nothing new concerns.
+        /// stopped: those withdrawn whose running action is left, too.
         /// </summary>
         internal static Plan Extend(
             Graph graph, Plan plan, double now, IEnumerable<MetaRequest> requests, double end, IDictionary<string, string> stances, bool idle,
-            HashSet<string> withdrawn, ICollection<string> leave)
+            HashSet<string> withdrawn, ICollection<string> leave, HashSet<string> stopped)
         {
             List<MetaRequest> fresh = Unique(requests);
             var again = new HashSet<string>(fresh.Select(r => r.Id));
@@ -33,8 +34,8 @@ namespace Metagraph
                 string stance;
                 stance = stances != null && stances.TryGetValue(layer, out stance) ? stance : null;
                 LayerDraft drafted = LayerPlanningRules.Draft(
-                    graph, of, idle ? of.Markov : null, of.Kinds, plan.Layers[layer], plan.Reports, plan.Seed, now, fresh, again, end, stance,
-                    moods);
+                    graph, of, idle ? of.Markov : null, of.Kinds, plan.Layers[layer], plan.Reports, plan.Seed, now, fresh, again, stopped, end,
+                    stance, moods);
                 layers[layer] = drafted.Performed(drafted.Placed.FindAll(m => !m.Written || Performed(of.Markov, plan, m, moods)), end);
                 reports.AddRange(drafted.Reports);
             }

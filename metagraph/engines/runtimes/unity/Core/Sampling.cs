@@ -375,17 +375,23 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Leave the running action early for the first of what is asked for that can be in time then. What a model wrote is left
-        /// at once, what was asked for where its retraction begins.
+        /// Leave the running action early for the first of what is asked for that can be in time then, and where it was `stopped`
+        /// in any case. What a model wrote, or is less important, is left at once, the rest where its retraction begins.
         /// </summary>
-        public void MakeWay(MetaAction running, List<MetaAction> asked, double now)
+        public void MakeWay(MetaAction running, List<MetaAction> asked, double now, bool stopped)
         {
+            if (stopped)
+            {
+                Retract(now);
+                return;
+            }
             var cue = Cues[Cues.Count - 1];
             if (running == null || cue.Action.Kind == "transition" || cue.End - cue.BlendOut <= now)
             {
                 return;
             }
-            var soonest = now + Math.Max(cue.BlendOut, CueShapesRules.Retraction);
+            var atOnce = now + Math.Max(cue.BlendOut, CueShapesRules.Retraction);
+            var retracts = atOnce;
             if (!running.Written)
             {
                 var once = cue.End - cue.Start;
@@ -406,13 +412,14 @@ namespace Metagraph
                     cue.Hold,
                     cue.Tempo
                 );
-                soonest = Math.Max(soonest, cue.Start + CueShapesRules.Hurried(Project, cue.Action, shape));
+                retracts = Math.Max(atOnce, cue.Start + CueShapesRules.Hurried(Project, cue.Action, shape));
             }
             var rest = Project.Settings.Rest;
             foreach (MetaAction meta in asked)
             {
                 var request = meta.Request;
                 var inTime = Latest(request) + CueShapesRules.SlackOf(request);
+                var soonest = meta.Rank > running.Rank ? atOnce : retracts;
                 if (request.Late == null || meta.Rank < running.Rank || inTime < soonest + rest - CueShapesRules.Fits)
                 {
                     continue;
@@ -445,6 +452,39 @@ namespace Metagraph
                 }
                 return;
             }
+        }
+
+        /// <summary>
+        /// Leave the running action: it goes back to its stance from where it is. A transition ends where it leads.
+        /// </summary>
+        public void Retract(double now)
+        {
+            var cue = Cues[Cues.Count - 1];
+            var end = now + CueShapesRules.Stopped;
+            if (cue.Action.Kind == "transition" || cue.End - cue.BlendOut <= now || cue.End <= end)
+            {
+                return;
+            }
+            Cues[Cues.Count - 1] = new Cue(
+                cue.Action,
+                cue.Start,
+                end,
+                cue.Entry,
+                cue.BlendIn,
+                CueShapesRules.Stopped,
+                cue.Stance,
+                cue.Then,
+                cue.Meta,
+                cue.HoldFrom,
+                cue.HoldTo,
+                cue.Hold,
+                cue.Extent,
+                cue.Tempo,
+                cue.CycleFrom,
+                cue.CycleTo
+            );
+            Free = end;
+            Ended[cue.Action.Id] = end;
         }
 
         /// <summary>Return when an action may be drawn again.</summary>

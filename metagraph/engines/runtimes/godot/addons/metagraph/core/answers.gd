@@ -1,8 +1,8 @@
 # What becomes of what was asked.
 
 const Hearing = preload("hearing.gd")
+const Meaning = preload("meaning.gd")
 const WORDS = {looks = "look", speeches = "speech", modes = "mode", places = "place", blinks = "blink", moods = "mood"}
-const LAST = ["looks", "speeches", "moods"]  # which have an end
 
 
 # Says what a plan does about an ask: {id, state: planned, late, done or refused, at, until: seconds or null, what: words, why}.
@@ -31,7 +31,7 @@ static func answers(plan, idents):
 	for lane in WORDS:
 		for item in plan.track[lane]:
 			for each in _of(found, item.id):
-				_plays(each, item.start, item.end if LAST.has(lane) else item.start, WORDS[lane])
+				_plays(each, item.start, _end_of(item, lane), WORDS[lane])
 	for report in plan.reports:
 		for each in _of(found, report.request):
 			if not each.why.has(report.message):
@@ -52,6 +52,13 @@ static func _of(found, made):
 		if found.has(owner):
 			out.append(found[owner])
 	return out
+
+
+# Returns when something that lasts ends: a mode or a place when another one comes, a blink at once.
+static func _end_of(item, lane):
+	if lane == "modes" or lane == "places":
+		return Meaning.FOREVER
+	return item.start if lane == "blinks" else item.end
 
 
 static func _plays(each, start, end, word):

@@ -12,6 +12,7 @@ const Phases = preload("phases.gd")
 const Util = preload("util.gd")
 const FITS = 1e-06  # seconds by which sums of times may be off
 const HURRY = 2.0  # a hold is played at most this many times as fast as it was made
+const STOPPED = 0.3  # seconds in which an action that is taken back goes back to its stance, from where it is
 const RETRACTION = 0.4  # seconds in which an action whose retraction is cut goes back to its stance, at the least
 const SHARED = 0.25  # seconds within which two strokes may be one
 

@@ -151,9 +151,37 @@ const _STOPS = {
 	"–": 1.5,
 	"—": 1.5,
 	"(": 1.0,
-	")": 1.0
+	")": 1.0,
+	"，": 1.5,
+	"、": 1.5,
+	"。": 3.0,
+	"！": 3.0,
+	"？": 3.0
 }
 const _BLANK = 0.35  # characters' time of anything else between words
+
+
+# Letters that are syllables, by their code points. size: characters' time of one.
+class Syllabary:
+	var first
+	var last
+	var size
+
+	func _init(first_, last_, size_):
+		self.first = first_
+		self.last = last_
+		self.size = size_
+
+
+static func _SYLLABARIES():
+	return [
+		Syllabary.new(12353, 12543, 2.0),
+		Syllabary.new(65382, 65437, 2.0),
+		Syllabary.new(13312, 40959, 3.0),
+		Syllabary.new(63744, 64255, 3.0),
+		Syllabary.new(131072, 205743, 3.0),
+		Syllabary.new(44032, 55203, 3.0)
+	]
 
 
 # Return the mouth shapes of a word's letters, in turn.
@@ -277,7 +305,19 @@ class Spelled:
 
 # Return how long a text takes to say, seconds.
 static func read_aloud(alphabet, text):
-	return Util.most(SHORTEST, (float(alphabet.letters(alphabet.stripped(text)).size()) / PACE))
+	var letters = alphabet.letters(alphabet.stripped(text))
+	var found = []
+	for letter in letters:
+		found.append(_size_of(alphabet.code(letter)))
+	return Util.most(SHORTEST, Util.sum(found) / PACE)
+
+
+# Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
+static func _size_of(code):
+	for script in _SYLLABARIES():
+		if script.first <= code and code <= script.last:
+			return script.size
+	return 1.0
 
 
 # Return what a text says in `duration` seconds; nothing where no letter of it is known.

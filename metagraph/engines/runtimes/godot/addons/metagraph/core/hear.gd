@@ -28,6 +28,6 @@ static func hear(graph, plan, now, asks, end, stances, idle):
 			if not heard.touched.has(layer):
 				leave.append(layer)
 	plan = Util.but(plan, {track = heard.track})
-	var after = Planner.extend_plan(graph, plan, fixed, meant.requests, end, stances, idle, heard.withdrawn, leave)
+	var after = Planner.extend_plan(graph, plan, fixed, meant.requests, end, stances, idle, heard.withdrawn, leave, heard.stopped)
 	after.reports += meant.refused
 	return after

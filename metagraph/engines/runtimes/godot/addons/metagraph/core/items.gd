@@ -135,6 +135,27 @@ static func apart(speeches):
 	return out
 
 
+# Return a text that comes while another one of its id is said: it is said after that. said: in order.
+static func behind(said, new, now):
+	if new.timing != null or new.line != null or new.start > now:
+		return new
+	var end = new.start
+	for speech in said:
+		var plain = speech.timing == null and speech.line == null and speech.length == null
+		if speech.id == new.id and plain and speech.start <= end and end < speech.end:
+			end = speech.end
+	return new if end == new.start else Speech.new(
+		new.id,
+		end,
+		end + (new.end - new.start),
+		new.line,
+		new.text,
+		new.priority,
+		new.length,
+		new.timing
+	)
+
+
 # Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start and what has
 # been said of it. Only lines whose words or shapes were told with their times do.
 static func going_on(old, new, now):
@@ -142,9 +163,11 @@ static func going_on(old, new, now):
 		return new
 	if Util.most(old.start, new.start) > now and old.start != new.start:
 		return new
-	if old.end <= now and not LineTiming.tells_on(old.timing, new.timing):
+	var said = Util.most(now - old.start, 0.0)
+	if old.end <= now and not LineTiming.tells_on(old.timing, LineTiming.shifted(new.timing, old.timing.later)):
 		return new
-	var timing = LineTiming.extended(old.timing, new.timing, Util.most(now - old.start, 0.0))
+	var told = new.timing if old.start > now else LineTiming.placed(old.timing, new.timing, said)
+	var timing = LineTiming.extended(old.timing, told, said)
 	var length = Util.most(LineTiming.timed_seconds(timing, null), new.end - new.start)
 	var more = new.text == "" or new.text == LineTiming.told_text(new.timing)
 	return Speech.new(

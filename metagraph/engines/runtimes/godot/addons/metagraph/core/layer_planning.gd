@@ -64,9 +64,9 @@ class LayerDraft:
 # Return a layer's plan taken back to `now`, with what is asked for placed anew.
 #
 # chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far. fresh:
-# requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the layer would begin in.
-# moods: what it is in the mood for, and when.
-static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, end, stance, moods):
+# requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those withdrawn, whose running
+# action is left. stance: which the layer would begin in. moods: what it is in the mood for, and when.
+static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, stopped, end, stance, moods):
 	var layer = graph.layer
 	var asked = []
 	for request in fresh:
@@ -159,7 +159,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				first = meta3
 				break
 		var running = first
-		performer.make_way(running, asked, now)
+		performer.make_way(running, asked, now, running != null and stopped.has(running.request.id))
 	performer.free_ = Util.most(now - (performer.ready() - performer.free_), performer.free_)
 	var delayed
 	var both2 = Replan.delay(asked, performer.ready(), project.settings)

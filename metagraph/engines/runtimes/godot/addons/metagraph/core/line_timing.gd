@@ -124,14 +124,17 @@ class VisemeMark:
 		self.weight = weight_
 
 
-# A line's words and mouth shapes, each by time.
+# A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something came
+# after its time.
 class LineTiming:
 	var words
 	var marks
+	var later
 
-	func _init(words_ = null, marks_ = null):
+	func _init(words_ = null, marks_ = null, later_ = 0.0):
 		self.words = words_ if words_ != null else []
 		self.marks = marks_ if marks_ != null else []
+		self.later = later_
 
 
 # Whether two lines' words and shapes come alike.
@@ -273,12 +276,7 @@ static func told_text(timing):
 # Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing. duration: of
 # its sound, None for as long as its words and shapes need.
 static func timed_seconds(timing, duration):
-	var last = 0.0
-	for word in timing.words:
-		last = Util.most(last, word.start if word.end == null else word.end)
-	if timing.marks.size() > 0:
-		var mark = timing.marks[-1]
-		last = Util.most(last, mark.at + (0.0 if mark.viseme == "sil" else SHAPE))
+	var last = _end_of(timing)
 	return (int(ceil((last + Mouth.LATE if duration == null else Util.most(duration, last)) / Mouth.STEP - 1e-06)) * Mouth.STEP)
 
 
@@ -339,6 +337,94 @@ static func tells_on(old, new):
 	return false
 
 
+# Return a timing `by` seconds later.
+static func shifted(timing, by):
+	if by == 0:
+		return timing
+	var words = []
+	for word in timing.words:
+		words.append(SpokenWord.new(word.text, word.start + by, null if word.end == null else word.end + by))
+	var found = []
+	for mark in timing.marks:
+		found.append(VisemeMark.new(mark.at + by, mark.viseme, mark.weight))
+	return LineTiming.new(Util.list(words), found)
+
+
+# Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes after what was
+# told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line that are over.
+static func placed(old, new, said):
+	var end = _end_of(old)
+	if restarts(old, new, said):
+		return LineTiming.new(shifted(new, Util.most(said, end)).words, shifted(new, Util.most(said, end)).marks, old.later)
+	var told = shifted(new, old.later)
+	var by = 0.0
+	if old.words.size() > 0 and told.words.size() > 0:
+		var words = []
+		for word in told.words:
+			if word.start > old.words[-1].start:
+				words.append(word)
+		var holds = words.size() > 0
+		if holds:
+			var found = []
+			for word in words:
+				found.append(_end(word))
+			holds = Util.most_of(found) <= said
+		if holds:
+			by = Util.most(said, end) - words[0].start
+	elif old.marks.size() > 0 and told.marks.size() > 0:
+		var marks = []
+		for mark in told.marks:
+			if mark.at > old.marks[-1].at:
+				marks.append(mark)
+		if marks.size() > 0 and marks[-1].at + SHAPE <= said:
+			by = Util.most(said, end) - marks[0].at
+	return LineTiming.new(shifted(told, by).words, shifted(told, by).marks, old.later + by)
+
+
+# Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and does not tell
+# that again.
+static func restarts(old, new, said):
+	var again
+	if old.words.size() > 0 and new.words.size() > 0:
+		var same = 0
+		while same < Util.least(old.words.size(), new.words.size()) and _alike(old.words[same], new.words[same]):
+			same += 1
+		again = same > 0 and new.words.size() >= old.words.size()
+		return same < new.words.size() and not again and new.words[0].start < _end(old.words[0])
+	if old.marks.size() > 0 and new.marks.size() > 0:
+		var are_all = true
+		for n in range(old.marks.size()):
+			var a = old.marks[n]
+			var b = new.marks[n]
+			if not (a.viseme == b.viseme and Util.absolute(a.at - b.at) < SLACK):
+				are_all = false
+				break
+		again = are_all
+		var first = new.marks[0].at
+		return not again and first < old.marks[0].at + SLACK and first < said
+	return false
+
+
+static func _alike(one, other):
+	return one.text == other.text and Util.absolute(one.start - other.start) < SLACK
+
+
+static func _end(word):
+	return word.start if word.end == null else word.end
+
+
+# Return when the last word or shape is over.
+static func _end_of(timing):
+	var found = []
+	for word in timing.words:
+		found.append(_end(word))
+	var end = Util.most_of([0.0] + found)
+	if timing.marks.size() > 0:
+		var mark = timing.marks[-1]
+		end = Util.most(end, mark.at + (0.0 if mark.viseme == "sil" else SHAPE))
+	return end
+
+
 # Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new begins;
 # of a word or a shape that has begun meanwhile the rest is said.
 static func extended(old, new, said):
@@ -388,7 +474,7 @@ static func extended(old, new, said):
 				found6.append(mark)
 		marks = found6
 		Util.extend(marks, shown)
-	return LineTiming.new(Util.list(words), Util.list(marks))
+	return LineTiming.new(Util.list(words), Util.list(marks), new.later)
 
 
 static func _told(marks, mark):

@@ -27,8 +27,9 @@ static func empty_plan(seed32):
 
 
 # Returns the plan with new requests worked in, others withdrawn {id: true}, and the horizon moved to `end`. What starts before
-# `now` stays exactly as it was. leave: layers that are planned to `end` already and that nothing new concerns.
-static func extend_plan(graph, plan, now, requests, end, stances, idle, withdrawn, leave):
+# `now` stays exactly as it was. leave: layers that are planned to `end` already and that nothing new concerns. stopped: those
+# withdrawn whose running action is left, too.
+static func extend_plan(graph, plan, now, requests, end, stances, idle, withdrawn, leave, stopped = {}):
 	var latest = {}  # of two with one id the later counts, in the place of the first
 	for request in requests:
 		latest[request.id] = request
@@ -48,7 +49,7 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 			continue
 		var of = graph.layers[layer]
 		var drafted = LayerPlanning.draft(
-			graph, of, of.markov if idle else null, of.kinds, plan.layers[layer], plan.reports, plan.seed32, now, fresh, again, end,
+			graph, of, of.markov if idle else null, of.kinds, plan.layers[layer], plan.reports, plan.seed32, now, fresh, again, stopped, end,
 			stances.get(layer), moods
 		)
 		layers[layer] = drafted.performed(_performed(graph, plan, layer, drafted.placed, moods), end)

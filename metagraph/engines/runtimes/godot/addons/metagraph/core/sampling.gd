@@ -286,13 +286,17 @@ class Performer:
 				return Util.most(soonest, Bounds.begins(other) - rest)
 		return INF
 
-	# Leave the running action early for the first of what is asked for that can be in time then. What a model wrote is left at
-	# once, what was asked for where its retraction begins.
-	func make_way(running, asked, now):
+	# Leave the running action early for the first of what is asked for that can be in time then, and where it was `stopped` in
+	# any case. What a model wrote, or is less important, is left at once, the rest where its retraction begins.
+	func make_way(running, asked, now, stopped):
+		if stopped:
+			self.retract(now)
+			return
 		var cue = self.cues[-1]
 		if running == null or cue.action.kind == "transition" or cue.end - cue.blend_out <= now:
 			return
-		var soonest = now + Util.most(cue.blend_out, CueShapes.RETRACTION)
+		var at_once = now + Util.most(cue.blend_out, CueShapes.RETRACTION)
+		var retracts = at_once
 		if not running.written:
 			var once = cue.end - cue.start
 			if cue.repeats:
@@ -307,11 +311,12 @@ class Performer:
 				cue.hold,
 				cue.tempo
 			)
-			soonest = Util.most(soonest, cue.start + CueShapes.hurried(self.project, cue.action, shape))
+			retracts = Util.most(at_once, cue.start + CueShapes.hurried(self.project, cue.action, shape))
 		var rest = self.project.settings.rest
 		for meta in asked:
 			var request = meta.request
 			var in_time = self._latest(request) + CueShapes.slack_of(request)
+			var soonest = at_once if meta.rank > running.rank else retracts
 			if request.late == null or meta.rank < running.rank or in_time < soonest + rest - CueShapes.FITS:
 				continue
 			var end = Util.most(soonest, Bounds.begins(meta) - rest)
@@ -339,6 +344,33 @@ class Performer:
 				self.free_ = end
 				self.ended[cue.action.id] = end
 			return
+
+	# Leave the running action: it goes back to its stance from where it is. A transition ends where it leads.
+	func retract(now):
+		var cue = self.cues[-1]
+		var end = now + CueShapes.STOPPED
+		if cue.action.kind == "transition" or cue.end - cue.blend_out <= now or cue.end <= end:
+			return
+		self.cues[-1] = MetaPlan.Cue.new(
+			cue.action,
+			cue.start,
+			end,
+			cue.entry,
+			cue.blend_in,
+			CueShapes.STOPPED,
+			cue.stance,
+			cue.then,
+			cue.meta,
+			cue.hold_from,
+			cue.hold_to,
+			cue.hold,
+			cue.extent,
+			cue.tempo,
+			cue.cycle_from,
+			cue.cycle_to
+		)
+		self.free_ = end
+		self.ended[cue.action.id] = end
 
 	# Return when an action may be drawn again.
 	func _cooled(action):
