@@ -81,7 +81,9 @@ def _plugin(order: ExportOrder) -> ExportedFiles:
     made = write_with_sounds(order)
     files = copy_runtime(RUNTIMES / "unreal", order.folder / PLUGIN)
     core = order.folder / PLUGIN / "Source" / "Metagraph" / "Private" / "Core"
-    files += copy_runtime(RUNTIMES / "cpp", core, ("README.md", "conformance.hpp", "conformance.cpp"))
+    files += copy_runtime(
+        RUNTIMES / "cpp", core, ("README.md", "LICENSE", "conformance.hpp", "conformance.cpp")
+    )
     return ExportedFiles((*made.files, *files), made.notes)
 
 
