@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -33,11 +33,11 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.speech.sound import sound_ending
 
-# Endings that engines import: of each, the container that libsndfile names, and codings.
-WAV = {".wav": (("WAV", "WAVEX"), ("PCM", "FLOAT"))}
-OGG_AND_MP3 = {".ogg": (("OGG",), ("VORBIS",)), ".mp3": (("MP3", "MPEG"), ("MPEG",))}
-AIFF = {".aiff": (("AIFF",), ("PCM",)), ".aif": (("AIFF",), ("PCM",))}
-Imported = Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]
+# Endings that engines import: of each, the containers that libsndfile names, and codings.
+Imported = dict[str, tuple[tuple[str, ...], tuple[str, ...]]]
+WAV: Imported = {".wav": (("WAV", "WAVEX"), ("PCM", "FLOAT"))}
+OGG_AND_MP3: Imported = {".ogg": (("OGG",), ("VORBIS",)), ".mp3": (("MP3", "MPEG"), ("MPEG",))}
+AIFF: Imported = {".aiff": (("AIFF",), ("PCM",)), ".aif": (("AIFF",), ("PCM",))}
 Chosen = Callable[[Path], bool]
 
 

@@ -202,7 +202,7 @@ def test_the_tree_plays_states_of_any_name_and_the_glb_is_read_without_an_error(
     sample: Project, tmp_path: Path, browse: Browser
 ) -> None:
     arms = sample.graphs["arms"]
-    gestures = list(arms.of(arms.start, "gesture"))[:4]
+    gestures = list(arms.of(str(arms.start), "gesture"))[:4]
     odd = ("手を振る", "ride a motorcycle", "Scratch_LOOP 2", "👋")
     project = sample
     for gesture, name in zip(gestures, odd, strict=True):
