@@ -35,6 +35,8 @@ def page() -> str:
         line for line in "\n\n".join(part.strip() for part in parts).splitlines() if not _of_sessions(line)
     ]
     body = re.sub(r"\[([^\]]+)\]\([^)#]+[^)]*\)", r"\1", "\n".join(lines))  # pages that are not there
+    # Nor are programs that measure, and sources.
+    body = re.sub(r"\s\(`tests/[^)]*\)|\n`metagraph/\S+\.py` [^.]*\.\n", "", body)
     return f"""# Requests
 
 What may be asked of a character, as objects whose `do` says which; `after` counts seconds from now and wins

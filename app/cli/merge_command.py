@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path
 
 from app.cli.command_output import say
@@ -35,6 +35,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="whose value to keep where both changed the same (default: ours)",
     )
     parser.add_argument("--name", help="what to call the project in reports (Git passes %%P)")
+    parser.formatter_class = RawDescriptionHelpFormatter
+    parser.epilog = f"with Git:\n{SETUP.format(driver='metagraph', suffix=SUFFIX)}"
 
 
 SETUP = """\

@@ -10,8 +10,7 @@ an arrow:
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,13 +19,13 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.engines.engine_names import name_apart, number_apart, write_word
 from metagraph.graph import anatomy
 from metagraph.graph.expand import chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, REACH, Action, ClipEntry, Layer, MetaGraph, Project
 from metagraph.graph.repeating import cycle_of, seconds_played
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import unique_names
 from metagraph.playback.plan import Cue
 from metagraph.playback.posing.layers import keep_to, sample_cue
 
@@ -36,8 +35,8 @@ Array = NDArray[Any]
 @dataclass(frozen=True, slots=True)
 class EngineState:
     """An action as a state. number: from 1 on, unique in its layer. name: unique in the whole export,
-    letters, digits and "_"; its animation bears it, too. seconds: how long it plays. loop: whether it repeats
-    until something else is asked.
+    letters, digits and "_"; its animation bears it, too. Both stay the action's own. seconds: how long it
+    plays. loop: whether it repeats until something else is asked.
     """
 
     number: int
@@ -64,7 +63,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Machine:
-    """One layer. stances: id -> number, from 0 on, the start's first. joints: the names of those it moves."""
+    """One layer. stances: id -> number, from 1 on, the start's first. joints: the names of those it moves."""
 
     layer: Layer
     graph: MetaGraph
@@ -76,11 +75,8 @@ class Machine:
     @cached_property
     def stance_words(self) -> Mapping[str, str]:
         """Stance -> what it is called in events: its name, made of letters, digits and "_"."""
-        out: dict[str, str] = {}
-        for ident, number in self.stances.items():
-            word = re.sub(r"[^A-Za-z0-9]+", "_", self.graph.stances[ident].name).strip("_") or "stance"
-            out[ident] = f"{word}_{number}" if word in out.values() else word
-        return out
+        names = {ident: self.graph.stances[ident].name for ident in self.stances}
+        return name_apart({ident: write_word(name) or write_word(ident) for ident, name in names.items()})
 
     def hop(self, here: str, goal: str) -> EngineState | None:
         """Return the first transition of the shortest way between two stances, None where there is none."""
@@ -106,17 +102,17 @@ class Machine:
         return {name: tuple(arrows) for name, arrows in out.items()}
 
 
-def machines(project: Project) -> tuple[Machine, ...]:
-    """Return the machines of the layers that have a stance with a loop, in the layers' order."""
-    every = [a for layer in LAYERS for a in _playing(project.graphs[layer])]
-    names = unique_names([f"{a.layer}_{_word(a.name)}" for a in every])
-    named = {a.id: name for a, name in zip(every, names, strict=True)}
+def machines(project: Project, spell: Callable[[Action, str], str] | None = None) -> tuple[Machine, ...]:
+    """Return the machines of the layers that have a stance with a loop, in the layers' order. spell: returns
+    how an engine spells the name of an action's state.
+    """
+    texts: dict[str, str] = {}
+    for action in (a for layer in LAYERS for a in _playing(project.graphs[layer])):
+        text = f"{action.layer}_{write_word(action.name) or write_word(action.id)}"
+        texts[action.id] = text if spell is None else spell(action, text)
+    named = name_apart(texts)
     found = (_machine(project, project.graphs[layer], named) for layer in LAYERS)
     return tuple(m for m in found if m is not None)
-
-
-def _word(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "action"
 
 
 def _playing(graph: MetaGraph) -> Iterator[Action]:
@@ -132,12 +128,13 @@ def _machine(project: Project, graph: MetaGraph, named: Mapping[str, str]) -> Ma
     begin = graph.start if graph.start in resting else next(iter(resting), None)
     if begin is None or project.skeleton is None:
         return None
-    stances = {s: n for n, s in enumerate(sorted(resting, key=lambda s: s != begin))}
+    stances = number_apart(sorted(resting, key=lambda s: s != begin))
+    playing = {action.id: action for action in _playing(graph)}
     states: dict[str, EngineState] = {}
-    for number, action in enumerate(_playing(graph), 1):
+    for (ident, number), action in zip(number_apart(playing).items(), playing.values(), strict=True):
         start, end = project.span(action)
         seconds = seconds_played(action.kind, action.timing, start, end)
-        states[action.id] = EngineState(number, named[action.id], action, seconds, action.kind == "stance")
+        states[ident] = EngineState(number, named[ident], action, seconds, action.kind == "stance")
     part = anatomy.project_parts(project)
     joints = tuple(
         n

@@ -33,12 +33,31 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.speech.sound import sound_ending
 
+# Endings that engines import: of each, the containers that libsndfile names, and codings.
+Imported = dict[str, tuple[tuple[str, ...], tuple[str, ...]]]
+WAV: Imported = {".wav": (("WAV", "WAVEX"), ("PCM", "FLOAT"))}
+OGG_AND_MP3: Imported = {".ogg": (("OGG",), ("VORBIS",)), ".mp3": (("MP3", "MPEG"), ("MPEG",))}
+AIFF: Imported = {".aiff": (("AIFF",), ("PCM",)), ".aif": (("AIFF",), ("PCM",))}
 Chosen = Callable[[Path], bool]
 
 
 def choose_nothing(path: Path) -> bool:
     """Return False for every file: the user did not choose it."""
     return False
+
+
+@dataclass(frozen=True)
+class LineSounds:
+    """The sounds of lines that go into an export, relative to the folder `base`.
+
+    A project may come from anybody and name any file. So only sounds that are in the project's folder, or
+    that this user has `chosen` by hand, go into an export. What the engine has not `imported` becomes a WAV
+    file; None for an engine that takes all.
+    """
+
+    base: Path
+    chosen: Chosen = choose_nothing
+    imported: Imported | None = None
 
 
 @dataclass(frozen=True)
@@ -117,13 +136,11 @@ def write_project_files(
     expanded: bool = False,
     character: Path | CharacterMesh | None = None,
     progress: Callable[[int, int, str], None] | None = None,
-    base: Path | None = None,
-    chosen: Chosen = choose_nothing,
+    voices: LineSounds | None = None,
     compress: bool = False,
 ) -> Exported:
     """Write a project that has clips without checking it for errors. The arguments are those of
-    `export_project`. `base` is the folder that the sounds of its lines are relative to; if it is given, they
-    are copied into `lines/`. `chosen` is as in `_sounds`.
+    `export_project`. `voices` are copied into `lines/`, if they are given.
     """
     project = writable(project)
     tell = progress or (lambda done, total, words: None)
@@ -139,38 +156,32 @@ def write_project_files(
     document = to_document(project, glb.name, names, expanded)
     document.glb_bytes, document.glb_sha256 = glb.stat().st_size, digest(glb)
     document.exporter = f"Metagraph {__version__}"
-    sounds, missing = _sounds(document, target, base, chosen) if base is not None else ((), ())
+    sounds, missing = _sounds(document, target, voices) if voices is not None else ((), ())
     tell(2, 3, "writing")
     write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
     tell(3, 3, "done")
     return Exported(json, glb, len(used), (*notes, *missing), sounds)
 
 
-def _sounds(
-    document: c.Export, folder: Path, base: Path, chosen: Chosen
-) -> tuple[tuple[Path, ...], tuple[str, ...]]:
+def _sounds(document: c.Export, folder: Path, voices: LineSounds) -> tuple[tuple[Path, ...], tuple[str, ...]]:
     """Copy the sounds of a document's lines beside it, and set their names there; return the files, and what
     is missing, in words.
-
-    A project may come from anybody and name any file. So only sounds that are in the project's folder, or
-    that this user has `chosen` by hand, go into an export.
     """
     lines = [(ident, line) for ident, line in document.lines.items() if line.audio]
     names = file_stems(Path(str(line.audio)).stem for _, line in lines)
     files, missing = [], []
     for (ident, line), name in zip(lines, names, strict=True):
-        source = base / str(line.audio)
+        source = voices.base / str(line.audio)
         try:
             ending = sound_ending(source)
-            if not is_inside(source, base) and not chosen(source):
+            if not is_inside(source, voices.base) and not voices.chosen(source):
                 remedy = "Move it there, or choose the line's sound by hand."
                 raise FileError(
                     source, phrase("is outside the project's folder"), phrase("its sound"), remedy
                 )
-            inside = f"lines/{name}{ending}" if line.channel is None else f"lines/{name}.wav"
-            content = (
-                read_file(source, SOUND_FILE) if line.channel is None else _channel(source, line.channel)
-            )
+            as_it_is = line.channel is None and _is_imported(source, ending, voices.imported)
+            inside = f"lines/{name}{ending if as_it_is else '.wav'}"
+            content = read_file(source, SOUND_FILE) if as_it_is else _as_wav(source, line.channel)
         except Exception as error:  # one bad sound never spoils an export
             missing.append(f"the sound of line '{ident}' is left out: {unforeseen_error(source, error)}")
             document.lines[ident] = msgspec.structs.replace(line, audio=None, channel=None)
@@ -181,17 +192,32 @@ def _sounds(
     return tuple(files), tuple(missing)
 
 
-def _channel(source: Path, channel: int | None) -> bytes:
-    """Return one channel of a sound as a WAV file of its own, because engines cannot choose channels. Raises
-    FileError.
+def _is_imported(source: Path, ending: str, imported: Imported | None) -> bool:
+    """Return whether an engine imports a sound as it is."""
+    import soundfile
+
+    if imported is None:
+        return True
+    containers, codings = imported.get(ending, ((), ()))
+    info = soundfile.info(str(source))
+    return info.format in containers and info.subtype.startswith(codings)
+
+
+def _as_wav(source: Path, channel: int | None) -> bytes:
+    """Return a sound as a WAV file; one channel of it, because engines cannot choose channels, or all if
+    None. Raises FileError.
     """
     import io
 
     import soundfile
 
-    from metagraph.speech.sound import read_sound
+    from metagraph.speech.sound import read_recording, read_sound
 
-    samples, rate = read_sound(source, channel)
+    if channel is None:
+        recording = read_recording(source)
+        samples, rate = recording.samples.T, recording.rate
+    else:
+        samples, rate = read_sound(source, channel)
     out = io.BytesIO()
     soundfile.write(out, samples, rate, format="WAV", subtype="PCM_16")
     return out.getvalue()

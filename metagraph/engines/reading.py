@@ -94,6 +94,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         base = BasePose(BASE)
         rigs["body"] = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
         rigs["weight"] = read_weight(document.weight_rig, document.clips, skeleton)
+        rigs["vigours"] = {a.id: a.vigour for layer in document.layers.values() for a in layer.actions}
         touch = Touch(False, False)
         if document.contact_rig is not None:
             rigs["contact_rig"] = found = read_contact_rig(document.contact_rig, skeleton)

@@ -162,8 +162,9 @@ class Evaluator:
                 shares.append((cue.action, float(cue.clip_seconds(seconds)), weight))
             if rest is not None:
                 elapsed = np.array([seconds - rest.start])
-                at = float(loop_seconds(self.project, rest.action, elapsed)[0][0])
-                shares.append((rest.action, at, 1 - weight))
+                at, other, old = (float(x[0]) for x in loop_seconds(self.project, rest.action, elapsed))
+                shares.append((rest.action, at, (1 - weight) * (1 - old)))
+                shares.append((rest.action, other, (1 - weight) * old))
             for action, at, share in shares:
                 motion = playable(self.project, action)
                 if motion is not None and share > 0:

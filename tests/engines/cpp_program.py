@@ -139,6 +139,12 @@ static int lowered() {
     return 0;
 }
 
+/// Reads pairs of numbers and writes what is left of their divisions, with all bits.
+static int left() {
+    for (double a, b; std::cin >> a >> b;) std::cout << std::hexfloat << lang::modulo(a, b) << '\n';
+    return 0;
+}
+
 static int live(Character& character, const Json& steps) {
     List<std::string> ids;
     for (const Json& step : steps.items) {
@@ -169,6 +175,7 @@ int main(int count, char** words) {
     if (what == "example") return example();
     if (what == "unreal") return unreal(count - 1, words + 1);
     if (what == "lowered") return lowered();
+    if (what == "left") return left();
     CHOICES
     const std::string text = read(words[count - 1]);
     json::Parser parser(text);

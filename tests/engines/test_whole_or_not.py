@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
 
 from metagraph.common.file_names import fold_file_name
@@ -223,6 +224,35 @@ def test_a_sound_outside_the_project_s_folder_is_copied_where_the_user_chose_it(
         "lines/ho.wav",
     }
     assert len(asked) == 2
+
+
+@pytest.mark.parametrize(
+    ("target", "kept"),
+    [("godot", {"a.wav", "b.wav", "c.ogg", "d.wav", "e.wav"}), ("unity", {"a.wav", "b.wav", "c.ogg", "d.aiff", "e.wav"}),
+     ("javascript", {"a.flac", "b.wav", "c.ogg", "d.aiff", "e.wav"})],
+)  # fmt: skip
+def test_sounds_that_an_engine_does_not_import_become_wav_files(
+    small: Project, tmp_path: Path, target: str, kept: set[str]
+) -> None:
+    import soundfile
+
+    base = tmp_path / "project"
+    base.mkdir()
+    samples = np.linspace(-0.5, 0.5, 3200).reshape(-1, 2)
+    for name in ("a.flac", "b.wav", "c.ogg", "d.aiff"):
+        soundfile.write(base / name, samples, 16000)
+    soundfile.write(base / "e.wav", samples, 16000, subtype="IMA_ADPCM")
+    project = with_lines(small, **{name: name for name in ("a.flac", "b.wav", "c.ogg", "d.aiff", "e.wav")})
+    out = tmp_path / "out"
+    made = registry.write_for_target(project, target, out, Contents(base=base))
+    assert {p.name for p in (out / "lines").iterdir()} == kept
+    said = msgspec.json.decode(made.files[0].read_bytes())["lines"].values()
+    assert {line["audio"] for line in said} == {f"lines/{name}" for name in kept}
+    read, rate = soundfile.read(out / "lines" / min(kept))
+    assert rate == 16000 and np.abs(read - samples).max() < 1e-4
+    assert (out / "lines" / "b.wav").read_bytes() == (base / "b.wav").read_bytes()
+    changed = soundfile.info(str(out / "lines" / "e.wav")).subtype == "PCM_16"
+    assert changed == (target != "javascript")
 
 
 def test_a_link_out_of_the_project_s_folder_is_outside(small: Project, tmp_path: Path) -> None:

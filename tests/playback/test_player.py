@@ -319,6 +319,30 @@ def test_a_loop_comes_round_without_a_jump_with_and_without_a_seam(project: Proj
     assert jump(make_plan(project, 20, idle=False), project, 2.0) < 1e-3
 
 
+def test_morph_targets_of_a_loop_come_round_without_a_jump_where_it_has_a_seam(
+    project: Project, toy: Any
+) -> None:
+    clip = toy.clip("open", 2.0, 0.0, 0.5)
+    rising = np.linspace(0.0, 1.0, clip.frames, dtype=np.float32)[:, None]
+    opened = edits.add_clips(
+        everywhere(project), [("open.glb", 0, "", replace(clip, morphs=("smile",), weights=rising))]
+    )
+    [ident] = [e.id for e in opened.clips.values() if e.name == "open"]
+
+    def smiles(seam: float, times: Any) -> Any:
+        seamed = edits.update_actions(
+            opened, [toy.id(project, "rest loop")], clip=ident, timing={"blend_in": seam}
+        )
+        plan = make_plan(seamed, 20, idle=False)
+        return np.array([morphs_at(plan, seamed, float(time), alive=False)["smile"] for time in times])
+
+    times = np.arange(1.0, 6.0, 0.01)
+    assert np.abs(np.diff(smiles(0.4, times))).max() < 0.05
+    assert np.abs(np.diff(smiles(0.0, times))).max() > 0.9
+    middle, edges = smiles(0.4, [1.8])[0], (0.1, 0.9)
+    assert middle == pytest.approx(sum(edges) / 2, abs=1e-3)
+
+
 def test_a_seamed_loop_begins_anew_after_an_action_without_a_jump_even_where_the_action_leaves_joints_alone(
     project: Project, toy: Any
 ) -> None:

@@ -16,6 +16,7 @@ from metagraph.common.file_names import file_stems
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.common.xml_text import replaced_note
 from metagraph.engines.engine_machine import EngineState, Machine, animations, machines, write_machine_glb
+from metagraph.engines.engine_names import name_files, write_word
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
@@ -133,16 +134,18 @@ def gesture_map(name: str, built: tuple[Machine, ...], files: Mapping[str, str])
                     "",
                     posture,
                 )
-                rows.append(f"gestures.addGestureMapping({', '.join(json.dumps(w) for w in words)})")
+                called = json.dumps(state.action.name, ensure_ascii=False)
+                rows.append(
+                    f"gestures.addGestureMapping({', '.join(json.dumps(w) for w in words)})  # {called}"
+                )
     return "\n".join(rows) + "\n"
 
 
 def _words(state: EngineState) -> tuple[str, str]:
     """Return a gesture's lexeme and type: its tags, else its name."""
-    tags = [re.sub(r"\W+", "_", tag).upper() for tag in state.action.tags]
-    return (tags[0] if tags else re.sub(r"\W+", "_", state.action.name).upper()), (
-        tags[1] if len(tags) > 1 else ""
-    )
+    tags = [word for tag in state.action.tags if (word := write_word(tag).upper())]
+    name = write_word(state.action.name) or state.action.id
+    return (tags[0] if tags else name.upper()), (tags[1] if len(tags) > 1 else "")
 
 
 def write_smartbody(order: ExportOrder) -> ExportedFiles:
@@ -153,7 +156,8 @@ def write_smartbody(order: ExportOrder) -> ExportedFiles:
     script = order.folder / f"{order.stem}_gestures.py"
     wanted = {s.name for m in built for s in m.states if s.action.kind in ("gesture", "stance")}
     clips = [clip for clip in animations(order.project, built) if clip.name in wanted]
-    names = dict(zip((clip.name for clip in clips), file_stems(clip.name for clip in clips), strict=True))
+    idents = {s.name: s.action.id for m in built for s in m.states}
+    names = name_files({clip.name: idents[clip.name] for clip in clips})
     write_atomically(script, gesture_map(order.stem, built, names).encode())
     files = [script]
     for n, (clip, name) in enumerate(zip(clips, names.values(), strict=True)):

@@ -42,7 +42,7 @@ from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportT
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.expand import find_end_stance
-from metagraph.graph.model import Layer, Part, Project
+from metagraph.graph.model import Action, Layer, Part, Project
 
 Version = Literal[3, 4]
 Place = tuple[float, float]
@@ -56,6 +56,13 @@ OWNER: Mapping[Part, Layer] = {
 }
 AT_END, AUTO = 2, 2  # of Godot's enumerations of switch and advance modes
 CELL = (240, 60)  # pixels a state takes up in the editor
+
+
+def spell_for_godot(action: Action, name: str) -> str:
+    """Return a state's name as Godot's importers leave it: they make a loop of each animation whose name ends
+    in "loop" or "cycle", and take "_loop" and the like off, whatever digits are behind.
+    """
+    return f"{name}_{action.kind}" if re.search(r"(loops?|loop_mode|cycle)[\d_]*$", name.lower()) else name
 
 
 class _Resources:
@@ -147,8 +154,8 @@ def _machine(out: _Resources, machine: Machine) -> str:
     fields: list[str] = []
     for state, (x, y) in _places(machine):
         fields += [
-            f"states/{state.name}/node = {_state(out, state)}",
-            f"states/{state.name}/position = Vector2({x:.0f}, {y:.0f})",
+            f"{_key(f'states/{state.name}/node')} = {_state(out, state)}",
+            f"{_key(f'states/{state.name}/position')} = Vector2({x:.0f}, {y:.0f})",
         ]
     triplets = [f'"{a.source.name}", "{a.target.name}", {_transition(out, a)}' for a in _ways(machine)]
     if out.version == 4:
@@ -160,9 +167,17 @@ def _machine(out: _Resources, machine: Machine) -> str:
     return out.add("AnimationNodeStateMachine", *fields)
 
 
+def _key(key: str) -> str:
+    """Return the name of a property as Godot writes it."""
+    return key if key.isascii() else f'"{key}"'
+
+
 def _state(out: _Resources, state: EngineState) -> str:
+    """Add a state's node, which notes what the action is called, and return how others refer to it."""
+    called = json.dumps(state.action.name, ensure_ascii=False)
     if out.version == 3:
-        return out.add("AnimationNodeAnimation", f'animation = "{state.name}"')
+        noted = f'__meta__ = {{ "action": {called} }}'
+        return out.add("AnimationNodeAnimation", f'animation = "{state.name}"', noted)
     own = (
         f"timeline_length = {state.seconds:.4f}",
         "stretch_time_scale = false",
@@ -172,7 +187,9 @@ def _state(out: _Resources, state: EngineState) -> str:
     loop = (
         ("use_custom_timeline = true", *own) if state.loop and state.seconds > 0 else ()
     )  # from Godot 4.3 on; glTF has no loops
-    return out.add("AnimationNodeAnimation", f'animation = &"{state.name}"', *loop)
+    return out.add(
+        "AnimationNodeAnimation", f'animation = &"{state.name}"', *loop, f"metadata/action = {called}"
+    )
 
 
 def _ways(machine: Machine) -> Iterator[Arrow]:
@@ -223,7 +240,7 @@ def _places(machine: Machine) -> Iterator[tuple[EngineState, Place]]:
 def write(order: ExportOrder) -> ExportedFiles:
     """Write both trees, the GLB and a guide."""
     project, stem = order.project, order.stem
-    built = machines(project)
+    built = machines(project, spell_for_godot)
     glb = order.folder / f"{stem}.glb"
     body, notes = mesh_of(order)
     order.tell(0, 2, "clips")
@@ -249,12 +266,14 @@ def write_godot_guide(stem: str, built: tuple[Machine, ...]) -> str:
         parts.append(f"\n### {machine.layer}\n\n| stance | loop |\n|---|---|\n")
         names = {ident: stance.name.replace("|", "\\|") for ident, stance in machine.graph.stances.items()}
         parts += [f"| {names[ident]} | `{machine.rest(ident).name}` |\n" for ident in machine.stances]
-        parts.append("\n| action | seconds | in | then |\n|---|---|---|---|\n")
+        parts.append("\n| state | action | seconds | in | then |\n|---|---|---|---|---|\n")
         for state in machine.states:
             if state is not machine.rest(state.action.stance):
                 here, there = names[state.action.stance], names[str(find_end_stance(state.action))]
+                called = state.action.name.replace("|", "\\|")
                 parts.append(
-                    f"| `{state.name}` | {state.seconds:.2f} | {here} | {there if there != here else ''} |\n"
+                    f"| `{state.name}` | {called} | {state.seconds:.2f} | {here} | "
+                    f"{there if there != here else ''} |\n"
                 )
     return "".join(parts)
 
@@ -334,8 +353,5 @@ TARGETS = (
         ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES),
-        phrase(
-            "the tree for Godot 3 was tested in Godot 3.2.3; the tree for Godot 4 was not tested in Godot"
-        ),
     ),
 )

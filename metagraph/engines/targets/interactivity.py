@@ -4,7 +4,7 @@ without a line of code.
 Each layer's animations move the joints no later layer claims. Events: `<layer>.action.<state>`; what is asked
 in another stance, or while an action plays, is passed over. `<layer>.stance.<stance>` goes there by the
 shortest chain of transitions, once what plays is over. The layer's variables are `<layer>_stance` (number),
-`<layer>_busy`, and `<layer>_goal`, 0 or the number of the stance to go to and 1.
+`<layer>_busy`, and `<layer>_goal`, 0 or the number of the stance to go to.
 """
 
 from __future__ import annotations
@@ -70,12 +70,12 @@ class _Graph:
     def flow(self, source: int, socket: str, target: int) -> None:
         self.nodes[source].setdefault("flows", {})[socket] = {"node": target, "socket": "in"}
 
-    def variable(self, name: str) -> int:
-        self.variables.append({"name": name, "type": TYPES.index("int"), "value": [0]})
+    def variable(self, name: str, value: int = 0) -> int:
+        self.variables.append({"name": name, "type": TYPES.index("int"), "value": [value]})
         return len(self.variables) - 1
 
-    def event(self, name: str) -> int:
-        self.events.append({"id": name})
+    def event(self, name: str, called: str = "") -> int:
+        self.events.append({"id": name, "extras": {"name": called}} if called else {"id": name})
         return len(self.events) - 1
 
     def set(self, variable: int, value: int) -> int:
@@ -146,16 +146,15 @@ class _Lane:
     def __init__(self, graph: _Graph, machine: Machine, endless: int) -> None:
         self.graph, self.machine, self.endless = graph, machine, endless
         name = machine.layer
-        self.stance, self.busy, self.goal = (
-            graph.variable(f"{name}_{x}") for x in ("stance", "busy", "goal")
-        )
+        self.stance = graph.variable(f"{name}_stance", machine.stances[machine.start.action.stance])
+        self.busy, self.goal = (graph.variable(f"{name}_{x}") for x in ("busy", "goal"))
         self.go_on = graph.event(f"{name}.go_on")
 
     def action(self, state: EngineState) -> None:
         """Receive: if it is its stance and nothing plays, forget where to go, and play."""
         graph, here = self.graph, self.machine.stances[state.action.stance]
         name = f"{self.machine.layer}.action.{state.name}"
-        heard = graph.node("event/receive", {"event": [graph.event(name)]})
+        heard = graph.node("event/receive", {"event": [graph.event(name, state.action.name)]})
         fits = graph.node("flow/branch", None, condition=graph.equals(self.stance, here))
         free = graph.node("flow/branch", None, condition=graph.equals(self.busy, 0))
         both = graph.node("flow/sequence")
@@ -188,11 +187,13 @@ class _Lane:
         """Receive where to go; whenever nothing plays, take the next transition that leads there."""
         graph, machine = self.graph, self.machine
         for ident, number in machine.stances.items():
-            name = f"{machine.layer}.stance.{machine.stance_words[ident]}"
-            heard = graph.node("event/receive", {"event": [graph.event(name)]})
+            event = graph.event(
+                f"{machine.layer}.stance.{machine.stance_words[ident]}", machine.graph.stances[ident].name
+            )
+            heard = graph.node("event/receive", {"event": [event]})
             both = graph.node("flow/sequence")
             graph.flow(heard, "out", both)
-            graph.flow(both, "0", graph.set(self.goal, number + 1))
+            graph.flow(both, "0", graph.set(self.goal, number))
             graph.flow(both, "1", graph.node("event/send", {"event": [self.go_on]}))
         heard = graph.node("event/receive", {"event": [self.go_on]})
         free = graph.node("flow/branch", None, condition=graph.equals(self.busy, 0))
@@ -207,7 +208,7 @@ class _Lane:
             hops: dict[str, list[int]] = {}  # the transition -> the branches that lead to it
             for goal, place in machine.stances.items():
                 if (hop := machine.hop(here, goal)) is not None:
-                    wanted = graph.node("flow/branch", None, condition=graph.equals(self.goal, place + 1))
+                    wanted = graph.node("flow/branch", None, condition=graph.equals(self.goal, place))
                     graph.flow(goals, f"{place:03}", wanted)
                     hops.setdefault(hop.name, []).append(wanted)
             for state in machine.states:
@@ -238,9 +239,10 @@ def write(order: ExportOrder) -> ExportedFiles:
         engine=ForEngine(anatomy.base_pose(project), moved, {"KHR_interactivity": chart}),
     )
     events = order.folder / f"{order.stem}.events.json"
-    names = [f"{m.layer}.action.{s.name}" for m in built for s in m.states if not s.loop]
-    names += [f"{m.layer}.stance.{word}" for m in built for word in m.stance_words.values()]
-    write_atomically(events, json.dumps(names, indent=1).encode())
+    names = {f"{m.layer}.action.{s.name}": s.action.name for m in built for s in m.states if not s.loop}
+    for m in built:
+        names |= {f"{m.layer}.stance.{word}": m.graph.stances[i].name for i, word in m.stance_words.items()}
+    write_atomically(events, json.dumps(names, indent=1, ensure_ascii=False).encode())
     order.tell(2, 2, "done")
     return ExportedFiles((glb, events), notes)
 

@@ -25,8 +25,9 @@ def state_graph(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return the AnimStateGraph."""
     parameters: dict[str, Any] = {}
     for machine in built:
+        begin = machine.stances[machine.start.action.stance]
         for word, kind, value in (
-            ("stance", "INTEGER", 0),
+            ("stance", "INTEGER", begin),
             ("action", "INTEGER", 0),
             ("play", "TRIGGER", False),
         ):
@@ -106,13 +107,14 @@ def write(order: ExportOrder) -> ExportedFiles:
 
 
 def write_playcanvas_guide(built: tuple[Machine, ...]) -> dict[str, Any]:
-    """Return which number stands for which action and stance."""
+    """Return which number stands for which action and stance, and what each state's action is called."""
     return {
         machine.layer: {
             "stance": {
                 machine.graph.stances[ident].name: number for ident, number in machine.stances.items()
             },
             "action": {state.name: state.number for state in machine.states},
+            "names": {state.name: state.action.name for state in machine.states},
         }
         for machine in built
     }

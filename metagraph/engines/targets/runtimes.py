@@ -8,7 +8,7 @@ from pathlib import Path
 
 from metagraph import engines
 from metagraph.common.wording import phrase
-from metagraph.engines.export import write_project_files
+from metagraph.engines.export import AIFF, OGG_AND_MP3, WAV, Imported, LineSounds, write_project_files
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import FileError
 
@@ -20,17 +20,12 @@ SPEECH = "../../../../docs/agents/speech.md"
 BML = Loss(phrase("only the desktop app reads requests in Behaviour Markup Language"))
 
 
-def write_with_sounds(order: ExportOrder) -> ExportedFiles:
-    """Write JSON, GLB and the lines' sounds."""
+def write_with_sounds(order: ExportOrder, imported: Imported | None = None) -> ExportedFiles:
+    """Write JSON, GLB and the lines' sounds, as files that the engine has `imported`; None for any."""
+    given = order.contents
+    voices = LineSounds(given.base, given.chosen, imported) if given.base is not None else None
     made = write_project_files(
-        order.project,
-        order.folder,
-        order.contents.expanded,
-        order.contents.character,
-        order.tell,
-        order.contents.base,
-        order.contents.chosen,
-        order.contents.compress,
+        order.project, order.folder, given.expanded, given.character, order.tell, voices, given.compress
     )
     return ExportedFiles((made.json, made.glb, *made.sounds), made.warnings)
 
@@ -66,9 +61,11 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
     return out
 
 
-def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
+def _with(
+    runtime: str, under: str, imported: Imported | None = None
+) -> Callable[[ExportOrder], ExportedFiles]:
     def write(order: ExportOrder) -> ExportedFiles:
-        made = write_with_sounds(order)
+        made = write_with_sounds(order, imported)
         return ExportedFiles(
             (*made.files, *copy_runtime(RUNTIMES / runtime, order.folder / under)), made.notes
         )
@@ -84,7 +81,9 @@ def _plugin(order: ExportOrder) -> ExportedFiles:
     made = write_with_sounds(order)
     files = copy_runtime(RUNTIMES / "unreal", order.folder / PLUGIN)
     core = order.folder / PLUGIN / "Source" / "Metagraph" / "Private" / "Core"
-    files += copy_runtime(RUNTIMES / "cpp", core, ("README.md", "conformance.hpp", "conformance.cpp"))
+    files += copy_runtime(
+        RUNTIMES / "cpp", core, ("README.md", "LICENSE", "conformance.hpp", "conformance.cpp")
+    )
     return ExportedFiles((*made.files, *files), made.notes)
 
 
@@ -110,7 +109,7 @@ TARGETS = (
         "godot",
         phrase("Godot 4 add-on"),
         phrase("JSON, GLB and the GDScript runtime in addons/metagraph/"),
-        _with("godot", "."),
+        _with("godot", ".", WAV | OGG_AND_MP3),
         (BML,),
         group=phrase("Same playback as the preview"),
     ),
@@ -118,7 +117,7 @@ TARGETS = (
         "unity",
         phrase("Unity package"),
         phrase("JSON, GLB and the C# runtime in Metagraph/"),
-        _with("unity", "Metagraph"),
+        _with("unity", "Metagraph", WAV | OGG_AND_MP3 | AIFF),
         (BML,),
         untried=phrase("compiled and tested outside Unity; not tested in Unity"),
         group=phrase("Same playback as the preview"),

@@ -7,13 +7,14 @@ stance. An action ends, and may be left, by the clock.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator
 from typing import Any
 from xml.etree import ElementTree as Xml
 
 from metagraph.common.wording import phrase
+from metagraph.common.xml_text import xml_text
 from metagraph.engines.engine_machine import Arrow, EngineState, Machine, machines, write_machine_glb
+from metagraph.engines.engine_names import write_word
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
@@ -82,7 +83,12 @@ def _node(machine: Machine, state: EngineState) -> dict[str, Any]:
             )
     node: dict[str, Any] = {
         "id": state.name,
-        "meta": {"animation": state.name, "loop": state.loop, "kind": state.action.kind},
+        "meta": {
+            "animation": state.name,
+            "loop": state.loop,
+            "kind": state.action.kind,
+            "name": state.action.name,
+        },
     }
     if done is None:
         return {**node, "on": events}
@@ -102,14 +108,12 @@ NAMESPACE, OURS = "http://www.w3.org/2005/07/scxml", "urn:metagraph:scxml"
 
 
 def scxml(name: str, built: tuple[Machine, ...]) -> bytes:
-    """Return the machine as SCXML 1.0 with the null data model; attributes of our own name animation, loop
-    and blend.
+    """Return the machine as SCXML 1.0 with the null data model; attributes of our own name animation, loop,
+    blend and the action.
     """
     Xml.register_namespace("", NAMESPACE)
     Xml.register_namespace("metagraph", OURS)
-    root = _tag(
-        None, "scxml", version="1.0", name=re.sub(r"\W+", "_", name), datamodel="null", initial="layers"
-    )
+    root = _tag(None, "scxml", version="1.0", name=write_word(name), datamodel="null", initial="layers")
     every = _tag(root, "parallel", id="layers")
     for machine in built:
         region = _tag(every, "state", id=machine.layer, initial=machine.start.name)
@@ -133,7 +137,8 @@ def _state(region: Xml.Element, machine: Machine, state: EngineState) -> None:
     done, leave = _ends(machine, state)
     end = (done.leave or 0.0) if done is not None else 0.0
     bound = done is not None and leave > 0
-    node = _tag(region, "state", id=state.name, my_animation=state.name, my_loop=str(state.loop).lower())
+    own = {"my_animation": state.name, "my_loop": str(state.loop).lower(), "my_name": state.action.name}
+    node = _tag(region, "state", id=state.name, **{key: xml_text(text) for key, text in own.items()})
     taking = node
     if bound and leave < end:
         node.set("initial", f"{state.name}.bound")

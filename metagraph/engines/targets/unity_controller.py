@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.common.file_names import file_stems
 from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Arrow, EngineState, Machine, animations, machines
+from metagraph.engines.engine_names import name_files
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
@@ -72,12 +72,13 @@ def controller(
     """
     parameters, layers = [], [_layer(BASE, NOTHING, False)]
     for machine in built:
-        for word, kind in (("stance", INTEGER), ("action", INTEGER), ("play", TRIGGER)):
+        begin = machine.stances[machine.start.action.stance]
+        for word, kind, value in (("stance", INTEGER, begin), ("action", INTEGER, 0), ("play", TRIGGER, 0)):
             parameter: dict[str, Any] = {
                 "m_Name": f"{machine.layer}_{word}",
                 "m_Type": kind,
                 "m_DefaultFloat": 0,
-                "m_DefaultInt": 0,
+                "m_DefaultInt": value,
             }
             parameters.append(
                 parameter | {"m_DefaultBool": 0, "m_Controller": Inline(fileID=main_id(CONTROLLER))}
@@ -95,7 +96,8 @@ def controller(
         objects.append(_machine(machine.layer, list(_places(machine)), machine.start.name))
         for state in machine.states:
             leaving = list(_transitions(machine, state, seconds[state.name]))
-            objects.append(_state(state.name, to(CLIP, project.name, f"{clips[state.name]}.anim"), leaving))
+            clip = to(CLIP, project.name, f"{clips[state.name]}.anim")
+            objects.append(_state(state.name, clip, leaving, state.action.name))
             objects += leaving
     return asset(*objects)
 
@@ -160,7 +162,8 @@ def _machine(layer: str, places: list[tuple[str, int, int]], start: str) -> Row:
     return STATES, local_id("layer", layer), "AnimatorStateMachine", fields(1, layer, 6, **own)
 
 
-def _state(name: str, motion: Inline, leaving: list[Row]) -> Row:
+def _state(name: str, motion: Inline, leaving: list[Row], called: str = "") -> Row:
+    """Return a state, whose tag says what its action is called."""
     own: dict[str, Any] = {
         "m_Speed": 1,
         "m_CycleOffset": 0,
@@ -184,7 +187,7 @@ def _state(name: str, motion: Inline, leaving: list[Row]) -> Row:
     )
     own |= {
         "m_Motion": motion,
-        "m_Tag": "",
+        "m_Tag": called,
         "m_SpeedParameter": "",
         "m_MirrorParameter": "",
         "m_CycleOffsetParameter": "",
@@ -287,7 +290,7 @@ def write(order: ExportOrder) -> ExportedFiles:
     states = [state for machine in built for state in machine.states]
     clips = {clip.name: clip for clip in animations(project, built)}
     # Not all file systems tell "Wave" from "wave".
-    names = dict(zip((s.name for s in states), file_stems([s.name.lower() for s in states]), strict=True))
+    names = {name: file.lower() for name, file in name_files({s.name: s.action.id for s in states}).items()}
     base = anatomy.base_pose(project)
     off = np.abs(base.translations - skeleton.rest_translations).max(1) > 1e-6
     shifted = {*np.flatnonzero(off).tolist()}.union(*(clip.translated for clip in clips.values()))

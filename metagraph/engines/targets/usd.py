@@ -62,7 +62,7 @@ def _named(scope: str, rows: list[dict[str, Any]]) -> Prim:
     """Return a prim for each row, called as it is."""
     names, out = Names(), Prim("Scope", scope)
     for row in rows:
-        own = names.of(row["name"])
+        own = names.of(row["name"], ident=row["id"])
         shown = {k: v for k, v in row.items() if k not in ("clip", "stance", "end_stance")}
         out.children.append(Prim("", own, keep_name(row["name"], own), _properties(shown)))
     return out

@@ -178,7 +178,7 @@ class BinaryChunk:
 
     def sparse(self, offsets: Array, packing: Packing | None = None) -> int:
         """Add offsets `[count, 3]` of a morph target and return the accessor's index. Only the offsets that
-        are not zero are stored, if that is smaller.
+        are not zero are stored, if that is smaller, in views of their own: Godot reads no others.
         """
         if self.compress and packing is not None:
             offsets = packing.rounded(np.asarray(offsets, np.float32))
@@ -188,10 +188,9 @@ class BinaryChunk:
         kind = (USHORT, "<u2") if moved[-1] < 65535 else (UINT, "<u4")
         kept = np.ascontiguousarray(offsets[moved], "<f4")
         low, high = np.minimum(kept.min(0), 0).astype(float), np.maximum(kept.max(0), 0).astype(float)
-        places: dict[str, Any] = {"componentType": kind[0]}
-        values: dict[str, Any] = {}
-        self._share("places", moved.astype(kind[1]).tobytes(), int(kind[1][2]), Packing("INDICES"), places)
-        self._share("offsets", kept.tobytes(), 12, packing, values)
+        size = int(kind[1][2])
+        places = self.view(moved.astype(kind[1]).tobytes(), packing=Packing("INDICES"), size=size)
+        values = self.view(kept.tobytes(), packing=packing, size=12)
         self.accessors.append(
             {
                 "componentType": FLOAT,
@@ -199,7 +198,11 @@ class BinaryChunk:
                 "type": "VEC3",
                 "min": low.tolist(),
                 "max": high.tolist(),
-                "sparse": {"count": len(moved), "indices": places, "values": values},
+                "sparse": {
+                    "count": len(moved),
+                    "indices": {"bufferView": places, "componentType": kind[0]},
+                    "values": {"bufferView": values},
+                },
             }
         )
         return len(self.accessors) - 1

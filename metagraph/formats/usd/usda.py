@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.ids import derived_id
+
 Array = NDArray[Any]
 
 _ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
@@ -47,20 +49,26 @@ class Prim:
 
 
 class Names:
-    """Identifiers for things of any name: letters, digits and `_` of ASCII, none twice."""
+    """Identifiers for things of any name: letters, digits and `_` of ASCII, none twice.
+
+    A name that other characters are in, and one that is there already, has the thing's id behind it, or else
+    digits that derive from the name, so that no other thing changes them.
+    """
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
 
-    def of(self, text: str, otherwise: str = "unnamed") -> str:
-        """Return an identifier that no other name here got."""
+    def of(self, text: str, otherwise: str = "unnamed", ident: str = "") -> str:
+        """Return an identifier that no other name here got. ident: of the thing, if it has one."""
         plain = re.sub(r"[^A-Za-z0-9_]+", "_", text)
         plain = plain if plain.strip("_") else otherwise
         plain = f"_{plain}" if plain[0].isdigit() else plain
+        mark = re.sub(r"\W", "_", ident, flags=re.ASCII)
+        plain = plain if text.isascii() else f"{plain}_{mark or derived_id('', text)}"
         name, count = plain, 1
         while name in self._taken:
             count += 1
-            name = f"{plain}_{count}"
+            name = f"{plain}_{mark if mark and count == 2 else count}"
         self._taken.add(name)
         return name
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from metagraph.graph.model import Action, Kind, MetaGraph, Project
 from metagraph.motion.clip import Clip
+from metagraph.playback.posing.rigs import ResolvedProject
 from metagraph.playback.timing.phases import REMEMBERED, movers, track
 
 STILL = 0.02  # metres a second: slower than this nothing is
@@ -20,8 +21,10 @@ STILL = 0.02  # metres a second: slower than this nothing is
 def vigour(project: Project, action: Action) -> float:
     """Return how fast an action's hands (arms), head or trunk and feet move on average, beside the median of
     its layer's actions of its kind: -1 for half as fast or less, 1 for twice as fast or more. 0 where nothing
-    is known of its motion.
+    is known of its motion. An export says it.
     """
+    if isinstance(project, ResolvedProject):
+        return project.vigours.get(action.id, 0.0)
     graph = project.graphs[action.layer]
     medians = _medians(project, graph)
     if action.kind not in medians:

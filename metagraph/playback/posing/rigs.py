@@ -4,6 +4,7 @@ changes.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from metagraph.graph.face.rig import parts_for_face
@@ -32,11 +33,14 @@ class Rigs:
 
 @dataclass(frozen=True)
 class ResolvedProject(Project):
-    """A project as an export has it: its rigs are given, as in runtimes, instead of found."""
+    """A project as an export has it: its rigs, and how energetic its actions are (`vigours`, by their ids),
+    are given, as in runtimes, instead of found.
+    """
 
     body: Body = field(default=LIFELESS, compare=False, repr=False)
     contact_rig: ContactRig | None = field(default=None, compare=False, repr=False)
     weight: Weight = field(default_factory=lambda: Weight(None, {}, {}), compare=False, repr=False)
+    vigours: Mapping[str, float] = field(default_factory=dict, compare=False, repr=False)
 
 
 _known: Remembered[Rigs] = Remembered(parts_for_face)

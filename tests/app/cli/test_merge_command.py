@@ -115,6 +115,14 @@ def test_the_setup_names_this_installation_and_git_can_run_it(
     assert git(tmp_path, "config", "merge.metagraph.driver").strip().endswith("merge %O %A %B --name %P")
 
 
+def test_the_help_has_the_lines_that_git_needs(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["merge", "--help"])
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    assert "git config merge.metagraph.driver 'metagraph merge %O %A %B --name %P'" in lines
+    assert f"*{SUFFIX} merge=metagraph" in lines
+
+
 def test_a_file_that_is_no_project_is_refused_and_ours_stays(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

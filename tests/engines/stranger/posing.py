@@ -222,8 +222,8 @@ def morphs(character: Character, layers: dict[str, Any], t: float) -> dict[str, 
         weight = cue_weight(cue, t) if cue is not None else 0.0
         rest = plan["rests"][resting(plan["rests"], t)]
         action = character.actions[rest[1]]
-        second, _, _ = loop_seconds(action, t - rest[2])
-        shares = [(action, second, 1.0 - weight)]
+        second, other, old = loop_seconds(action, t - rest[2])
+        shares = [(action, second, (1.0 - weight) * (1.0 - old)), (action, other, (1.0 - weight) * old)]
         if cue is not None:
             shares.append((character.actions[cue["action"]], cue_second(cue, t), weight))
         for action, second, share in shares:

@@ -246,7 +246,10 @@ V get_or(const Map<K, V>& map, const X& key, const Y& other) {
 inline double divided(double a, double b) { return a / b; }
 inline int floored(int a, int b) { return static_cast<int>(std::floor(static_cast<double>(a) / b)); }
 inline int modulo(int a, int b) { return (a % b + b) % b; }
-inline double modulo(double a, double b) { return a - b * std::floor(a / b); }
+inline double modulo(double a, double b) {
+    const double rest = std::fmod(a, b);
+    return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+}
 
 /// A number with some places behind its point; what the machine's language is does not matter.
 inline std::string fixed(double number, int places) {

@@ -28,16 +28,6 @@ inline double cue_weight(const Cue& cue, double time) {
     return rise * fall;
 }
 
-/// Seconds of a loop's end that fade into its beginning; its period is that much shorter.
-inline double seam_of(double start, double end, double blend_in) { return std::min(blend_in, (end - start) / 2); }
-
-/// How far into a loop it is, seconds after it began. Before its beginning a loop runs as if it had gone on for ever; one
-/// with a seam waits in its first pose, so that it starts without a jump.
-inline double phase_of(double length, double seam, double elapsed) {
-    const double period = length - seam;
-    return period > 0 ? lang::modulo(seam > 0 ? std::max(elapsed, 0.0) : elapsed, period) : 0;
-}
-
 }  // namespace pose
 
 /// Plays one plan after the other. It remembers where it was, so that asking for one time after another costs next to no
@@ -91,8 +81,9 @@ public:
             }
             if (layer.plan->rests.empty()) continue;
             const Rest& rest = *lang::at(layer.plan->rests, rest_at(layer, time));
-            const auto [start, length, seam] = loop_of(*rest.action);
-            add_morphs(*rest.action, start + pose::phase_of(length, seam, time - rest.start), 1 - weight, out);
+            const auto [seconds, other, old] = loop_seconds(*rest.action, time - rest.start);
+            add_morphs(*rest.action, seconds, (1 - weight) * (1 - old), out);
+            add_morphs(*rest.action, other, (1 - weight) * old, out);
         }
         if (alive && lives() && !graph_->body->face.morphs.empty()) {
             compose(time); // eyes made of morph targets hold while the head moves
@@ -192,10 +183,16 @@ private:
         return out;
     }
 
-    /// Where a loop begins in its clip, how long it is, and its seam; seconds.
-    std::tuple<double, double, double> loop_of(const Action& action) const {
+    /// Clip seconds of a loop, those of its seam's other side, and how much of that shows. Its last seconds fade into its
+    /// first, and its period is that much shorter. Before its beginning a loop runs as if it had gone on for ever; one with a
+    /// seam waits in its first pose, so that it starts without a jump.
+    std::tuple<double, double, double> loop_seconds(const Action& action, double elapsed) const {
         const Phases& phases = *graph_->project->phases.at(action.id);
-        return {phases.start, phases.end - phases.start, pose::seam_of(phases.start, phases.end, action.timing->blend_in)};
+        const double length = phases.end - phases.start, seam = std::min(action.timing->blend_in, length / 2), period = length - seam;
+        if (period <= 0) return {phases.start, phases.start, 0};
+        const double phase = lang::modulo(seam > 0 ? std::max(elapsed, 0.0) : elapsed, period);
+        const double old = seam > 0 && elapsed >= period ? 1 - rotation::ease(phase / seam) : 0;
+        return {phases.start + phase, phases.start + std::min(period + phase, length), old};
     }
 
     /// Leave the composed pose at a time in `pose_`, without the life layers.
@@ -294,12 +291,10 @@ private:
             std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count), Joined{});
             return;
         }
-        const auto [start, length, seam] = loop_of(action);
-        const double elapsed = time - rest.start, period = length - seam, phase = pose::phase_of(length, seam, elapsed);
-        sample(action, start + phase, out, count);
-        const double old = seam > 0 && period > 0 && elapsed >= period ? 1 - rotation::ease(phase / seam) : 0;
+        const auto [seconds, other, old] = loop_seconds(action, time - rest.start);
+        sample(action, seconds, out, count);
         if (old == 0) return;
-        sample(action, start + std::min(period + phase, length), room, count);
+        sample(action, other, room, count);
         mix(out, room, old, count, out);
     }
 

@@ -40,8 +40,50 @@ export class MetagraphCharacter extends HTMLElement {
   addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
 }
 
+/** What the element takes in HTML, and in JSX. */
+export interface MetagraphCharacterAttributes {
+  src?: string;
+  /** Words such as "face", or "upper front". */
+  camera?: string;
+  background?: string;
+  floor?: string;
+  seed?: number | string;
+  idle?: string;
+  mood?: string;
+  controls?: boolean | "";
+  paused?: boolean | "";
+}
+
+type InJsx = MetagraphCharacterAttributes & {
+  id?: string;
+  className?: string;
+  class?: string;
+  style?: object;
+  hidden?: boolean;
+  title?: string;
+  slot?: string;
+  key?: string | number | null;
+  ref?: ((element: MetagraphCharacter | null) => void) | { current: MetagraphCharacter | null } | null;
+  children?: unknown;
+  [other: `aria-${string}` | `data-${string}` | `on${string}`]: unknown;
+};
+
 declare global {
   interface HTMLElementTagNameMap {
     "metagraph-character": MetagraphCharacter;
+  }
+  namespace JSX {
+    interface IntrinsicElements {
+      "metagraph-character": InJsx;
+    }
+  }
+}
+
+// @ts-ignore: programs without React have no such module
+declare module "react" {
+  namespace JSX {
+    interface IntrinsicElements {
+      "metagraph-character": InJsx;
+    }
   }
 }

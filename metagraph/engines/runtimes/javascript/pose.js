@@ -94,7 +94,7 @@ export class Player {
         cues.push(cue);
         addMorphs(cue.action, clipSeconds(cue, time), weight, out);
       }
-      if (rest) addMorphs(rest.action, rest.action.start + phaseOf(rest.action, time - rest.start), 1 - weight, out);
+      if (rest) addLoopedMorphs(rest, time, 1 - weight, out);
     }
     if (alive && this.lives && this.graph.body.face.morphs.length) {
       const { pose, life } = this.room;
@@ -240,15 +240,10 @@ export class Player {
   /** Write the offsets of a loop, its end faded into its beginning. */
   rest({ action, start }, time, out, room, count) {
     if (!action.offsets) return clear(out, count);
-    const elapsed = time - start;
-    const length = action.end - action.start;
-    const seam = seamOf(action);
-    const period = length - seam;
-    const phase = phaseOf(action, elapsed);
+    const [phase, other, old] = loopSeconds(action, time - start);
     sample(action, action.start + phase, out, count);
-    const old = seam > 0 && period > 0 && elapsed >= period ? 1 - ease(phase / seam) : 0;
     if (old === 0) return;
-    sample(action, action.start + Math.min(period + phase, length), room, count);
+    sample(action, action.start + other, room, count);
     mix(out, out, room, old, count);
   }
 
@@ -279,21 +274,20 @@ function cueWeight(cue, time) {
   return rise * fall;
 }
 
-/** Seconds of a loop's end that fade into its beginning; its period is that much shorter. */
-function seamOf(action) {
-  return Math.min(action.timing.blendIn, (action.end - action.start) / 2);
-}
-
 /**
- * Return how far into a loop it is, seconds after it began. Before its beginning a loop runs as if it had gone on for ever; one with a
- * seam waits in its first pose, so that it starts without a jump.
+ * Return how far into a loop it is, seconds after it began, how far on its seam's other side, and how much of that shows. Its last seconds
+ * fade into its first, and its period is that much shorter. Before its beginning a loop runs as if it had gone on for ever; one with a seam
+ * waits in its first pose, so that it starts without a jump.
  */
-function phaseOf(action, elapsed) {
-  const seam = seamOf(action);
-  const period = action.end - action.start - seam;
-  if (period <= 0) return 0;
-  const phase = (seam > 0 ? Math.max(elapsed, 0) : elapsed) % period;
-  return phase < 0 ? phase + period : phase;
+function loopSeconds(action, elapsed) {
+  const length = action.end - action.start;
+  const seam = Math.min(action.timing.blendIn, length / 2);
+  const period = length - seam;
+  if (period <= 0) return [0, 0, 0];
+  const rest = (seam > 0 ? Math.max(elapsed, 0) : elapsed) % period;
+  const phase = rest < 0 ? rest + period : rest;
+  const old = seam > 0 && elapsed >= period ? 1 - ease(phase / seam) : 0;
+  return [phase, Math.min(period + phase, length), old];
 }
 
 /** Write a clip's offsets at clip seconds, straight lines between its frames. */
@@ -351,6 +345,13 @@ function addMorphs({ motion }, seconds, share, out) {
     const { place, weights } = motion.morphs[n];
     out[place] += share * (weights[low] * (1 - (at - low)) + weights[high] * (at - low));
   }
+}
+
+/** Add the morph target weights of a loop, its end faded into its beginning. */
+function addLoopedMorphs({ action, start }, time, share, out) {
+  const [phase, other, old] = loopSeconds(action, time - start);
+  addMorphs(action, action.start + phase, share * (1 - old), out);
+  addMorphs(action, action.start + other, share * old, out);
 }
 
 const players = new WeakMap();

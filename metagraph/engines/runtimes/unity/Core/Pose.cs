@@ -321,7 +321,9 @@ namespace Metagraph
                 AddMorphs(cue.Action.Clip.Motion, cue.ClipSeconds(time), weight, morphs);
             }
             Rest rest = plan.Rests[plan.RestAt(time)];
-            AddMorphs(rest.Action.Clip.Motion, LoopSeconds(rest, time, out other, out old), 1 - weight, morphs);
+            double seconds = LoopSeconds(rest, time, out other, out old);
+            AddMorphs(rest.Action.Clip.Motion, seconds, (1 - weight) * (1 - old), morphs);
+            AddMorphs(rest.Action.Clip.Motion, other, (1 - weight) * old, morphs);
         }
 
         private static void AddMorphs(Clip clip, double seconds, double share, float[] morphs)

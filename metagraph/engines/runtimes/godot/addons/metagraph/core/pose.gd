@@ -239,7 +239,9 @@ static func _layers_morphs(graph, plan, time):
 			_add_morphs(out, graph.clips.get(cue.action.clip), clip_seconds(cue, time), weight)
 		if of.rests.size() > 0:
 			var rest = of.rests[Util.most(Util.after(of.rests, "fade_start", time) - 1, 0)]
-			_add_morphs(out, graph.clips.get(rest.action.clip), loop_seconds(rest.action, time - rest.start)[0], 1.0 - weight)
+			var looped = loop_seconds(rest.action, time - rest.start)
+			_add_morphs(out, graph.clips.get(rest.action.clip), looped[0], (1.0 - weight) * (1.0 - looped[2]))
+			_add_morphs(out, graph.clips.get(rest.action.clip), looped[1], (1.0 - weight) * looped[2])
 	return out
 
 
