@@ -52,7 +52,7 @@ _COUNTS: Mapping[str, Callable[[int], str]] = {
 _LONGEST = 40  # letters of a name
 
 
-def describe_change(text: str, before: Project, after: Project) -> str:
+def describe_edit(text: str, before: Project, after: Project) -> str:
     """Return what an edit changed, with the old value, the new one, and of how many actions. If it changed
     more than one thing, return `text`, with whom it changed if those are actions.
     """

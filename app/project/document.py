@@ -16,7 +16,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.autosave import Autosave
 from app.project.autosave import state_folder as state_folder  # where others look for it
-from app.project.change_words import describe_change
+from app.project.change_words import describe_edit
 from app.project.opening import with_motion_of
 from app.project.version_count import version_count
 from app.project.writing import Writing, move_steps
@@ -43,7 +43,7 @@ class _Change(QUndoCommand):
     def __init__(
         self, document: Document, text: str, before: Project, after: Project, merge: str | None
     ) -> None:
-        super().__init__(describe_change(text, before, after))
+        super().__init__(describe_edit(text, before, after))
         self.command = text  # without what it changed
         self.english = in_english(text)  # its name in logs
         self.document, self.before, self.after, self.merge = document, before, after, merge
@@ -54,7 +54,7 @@ class _Change(QUndoCommand):
         previous = self._goes_on() if self._how == "done" else None
         if previous is not None:
             self._how = "merged"
-            self.setText(describe_change(self.command, previous.before, self.after))
+            self.setText(describe_edit(self.command, previous.before, self.after))
         self.document._set(self.after, self.text(), self._how)
         self._how = "redone"  # for the next time
 
@@ -87,7 +87,7 @@ class _Change(QUndoCommand):
 
 
 @dataclass(frozen=True)
-class Past:
+class ProjectPast:
     """How a project came to be.
 
     `saved` are the steps that led to what its file holds, and `steps` those after it, which no file holds;
@@ -101,7 +101,7 @@ class Past:
     common: Project | None = None
 
 
-NO_PAST = Past()
+NO_PAST = ProjectPast()
 
 
 class Document(QObject):
@@ -224,7 +224,7 @@ class Document(QObject):
         self,
         project: Project,
         path: Path | None,
-        past: Past = NO_PAST,
+        past: ProjectPast = NO_PAST,
         *,
         digest: str | None = None,
         lock: Lock | None = None,

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.faults import is_foreseen
 from app.project.autosave import state_folder
-from app.project.document import Document, Past
+from app.project.document import Document, ProjectPast
 from app.project.jobs import WORDS, Jobs, WindowJob
 from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, keep_as_copy, look_beside, remove_journal
@@ -215,7 +215,7 @@ class Files(QObject):
                 self.document.load(
                     opened.project,
                     path,
-                    Past(
+                    ProjectPast(
                         earlier, steps, count_lost_steps(chosen, steps) if chosen is not None else 0, common
                     ),
                     digest=opened.digest,

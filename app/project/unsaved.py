@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
-from app.project.document import Past
+from app.project.document import ProjectPast
 from app.project.files_host import FilesHost
 from app.project.leftovers import (
     FoundJournal,
@@ -124,7 +124,7 @@ class Unsaved(QObject):
             if saved is not None:  # its folder is gone, so it becomes a project that was never saved
                 steps = ()
             project = opened.project if saved is None else absolute(opened.project, folder)
-            document.load(project, None, Past(steps=steps, lost=count_lost_steps(left, steps)))
+            document.load(project, None, ProjectPast(steps=steps, lost=count_lost_steps(left, steps)))
             if document.secured():
                 remove_journal(left.path)
             files.opened.emit()

@@ -24,7 +24,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from app.project.document import Document, Past, state_folder  # noqa: E402
+from app.project.document import Document, ProjectPast, state_folder  # noqa: E402
 from app.project.leftovers import list_untitled_journals, look_beside, read_untitled, remove_journal  # noqa: E402
 from app.project.opening import load_recovered, open_whole  # noqa: E402
 from app.project.unsaved import count_lost_steps  # noqa: E402
@@ -88,7 +88,7 @@ class Sitting:
             opened, steps = load_recovered(chosen, self.folder)
             common = read_project(self.path) if self.path is not None else None
             digest = chosen.digest if self.path is not None else None
-            past = Past(steps=steps, lost=count_lost_steps(chosen, steps), common=common)
+            past = ProjectPast(steps=steps, lost=count_lost_steps(chosen, steps), common=common)
             self.document.load(opened.project, self.path, past, digest=digest, lock=lock)
             if self.document.secured():
                 for left in found.left:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from app.project.autosave import journal_shelter, state_folder
-from app.project.document import UNDO_STEPS, Document, Past
+from app.project.document import UNDO_STEPS, Document, ProjectPast
 from app.project.writing import name_after_file
 from metagraph.errors import FileError
 from metagraph.formats.project.history import UndoStep
@@ -252,7 +252,7 @@ def test_recovered_edits_are_unsaved_and_survive_a_second_crash(qapp, toy, tmp_p
     beat = toy.id(project, "rest beat lf")
     recovered = edits.update_actions(project, (beat,), likelihood=2.0)
     document = Document()
-    document.load(recovered, path, Past(lost=1))
+    document.load(recovered, path, ProjectPast(lost=1))
     assert document.dirty
     document.edit("Change seed", lambda p: edits.set_settings(p, seed=5))
     found, _ = recover(document.journal_place, path)
@@ -325,7 +325,7 @@ def test_steps_that_a_crash_left_are_undone_as_far_as_any(document, toy):
     for n in range(UNDO_STEPS + 3):
         states.append(edits.update_actions(states[-1], (beat,), likelihood=2.0 + n))
     steps = tuple(UndoStep(f"Step {n}", *two) for n, two in enumerate(pairwise(states)))
-    document.load(states[-1], None, Past(steps=steps))
+    document.load(states[-1], None, ProjectPast(steps=steps))
     assert document.undo_stack.count() == UNDO_STEPS and document.project == states[-1]
     while document.undo_stack.canUndo():
         document.undo()

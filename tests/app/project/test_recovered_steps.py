@@ -15,7 +15,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from app.project.document import Document, Past
+from app.project.document import Document, ProjectPast
 from app.project.opening import load_recovered
 from metagraph.formats.project.data import to_data
 from metagraph.formats.recovery import read_journal
@@ -62,7 +62,9 @@ def recovered(journal: Path, saved: Path | None) -> tuple[Document, int]:
     opened, steps = load_recovered(left, journal.parent)
     document = new_document()
     common = read_project(saved) if saved is not None else None
-    document.load(opened.project, saved, Past((), steps, left.unsaved if steps else left.edits, common))
+    document.load(
+        opened.project, saved, ProjectPast((), steps, left.unsaved if steps else left.edits, common)
+    )
     return document, len(steps)
 
 
@@ -201,5 +203,5 @@ def test_the_views_follow_a_recovery_once(sitting: tuple[Document, Path]) -> Non
     opened, steps = load_recovered(left, path.parent)
     again, seen = new_document(), []
     again.changed.connect(lambda before, after: seen.append(after))
-    again.load(opened.project, path, Past(steps=steps))
+    again.load(opened.project, path, ProjectPast(steps=steps))
     assert seen == [opened.project] and again.undo_stack.count() == 5
