@@ -218,7 +218,7 @@ class Place(Request, frozen=True, tag="place"):
 
 class Withdraw(Request, frozen=True, tag="withdraw"):
     """Withdraw the request with an id and what was made for what it says (`<id>/1`), or all requests if
-    `what` is empty. What has begun is left, but for changes of stance and a look at the user.
+    `what` is empty. What has begun is left, except for changes of stance and a look at the user.
     """
 
     what: Annotated[str, Meta(max_length=200)] = ""

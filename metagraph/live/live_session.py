@@ -603,7 +603,7 @@ class LiveSession:
             if words or marks:
                 at = round_seconds(speech.start + min(words | marks)[0])
             else:
-                notes = (*notes, str(phrase("nothing new is said: it was told before, or its time is over")))
+                notes = (*notes, str(phrase("nothing new is said: it was said before, or its time is over")))
         return msgspec.structs.replace(reply, at=at, since=round_seconds(before.start), notes=notes)
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.requests import RequestError, Say
-from metagraph.playback.life.line_timing import extended, placed
+from metagraph.playback.life.line_timing import extended, place_told
 from metagraph.playback.timing.told_timing import read_given_timing
 
 Array = NDArray[Any]
@@ -77,7 +77,7 @@ def join_asks(before: Say, ask: Say) -> Say | None:
         return msgspec.structs.replace(ask, text=text, duration=seconds, at=before.at)
     if old is None or new is None:
         return None
-    both = extended(old, placed(old, new, 0.0), 0.0)
+    both = extended(old, place_told(old, new, 0.0), 0.0)
     texts = [x.text for x in (before, ask) if x.text]
     return msgspec.structs.replace(
         ask,

@@ -220,7 +220,7 @@ def test_words_that_come_after_their_time_are_said_when_they_come(session: LiveS
     following = one(session, {"do": "say", "id": "s", "words": spaced("all", at=2.8)})
     assert following["at"] == pytest.approx(late["at"] + 1.2, abs=0.02)
     told = one(session, {"do": "say", "id": "s", "words": spaced("so we")})
-    assert "told before" in told["notes"][0]
+    assert "said before" in told["notes"][0]
 
 
 def test_what_has_nothing_to_be_heard_is_refused(session: LiveSession) -> None:

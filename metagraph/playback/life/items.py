@@ -14,7 +14,7 @@ from metagraph.playback.life.line_timing import (
     LineTiming,
     alike_timings,
     extended,
-    placed,
+    place_told,
     shifted,
     tells_on,
     timed_seconds,
@@ -149,7 +149,7 @@ def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
     said = max(now - old.start, 0.0)
     if old.end <= now and not tells_on(old.timing, shifted(new.timing, old.timing.later)):
         return new
-    told = new.timing if old.start > now else placed(old.timing, new.timing, said)
+    told = new.timing if old.start > now else place_told(old.timing, new.timing, said)
     timing = extended(old.timing, told, said)
     length = max(timed_seconds(timing, None), new.end - new.start)
     more = new.text == "" or new.text == told_text(new.timing)

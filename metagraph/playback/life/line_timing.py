@@ -260,7 +260,7 @@ def shifted(timing: LineTiming, by: float) -> LineTiming:
     return LineTiming(tuple(words), tuple([replace(mark, at=mark.at + by) for mark in timing.marks]))
 
 
-def placed(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
+def place_told(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
     """Return what is told of a line later, when it is said: a piece that counts its times from its own
     beginning comes after what was told, and what comes after its time is said at once, and so is what
     follows it. said: seconds of the line that are over.

@@ -223,7 +223,7 @@ inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, dou
         && !line_timing::tells_on(old->timing, line_timing::shifted(new_->timing, old->timing->later))) {
         return new_;
     }
-    Ref<LineTiming> told = old->start > now ? new_->timing : line_timing::placed(old->timing, new_->timing, said);
+    Ref<LineTiming> told = old->start > now ? new_->timing : line_timing::place_told(old->timing, new_->timing, said);
     Ref<LineTiming> timing = line_timing::extended(old->timing, told, said);
     double length = std::max(line_timing::timed_seconds(timing, std::nullopt), new_->end - new_->start);
     bool more = new_->text == "" || new_->text == line_timing::told_text(new_->timing);

@@ -137,7 +137,7 @@ inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTi
 inline List<double> _ends(const List<Ref<VisemeMark>>& marks);
 inline bool tells_on(const Ref<LineTiming>& old, const Ref<LineTiming>& new_);
 inline Ref<LineTiming> shifted(const Ref<LineTiming>& timing, double by);
-inline Ref<LineTiming> placed(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
+inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
 inline bool restarts(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
 inline bool _alike(const Ref<SpokenWord>& one, const Ref<SpokenWord>& other);
 inline double _end(const Ref<SpokenWord>& word);
@@ -507,7 +507,7 @@ inline Ref<LineTiming> shifted(const Ref<LineTiming>& timing, double by) {
 /// Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes
 /// after what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the
 /// line that are over.
-inline Ref<LineTiming> placed(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
+inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
     double end = line_timing::_end_of(old);
     if (line_timing::restarts(old, new_, said)) {
         return lang::made<LineTiming>(

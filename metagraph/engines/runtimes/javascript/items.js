@@ -5,7 +5,7 @@
  * Translated from metagraph/playback/life/items.py; change that, and translate anew.
  */
 
-import { alikeTimings, extended, placed, shifted, tellsOn, timedSeconds, toldText } from "./line_timing.js";
+import { alikeTimings, extended, placeTold, shifted, tellsOn, timedSeconds, toldText } from "./line_timing.js";
 import { sameSpot } from "./spots.js";
 import { but, zip } from "./basics.js";
 
@@ -178,7 +178,7 @@ export function goingOn(old, new_, now) {
   if (old.end <= now && !tellsOn(old.timing, shifted(new_.timing, old.timing.later))) {
     return new_;
   }
-  const told = old.start > now ? new_.timing : placed(old.timing, new_.timing, said);
+  const told = old.start > now ? new_.timing : placeTold(old.timing, new_.timing, said);
   const timing = extended(old.timing, told, said);
   const length = Math.max(timedSeconds(timing, null), new_.end - new_.start);
   const more = new_.text === "" || new_.text === toldText(new_.timing);

@@ -416,7 +416,7 @@ export function shifted(timing, by) {
  * @param {number} said
  * @returns {LineTiming}
  */
-export function placed(old, new_, said) {
+export function placeTold(old, new_, said) {
   const end = _endOf(old);
   if (restarts(old, new_, said)) {
     return but(shifted(new_, Math.max(said, end)), { later: old.later });

@@ -233,7 +233,7 @@ namespace Metagraph
             {
                 return new_;
             }
-            var told = old.Start > now ? new_.Timing : LineTimingRules.Placed(old.Timing, new_.Timing, said);
+            var told = old.Start > now ? new_.Timing : LineTimingRules.PlaceTold(old.Timing, new_.Timing, said);
             var timing = LineTimingRules.Extended(old.Timing, told, said);
             var length = Math.Max(LineTimingRules.TimedSeconds(timing, null), new_.End - new_.Start);
             var more = new_.Text == "" || new_.Text == LineTimingRules.ToldText(new_.Timing);

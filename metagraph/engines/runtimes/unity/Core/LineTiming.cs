@@ -471,7 +471,7 @@ namespace Metagraph
         /// what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line
         /// that are over.
         /// </summary>
-        public static LineTiming Placed(LineTiming old, LineTiming new_, double said)
+        public static LineTiming PlaceTold(LineTiming old, LineTiming new_, double said)
         {
             var end = EndOf(old);
             if (Restarts(old, new_, said))

@@ -166,7 +166,7 @@ static func going_on(old, new, now):
 	var said = Util.most(now - old.start, 0.0)
 	if old.end <= now and not LineTiming.tells_on(old.timing, LineTiming.shifted(new.timing, old.timing.later)):
 		return new
-	var told = new.timing if old.start > now else LineTiming.placed(old.timing, new.timing, said)
+	var told = new.timing if old.start > now else LineTiming.place_told(old.timing, new.timing, said)
 	var timing = LineTiming.extended(old.timing, told, said)
 	var length = Util.most(LineTiming.timed_seconds(timing, null), new.end - new.start)
 	var more = new.text == "" or new.text == LineTiming.told_text(new.timing)

@@ -352,7 +352,7 @@ static func shifted(timing, by):
 
 # Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes after what was
 # told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line that are over.
-static func placed(old, new, said):
+static func place_told(old, new, said):
 	var end = _end_of(old)
 	if restarts(old, new, said):
 		return LineTiming.new(shifted(new, Util.most(said, end)).words, shifted(new, Util.most(said, end)).marks, old.later)
