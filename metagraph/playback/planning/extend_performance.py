@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.playback.life.items import BlinkAt, ModeFrom, PlaceFrom, StayFrom
+from metagraph.playback.life.items import BlinkAt, ModeFrom, PlaceFrom, Speech, StayFrom
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import Revision, extend_plan
 from metagraph.playback.planning.hearing import heard, owners
@@ -90,8 +90,9 @@ def answer_asks(plan: Plan, idents: Iterable[str]) -> dict[str, AskAnswer]:
             if meta.start >= plan.end:
                 for x in of(meta.request.id):
                     x.waiting.append(meta.start)
+    latest = {speech.id: speech for speech in plan.track.speeches}  # an earlier one of the id is over
     for item in plan.track.items:
-        if not isinstance(item, StayFrom):
+        if not isinstance(item, StayFrom) and (not isinstance(item, Speech) or latest[item.id] is item):
             for x in of(item.id):
                 x.items.append(item)
     for report in plan.reports:

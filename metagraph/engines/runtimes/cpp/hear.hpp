@@ -42,7 +42,7 @@ inline Answer answer(const std::string& id, const Plan& plan) {
         }
     }
     for (const auto& x : plan.track->looks) if (of(x->id)) plays(x->start, x->end, "look");
-    for (const auto& x : plan.track->speeches) if (of(x->id)) plays(x->start, x->end, "speech");
+    for (const auto& x : plan.track->speeches) if (of(x->id) && plan.track->last_speech(x->id) == x) plays(x->start, x->end, "speech");
     for (const auto& x : plan.track->modes) if (of(x->id)) plays(x->start, meaning::FOREVER, "mode");
     for (const auto& x : plan.track->places) if (of(x->id)) plays(x->start, meaning::FOREVER, "place");
     for (const auto& x : plan.track->blinks) if (of(x->id)) plays(x->start, x->start, "blink");

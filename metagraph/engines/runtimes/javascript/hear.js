@@ -54,7 +54,8 @@ export function answers(plan, ids) {
     for (const meta of metas) if (meta.start >= plan.end) each(meta.request.id, (x) => x.waiting.push(meta.start));
   }
   for (const [what, lane] of Object.entries(LANES)) {
-    for (const { id, start, end = what === "blink" ? start : FOREVER } of plan.track[lane]) each(id, (x) => x.plays.push({ start, end, what }));
+    const items = lane === "speeches" ? new Map(plan.track[lane].map((x) => [x.id, x])).values() : plan.track[lane]; // of an id the last
+    for (const { id, start, end = what === "blink" ? start : FOREVER } of items) each(id, (x) => x.plays.push({ start, end, what }));
   }
   for (const told of plan.reports) each(told.request, (x) => x.told.push(told));
   return new Map([...found].map(([id, x]) => [id, { id, ...answer(x) }]));

@@ -65,7 +65,7 @@ namespace Metagraph
         private static IEnumerable<(string, double, double, string)> Lasting(Track track)
         {
             return track.Looks.Select(x => (x.Id, x.Start, x.End, "look"))
-                .Concat(track.Speeches.Select(x => (x.Id, x.Start, x.End, "speech")))
+                .Concat(track.Speeches.Where(x => track.LastSpeech(x.Id) == x).Select(x => (x.Id, x.Start, x.End, "speech")))
                 .Concat(track.Modes.Select(x => (x.Id, x.Start, MeaningRules.Forever, "mode")))
                 .Concat(track.Places.Select(x => (x.Id, x.Start, MeaningRules.Forever, "place")))
                 .Concat(track.Blinks.Select(x => (x.Id, x.Start, x.Start, "blink")))

@@ -30,6 +30,8 @@ static func answers(plan, idents):
 					each.waiting.append(meta.start)
 	for lane in WORDS:
 		for item in plan.track[lane]:
+			if lane == "speeches" and plan.track.last_speech(item.id) != item:
+				continue  # an earlier one of the id is over
 			for each in _of(found, item.id):
 				_plays(each, item.start, _end_of(item, lane), WORDS[lane])
 	for report in plan.reports:
