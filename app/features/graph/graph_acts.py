@@ -85,8 +85,10 @@ class GraphActs(QObject):
         if not load:
             self.refused.emit(tr("Select clips or actions first."))
             return
-        area = "card" if kind == "stance" else "node"
-        hit = GraphHit(area, self.session.place.stance() if kind == "stance" else None, kind)
+        if kind == "stance":
+            hit = GraphHit("card", self.session.place.stance(), kind)
+        else:
+            hit = GraphHit("node", None, kind)
         drop = self.what(hit, load)
         if not drop.possible:
             self.refused.emit(drop.words)
