@@ -50,5 +50,7 @@ def run(options: Namespace) -> int:
             )
         )
     from app.main import run_window
+    from metagraph.formats.outputs import writing_freely
 
-    return run_window(options.project, options.sample, options.clip)
+    with writing_freely():  # what it saves to, it has read
+        return run_window(options.project, options.sample, options.clip)

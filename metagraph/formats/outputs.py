@@ -13,7 +13,7 @@ import hashlib
 import os
 import stat
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -219,13 +219,26 @@ _now: Outputs | None = None
 @contextmanager
 def writing(outputs: Outputs) -> Iterator[Outputs]:
     """Check all files that are written inside the `with` block."""
+    try:
+        with _outputs_are(outputs):
+            yield outputs
+    finally:
+        outputs.tidy()
+
+
+@contextmanager
+def _outputs_are(outputs: Outputs | None) -> Iterator[None]:
     global _now
     before, _now = _now, outputs
     try:
-        yield outputs
+        yield
     finally:
         _now = before
-        outputs.tidy()
+
+
+def writing_freely() -> AbstractContextManager[None]:
+    """Check nothing inside the `with` block: for a window, which asks the user itself."""
+    return _outputs_are(None)
 
 
 @contextmanager
