@@ -105,7 +105,10 @@ def _read(options: Namespace, words: list[Path], out: Path | None, output: Proje
             lines += [f"  {row['name']}, {share.words()}" for share in part.looks]
         shares = join_shares([share for part in parts for share in part.looks])
         lines += [f"  whoever is {share.words()}" for share in shares]
-        lines.append(f"kept in {options.project} as {ident}")
+        name = open_for_command(options.project).conversations[ident].name
+        lines.append(f"kept in {options.project} as '{name}' ({ident})")
+        if name != read.conversation.name:
+            lines.append(f"  there is a '{read.conversation.name}' already, which stays as it was")
     if out is not None:
         lines.append(f"written to {out}")
     data = {

@@ -53,7 +53,8 @@ class FaultTeller(QObject):
 
     def _note_step(self, index: int) -> None:
         """Remember the first word of what was done; the words after it may name something of the project."""
-        words = self.document.undo_stack.undoText().split()
+        step = self.document.undo_stack.command(index - 1) if index else None
+        words = str(getattr(step, "english", "")).split()
         faults.note(f"step {index}: {words[0] if words else 'none'}")
 
     def stop(self) -> None:

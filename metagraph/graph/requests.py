@@ -304,8 +304,20 @@ def explain_invalid_ask(error: Exception) -> str:
         field = where.strip("`").removeprefix("$").lstrip(".")
         if "Invalid value" in message and field == "do":
             message += f"; known are {', '.join(WORDS)}"
+        elif message.startswith("Invalid enum value"):
+            message += f"; it is one of {', '.join(_choices(field))}"
         return f"{field}: {message}" if field else message
     return f"not JSON: {text}"
+
+
+def _choices(field: str) -> tuple[str, ...]:
+    """Return the words that may stand in a field of requests."""
+    found: dict[str, None] = {}
+    for kind in ask_schema()["$defs"].values():
+        value = kind.get("properties", {}).get(field.rpartition(".")[2], {})
+        for one in (value, *value.get("anyOf", ())):
+            found.update(dict.fromkeys(str(word) for word in one.get("enum", ()) if word is not None))
+    return tuple(found)
 
 
 WORDS: tuple[str, ...] = tuple(str(kind.__struct_config__.tag) for kind in get_args(AnyRequest))

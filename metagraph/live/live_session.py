@@ -393,7 +393,7 @@ class LiveSession:
         return self._speech(key) is not None or isinstance(work.asks.get(key), a.Say)
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: TickWork) -> Reply:
-        """Withdraw what an agent requested: what waits does not play, and what has begun is left."""
+        """Withdraw what an agent requested: what waits does not play, what has begun stops or goes back."""
         if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now, client.number):
             return Reply(id=ident, state="refused", why=BUSY)
         owner, until = client.owner, self.now + self.project.settings.lookahead
@@ -417,7 +417,7 @@ class LiveSession:
         if speech is not None:
             spoken, word = spoken_until(self.plan.track.speeches, speech, until)
         self._take_back([target, *keys] if ask.what else keys, work)
-        why = f"{len(keys)} taken back; what has begun is left, but for changes of stance"
+        why = f"{len(keys)} taken back; what has begun stops or goes back to its stance"
         return Reply(id=ident, state="done", why=why, spoken=spoken, last_word=word or None)
 
     def _why_nothing(self, key: str, what: str) -> str:

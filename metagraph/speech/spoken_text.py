@@ -39,6 +39,9 @@ _OPEN = (
 )
 
 
+_BEFORE_MARK = re.compile(r" ([.,;:!?…])(?=\s|$)")  # a blank that something left out has left
+
+
 @dataclass(frozen=True)
 class SpokenPart:
     """A part of a text to say, and the seconds of silence after it."""
@@ -115,7 +118,7 @@ def read_spoken_line(text: str) -> tuple[str, list[Phrase]]:
             comma = parts[n - 1].pause > 0 and line[-1].isalnum()
             line += ", " if comma else " "
         line += said
-    return line, left_out
+    return _BEFORE_MARK.sub(r"\1", " ".join(line.split())), left_out
 
 
 def _certain(text: str) -> int:

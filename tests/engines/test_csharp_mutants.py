@@ -132,8 +132,8 @@ MUTATIONS = [
     ("ToldTiming.cs", "Ticks = 1e7", "Ticks = 1e6", "what synthesisers count seconds in"),
     (
         "Items.cs",
-        "LineTimingRules.Extended(old.Timing, new_.Timing, Math.Max(now - old.Start, 0.0))",
-        "LineTimingRules.Extended(old.Timing, new_.Timing, 0.0)",
+        "LineTimingRules.Extended(old.Timing, told, said)",
+        "LineTimingRules.Extended(old.Timing, told, 0.0)",
         "what has been said of a line stands",
     ),
     (

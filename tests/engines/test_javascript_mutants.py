@@ -112,7 +112,7 @@ MUTATIONS = [
     ),
     ("sampling.js", "const both = timely.filter", "const both = [].filter", "strokes that are shared"),
     ("sampling.js", "if (over.length > 0) {", "if (over.length > 99) {", "room for what follows"),
-    ("sampling.js", "let soonest = now + Math", "let soonest = now + 99 + Math", "leaving what runs"),
+    ("sampling.js", "const atOnce = now + Math", "const atOnce = now + 99 + Math", "leaving what runs"),
     ("cue_shapes.js", "left = found.strokeEnd - shape.entry;", "", "leaving out a hold"),
     ("bounds.js", "Math.min(meta.start, meta.request.start)", "meta.start", "when what is judged begins"),
     (
@@ -245,8 +245,8 @@ MUTATIONS = [
     ("pose.js", "Math.min(period + phase, length)", "phase", "the seam of a loop"),
     (
         "pose.js",
-        "action.end - action.start - seam;",
-        "action.end - action.start;",
+        "const period = length - seam;",
+        "const period = length;",
         "the period of a loop with a seam",
     ),
     (

@@ -58,6 +58,7 @@ class ConversationPanel(QWidget):
         below.addStretch(1)
         below.addSpacing(BELOW_WORDS)
         self.play = QPushButton(self.view)
+        self.play.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the focus; the lanes would take it
         self.play.clicked.connect(self._play_first)
         below.addWidget(self.play, 0, Qt.AlignmentFlag.AlignHCenter)
         below.addStretch(1)

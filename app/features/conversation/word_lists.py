@@ -29,7 +29,7 @@ from metagraph.speech.language_detection import detect_language
 from metagraph.speech.language_packs import list_language_packs
 
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
-LOW = 84  # pixels
+LOW = 74  # pixels
 
 
 def language_name(code: str) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QUndoView, QWidget
 
-from app.look.icons import icon
 from app.shell.actions import Command, Standard
 from app.shell.command_table import Feature, has_actions_selected, is_meta_graph_shown
 from app.shell.context import Shell
@@ -39,7 +39,9 @@ class EditingFeature(Feature):
         view.setSpacing(3)
         view.setFrameShape(QFrame.Shape.NoFrame)
         view.setEmptyLabel(tr("Before these steps"))
-        view.setCleanIcon(icon("save", self.shell.widget.palette().text().color().name()))
+        view.setWordWrap(True)  # whole steps in a narrow panel
+        view.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        view.setResizeMode(QUndoView.ResizeMode.Adjust)
         view.setAccessibleName(tr("Every step so far; click one to go back to it"))
         return view
 

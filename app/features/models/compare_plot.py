@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
-from PySide6.QtGui import QColor, QFontMetricsF
+from PySide6.QtGui import QColor, QFont, QFontMetricsF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.features.models.heatmap import SIDES
@@ -23,6 +23,7 @@ from metagraph.playback.learning.learn import State
 
 WIDTH = 0.34  # of a bar; two stand side by side
 TOP = 6.0  # pixels, so that a number at the upper end is whole
+LETTERS, NARROW_LETTERS, NARROW = 14, 11, 600  # pixels of letters under bars, and of a plot with smaller ones
 APART = 4.0  # pixels between the words under bars, at least
 
 
@@ -143,12 +144,15 @@ class ComparePlot(QWidget):
         if self.found is None:
             return
         states, layer = self.found.generated.states, self.found.model.layer
-        metrics, rest = QFontMetricsF(self.font()), tr("rest")
+        font, rest = QFont(self.font()), tr("rest")
+        font.setPixelSize(NARROW_LETTERS if self.width() < NARROW else LETTERS)
+        metrics = QFontMetricsF(font)
         for plot, more in ((self.often, []), (self.long, [rest])):
             names = [shorten_state(state, layer) for state in states]
             room = plot.plotItem.vb.width() / (1.04 * (len(names) + len(more))) - APART
             if layer == "arms" and max(map(metrics.horizontalAdvance, names)) > room:
                 names = [name[1:] for name in names]
+            plot.getAxis("bottom").setTickFont(font)
             plot.getAxis("bottom").setTicks([list(enumerate([*names, *more]))])
 
     def _bar(self, plot: Any, x: float, height: float, color: QColor, filled: bool) -> None:

@@ -146,13 +146,13 @@ def draft(
             if not meta.written:
                 reports.append(Report(meta.request.id, "no-stance", why, layer, meta.start))
         return LayerDraft(layer, performer, False, done, waits, reports, old.past, cursor, written)
-    if len(old.rests) > 0 and now > 0:
-        begun = {cue.end - cue.blend_out for cue in kept}
-        performer.rests = [rest for rest in old.rests if rest.fade_start < now or rest.start in begun]
     performer.begun = {cue.meta for cue in kept if cue.meta in waiting}
     if len(kept) > 0 and kept[-1].end > now:
         running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
         performer.make_way(running, asked, now, running is not None and running.request.id in stopped)
+    if len(old.rests) > 0 and now > 0:
+        begun = {cue.end - cue.blend_out for cue in performer.cues}
+        performer.rests = [rest for rest in old.rests if rest.fade_start < now or rest.start in begun]
     performer.free = max(now - (performer.ready - performer.free), performer.free)
     asked, delayed = delay(asked, performer.ready, project.settings)
     busy = float("-inf")  # what runs keeps the time it was wanted for, from the models

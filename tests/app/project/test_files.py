@@ -247,7 +247,7 @@ def test_steps_can_be_undone_after_saving_and_opening_again(desk, saved, qtbot):
     desk.document.save()
     reopen(desk, saved, qtbot)
     stack = desk.document.undo_stack
-    assert [stack.text(n) for n in range(stack.count())] == ["Import 3 clips", "Change seed", "Rename clip"]
+    assert [stack.text(n) for n in range(stack.count())] == ["Import 3 clips", "Seed 1 → 7", "Rename clip"]
     assert not desk.document.dirty
     desk.document.undo()
     assert desk.document.project.clips[first].name != "hello" and desk.document.dirty

@@ -223,26 +223,13 @@ inline Ref<LayerDraft> draft(
         }
         return lang::made<LayerDraft>(layer, performer, false, done, waits, reports, old->past, cursor, written);
     }
-    if (lang::len(old->rests) > 0 && now > 0) {
-        Set<double> begun;
-        for (const auto& cue : kept) {
-            begun.insert(cue->end - cue->blend_out);
-        }
-        List<Ref<Rest>> found;
-        for (const auto& rest : old->rests) {
-            if (rest->fade_start < now || lang::contains(begun, rest->start)) {
-                found.push_back(rest);
-            }
-        }
-        performer->rests = found;
-    }
-    Set<std::string> found2;
+    Set<std::string> found;
     for (const auto& cue : kept) {
         if (lang::contains(waiting, cue->meta)) {
-            found2.insert(cue->meta);
+            found.insert(cue->meta);
         }
     }
-    performer->begun = found2;
+    performer->begun = found;
     if (lang::len(kept) > 0 && lang::at(kept, -1)->end > now) {
         Ref<MetaAction> first;
         for (const auto& meta3 : old->metas) {
@@ -253,6 +240,19 @@ inline Ref<LayerDraft> draft(
         }
         Ref<MetaAction> running = first;
         performer->make_way(running, asked, now, running != nullptr && lang::contains(stopped, running->request->id));
+    }
+    if (lang::len(old->rests) > 0 && now > 0) {
+        Set<double> begun;
+        for (const auto& cue : performer->cues) {
+            begun.insert(cue->end - cue->blend_out);
+        }
+        List<Ref<Rest>> found2;
+        for (const auto& rest : old->rests) {
+            if (rest->fade_start < now || lang::contains(begun, rest->start)) {
+                found2.push_back(rest);
+            }
+        }
+        performer->rests = found2;
     }
     performer->free = std::max(now - (performer->ready() - performer->free), performer->free);
     List<Ref<Report>> delayed{};

@@ -137,14 +137,14 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
     }
     return new LayerDraft(layer, performer, false, done, waits, reports, old.past, cursor, written);
   }
-  if (old.rests.length > 0 && now > 0) {
-    const begun = new Set(kept.map((cue) => cue.end - cue.blendOut));
-    performer.rests = old.rests.filter((rest) => rest.fadeStart < now || begun.has(rest.start));
-  }
   performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
     performer.makeWay(running, asked, now, running !== null && stopped.has(running.request.id));
+  }
+  if (old.rests.length > 0 && now > 0) {
+    const begun = new Set(performer.cues.map((cue) => cue.end - cue.blendOut));
+    performer.rests = old.rests.filter((rest) => rest.fadeStart < now || begun.has(rest.start));
   }
   performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
   let delayed;

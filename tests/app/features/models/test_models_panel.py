@@ -185,7 +185,7 @@ def test_what_stands_under_bars_does_not_touch_however_narrow_the_plot(panel, qt
     alone = ComparePlot(panel.session)
     qtbot.addWidget(alone)
     alone.show_comparison(panel.plot.found)
-    alone.resize(wide, 140)
+    alone.resize(wide, 170)
     alone.show()
     qtbot.waitExposed(alone)
     assert ("▲LR" if wide > 800 else "LR") in {seen.painted.text for seen in seen_in(alone)}

@@ -166,16 +166,16 @@ namespace Metagraph
                 }
                 return new LayerDraft(layer, performer, false, done, waits, reports, old.Past, cursor, written);
             }
-            if (old.Rests.Count > 0 && now > 0)
-            {
-                var begun = new HashSet<double>(kept.Select(cue => cue.End - cue.BlendOut));
-                performer.Rests = old.Rests.Where(rest => rest.FadeStart < now || begun.Contains(rest.Start)).ToList();
-            }
             performer.Begun = new HashSet<string>(kept.Where(cue => waiting.Contains(cue.Meta)).Select(cue => cue.Meta));
             if (kept.Count > 0 && kept[kept.Count - 1].End > now)
             {
                 var running = old.Metas.Where(meta => meta.Key == kept[kept.Count - 1].Meta).FirstOrDefault();
                 performer.MakeWay(running, asked, now, running != null && stopped.Contains(running.Request.Id));
+            }
+            if (old.Rests.Count > 0 && now > 0)
+            {
+                var begun = new HashSet<double>(performer.Cues.Select(cue => cue.End - cue.BlendOut));
+                performer.Rests = old.Rests.Where(rest => rest.FadeStart < now || begun.Contains(rest.Start)).ToList();
             }
             performer.Free = Math.Max(now - (performer.Ready - performer.Free), performer.Free);
             List<Report> delayed = default(List<Report>);

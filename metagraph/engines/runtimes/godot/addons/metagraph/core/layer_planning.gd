@@ -138,20 +138,11 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 			if not meta.written:
 				reports.append(MetaPlan.Report.new(meta.request.id, "no-stance", why, layer, meta.start))
 		return LayerDraft.new(layer, performer, false, done, waits, reports, old.past, cursor, written)
-	if old.rests.size() > 0 and now > 0:
-		var begun = {}
-		for cue in kept:
-			Util.add_to(begun, cue.end - cue.blend_out)
-		var found = []
-		for rest in old.rests:
-			if rest.fade_start < now or begun.has(rest.start):
-				found.append(rest)
-		performer.rests = found
-	var found2 = {}
+	var found = {}
 	for cue in kept:
 		if waiting.has(cue.meta):
-			Util.add_to(found2, cue.meta)
-	performer.begun = found2
+			Util.add_to(found, cue.meta)
+	performer.begun = found
 	if kept.size() > 0 and kept[-1].end > now:
 		var first = null
 		for meta3 in old.metas:
@@ -160,6 +151,15 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				break
 		var running = first
 		performer.make_way(running, asked, now, running != null and stopped.has(running.request.id))
+	if old.rests.size() > 0 and now > 0:
+		var begun = {}
+		for cue in performer.cues:
+			Util.add_to(begun, cue.end - cue.blend_out)
+		var found2 = []
+		for rest in old.rests:
+			if rest.fade_start < now or begun.has(rest.start):
+				found2.append(rest)
+		performer.rests = found2
 	performer.free_ = Util.most(now - (performer.ready() - performer.free_), performer.free_)
 	var delayed
 	var both2 = Replan.delay(asked, performer.ready(), project.settings)
