@@ -10,7 +10,7 @@ from math import inf
 
 from metagraph.playback.life.track import Item, LookAt, MoodFrom, Speech
 from metagraph.playback.plan import MetaAction, Plan, Report
-from metagraph.playback.planning.extend_performance import find_served, item_end
+from metagraph.playback.planning.extend_performance import find_served, item_end, name_item
 
 ENDLESS = 1e8  # seconds; what ends later than this ends when something else begins
 
@@ -61,16 +61,6 @@ class FoundAnswer:
         return "nothing came of it" if self.state == "refused" else "chosen when its time is nearer"
 
 
-WORDS = {
-    "LookAt": "look",
-    "Speech": "speech",
-    "ModeFrom": "mode",
-    "PlaceFrom": "place",
-    "BlinkAt": "blink",
-    "MoodFrom": "mood",
-}
-
-
 def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, FoundAnswer]:
     """Return what a plan holds of asks, for those of which it holds anything. since: seconds before which
     nothing matters.
@@ -102,7 +92,7 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
         if found is not None:
             found.starts.append(item.start)
             found.ends.append(item_end(item))
-            found.what.append(WORDS[type(item).__name__])
+            found.what.append(name_item(item))
     for report in plan.reports:
         found = of(report.request)
         if found is not None:

@@ -127,7 +127,7 @@ def _answer(ident: str, found: _Found) -> AskAnswer:
         starts = [c.start for c in cues] + [i.start for i in items]
         ends = [c.end for c in cues] + [item_end(i) for i in items]
         late = any(r.outcome in ("late", "queued", "resumed") for r in told)
-        what = (*(c.action.name for c in cues), *(_words(i) for i in items))
+        what = (*(c.action.name for c in cues), *(name_item(i) for i in items))
         return AskAnswer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
     if any(r.outcome == "already-there" for r in told):
         return AskAnswer(ident, "done", None, None, (), why)
@@ -150,7 +150,8 @@ def item_end(item: Any) -> float:
     return float(item.start if isinstance(item, BlinkAt) else item.end)
 
 
-def _words(item: object) -> str:
+def name_item(item: object) -> str:
+    """Return what answers call something that lasts: "look", "speech", "mode" and so on."""
     name = type(item).__name__
     return {
         "LookAt": "look",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.problems import ProblemButton
+from app.shell.window import fit_screen
 from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
@@ -339,6 +340,13 @@ def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch)
     drive.key(KEY.Key_4)
     assert drive.told[-1].startswith("first choose the stance")
     assert drive.window.statusBar().currentMessage() == drive.told[-1]
+
+
+@pytest.mark.parametrize(
+    ("room", "size"), [((1280, 720), (1276, 680)), ((1920, 1080), (1680, 1020)), ((1536, 864), (1532, 824))]
+)
+def test_a_new_window_and_its_frame_fit_the_screen(room, size):
+    assert fit_screen(QSize(*room)).toTuple() == size
 
 
 def test_a_key_changes_the_kind_of_actions_of_several_stances_and_nothing_else(toys):

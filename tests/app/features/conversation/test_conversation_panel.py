@@ -125,3 +125,20 @@ def test_a_playhead_that_is_moved_out_of_sight_is_followed_and_one_in_sight_is_n
     assert view.first == 0.0 < far
     session.transport.seek(view.scale().seconds(view.width() - 5))
     assert view.first == 0.0
+
+
+def test_the_first_conversation_plays_by_a_click_on_the_empty_stage_and_nothing_is_selected(
+    talk: Any,
+) -> None:
+    drive = talk.drive
+    panel, onstage = drive.conversation, drive.session.onstage
+    onstage.set_conversation(None)
+    drive.wait(panel.play.isVisible)
+    name = next(iter(drive.document.project.conversations.values())).name
+    assert panel.play.text() == f"Play '{name}'"
+    drive.session.transport.set_playing(False)
+    QTest.mouseClick(panel.play, Qt.MouseButton.LeftButton)
+    drive.pause(50)
+    assert onstage.conversation == next(iter(drive.document.project.conversations))
+    assert drive.session.transport.playing and not panel.play.isVisible()
+    assert not panel.editing.chosen, "Delete would remove it"

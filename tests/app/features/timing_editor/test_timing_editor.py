@@ -10,6 +10,7 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from app.stage.playback_source import LEAD
 from metagraph.graph import edits
 from metagraph.graph.editing.retiming import keep_hand
 from metagraph.graph.requests import Line, Play
@@ -233,6 +234,34 @@ def test_before_and_after_are_compared_on_the_stage_and_nothing_is_changed(edito
     assert editor.performance.before is project and editor.panel.subject.before_facts()
     editor.panel.compare.click()
     assert editor.performance.before is None and editor.document.project is changed
+
+
+def test_the_key_a_shows_them_as_they_were_and_again_as_they_are(editor):
+    project = editor.document.project
+    pull(editor, at(editor, 1.5), at(editor, 1.9), ALT)
+    editor.view.setFocus()
+    editor.key(Qt.Key.Key_A, widget=editor.view)
+    assert editor.performance.before is project and editor.panel.compare.text() == "A: before"
+    editor.key(Qt.Key.Key_A, widget=editor.view)
+    assert editor.performance.before is None and editor.panel.compare.text() == "A/B"
+
+
+@pytest.mark.parametrize("handle", ["in", "out"])
+def test_a_blend_that_was_dragged_plays_between_its_stances(editor, handle):
+    shown = facts(editor)
+    where = shown.handle(handle).at
+    by = 0.1 if handle == "in" else -0.1
+    pull(editor, at(editor, where), at(editor, where + by), ALT, let_go=False)
+    transport = editor.session.transport
+    assert transport.show == "clip" and not transport.playing, "while it is dragged, its moment is seen"
+    QTest.mouseRelease(
+        editor.view, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at(editor, where + by)
+    )
+    assert (transport.show, transport.shown) == ("context", editor.ident) and transport.playing
+    begin, end = editor.document.project.span(editor.document.project.action(editor.ident))
+    out = LEAD + end - begin - timing(editor).blend_out
+    assert transport.seconds < (LEAD if handle == "in" else out)
+    assert transport.seconds >= (0 if handle == "in" else out - 1)
 
 
 def test_onion_skin_shows_start_stroke_and_end(editor):
