@@ -15,6 +15,7 @@ FEATURES = (
     "repairs",
     "properties",
     "notes",
+    "table",
     "manual",
     "labelling",
     "motion_graph",

@@ -30,6 +30,7 @@ from metagraph.formats.project.journal import Done, How
 from metagraph.formats.project.limits import find_unwritable
 from metagraph.formats.store import file_digest
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.half_labels import place_complete
 from metagraph.graph.editing.listing import is_listed_differently
 from metagraph.graph.model import Project
 
@@ -147,12 +148,14 @@ class Document(QObject):
 
     def edit(self, text: str, function: Edit, merge: str | None = None) -> None:
         """Change the project by a pure function, as one undo step named `text`. Consecutive edits with the
-        same `merge` are one step.
+        same `merge` are one step. Clips whose labels are complete afterwards are placed by the same step.
 
         Raises EditError, from the function or if no project file could hold the result; the project is then
         unchanged.
         """
         after = function(self.project)
+        if after.graphs is not self.project.graphs and after.marks:
+            after = place_complete(after)  # the stance that a half labelled clip waits for may be there now
         if after is not self.project and (
             after != self.project or is_listed_differently(self.project, after)
         ):

@@ -18,9 +18,10 @@ from app.translation import tr, tr_error, tr_plural
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.half_labels import follow_stance_name
 from metagraph.graph.editing.listing import shift_actions
 from metagraph.graph.editing.merging_stances import merge_stances
-from metagraph.graph.model import KINDS, Action, Kind
+from metagraph.graph.model import KINDS, Action, Kind, Project
 
 
 class GraphActs(QObject):
@@ -164,7 +165,14 @@ class GraphActs(QObject):
             return
         name, accepted = QInputDialog.getText(self.widget, tr("Rename stance"), tr("Name:"), text=found.name)
         if accepted and name.strip():
-            self.document.edit(tr("Rename stance"), lambda p: edits.rename_stance(p, found.id, name))
+
+            def rename(project: Project) -> Project:
+                project = edits.rename_stance(project, found.id, name)
+                renamed = project.stance(found.id)
+                assert renamed is not None
+                return follow_stance_name(project, found.layer, found.name, renamed.name)
+
+            self.document.edit(tr("Rename stance"), rename)
 
     def remove_selection(self) -> None:
         """Take the selected actions out of the graph."""

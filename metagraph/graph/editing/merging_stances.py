@@ -9,6 +9,7 @@ import msgspec
 
 from metagraph.common.wording import phrase
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.half_labels import follow_stance_name
 from metagraph.graph.edits import remove_stance, set_start_stance
 from metagraph.graph.model import LAYERS, Action, Project
 from metagraph.graph.requests import AnyRequest, Go
@@ -63,4 +64,5 @@ def merge_stances(project: Project, merged: str, into: str) -> Project:
         for ident, p in project.performances.items()
     }
     lines = {i: msgspec.structs.replace(line, asks=renamed(line.asks)) for i, line in project.lines.items()}
+    project = follow_stance_name(project, kept.layer, gone.name, kept.name)
     return replace(project, performances=performances, lines=lines)
