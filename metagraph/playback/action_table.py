@@ -6,7 +6,7 @@ window shows and reads them in its language.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
@@ -72,8 +72,13 @@ class WrittenCells:
 
 def list_rows(project: Project) -> tuple[TableRow, ...]:
     """Return the rows in the order of the clips; those of one clip follow each other."""
+    return list_clip_rows(project, project.clips)
+
+
+def list_clip_rows(project: Project, clips: Iterable[str]) -> tuple[TableRow, ...]:
+    """Return the rows of some clips, by id."""
     out: list[TableRow] = []
-    for clip in project.clips:
+    for clip in clips:
         uses = project.uses.get(clip, ())
         out += [TableRow(action.id, clip, action) for action in uses] or [TableRow(clip, clip, None)]
     return tuple(out)
@@ -133,8 +138,8 @@ def write_cells(project: Project, cells: Mapping[Cell, str]) -> WrittenCells:
     that the order in which cells are written does not matter.
 
     A stance that does not exist yet is made by a row of kind stance. Writing where an action ends makes it a
-    transition. A cell that cannot be written is left as it was, with the reason. One that says the same already
-    is left alone.
+    transition. A cell that cannot be written is left as it was, with the reason. One that says the same
+    already is left alone.
     """
     refused: dict[Cell, str] = {}
     rows: dict[str, dict[Column, str]] = {}

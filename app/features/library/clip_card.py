@@ -18,6 +18,7 @@ from app.features.library.clip_sizes import picture_of
 from app.look.shortening import shorten_middle, shorten_to_font
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import tr
+from metagraph.graph.editing.half_labels import half_label_of
 from metagraph.graph.model import ClipEntry, Kind
 
 
@@ -33,8 +34,9 @@ class ClipInk:
 
 
 def list_clip_kinds(facts: ClipFacts, entry: ClipEntry) -> list[Kind]:
-    """Return what a clip serves as, each once."""
-    return list(dict.fromkeys(a.kind for a in facts.uses(entry)))
+    """Return what a clip serves as, each once, or will serve as once the rest of its label is known."""
+    known = half_label_of(facts.project, entry.id).kind
+    return list(dict.fromkeys(a.kind for a in facts.uses(entry))) or ([known] if known else [])
 
 
 def draw_stripe(
@@ -112,7 +114,7 @@ def draw_clip_card(
     draw_badges(painter, rect.adjusted(10, 5, -6, 0), mark, look)
     line.moveTop(rect.bottom() - 20)
     right = draw_kinds(painter, line, list_clip_kinds(facts, entry), look)
-    base = tr("base") if facts.project.base.clip == entry.id else ""
+    base = tr("base") if facts.project.base.clip == entry.id else facts.missing(entry)
     length = tr("{seconds:.1f} s", seconds=entry.duration)
     stars = f"★{mark.rating}" if mark.rating else ""
     painter.setPen(QColor(look.dim))

@@ -8,18 +8,21 @@ from html import escape
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.features.properties.page_form import page_box
+from app.features.properties.label_rows import LabelRows
+from app.features.properties.page_form import Edit, form_in, page_box
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import StageSession
-from app.translation import tr, tr_plural
+from app.translation import tr, tr_error, tr_plural
+from app.widgets.restyling import set_sheet
 from app.widgets.vocabulary import vocabulary_word
+from metagraph.playback.action_table import Column, list_clip_rows, write_cells
 
 
 class ClipPage(QWidget):
-    def __init__(self, document: Document, session: StageSession, parent: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, edit: Edit, parent: QWidget) -> None:
         super().__init__(parent)
-        self.document, self.session = document, session
+        self.document, self.session, self.edit = document, session, edit
         box = page_box(self)
         self.title = QLabel(self, wordWrap=True)
         self.title.setProperty("title", True)
@@ -32,6 +35,10 @@ class ClipPage(QWidget):
         self.uses.setTextFormat(Qt.TextFormat.RichText)
         self.uses.linkActivated.connect(lambda ident: self.session.jump(action=ident))
         box.addWidget(self.uses)
+        self.label = LabelRows(form_in(box), self)
+        self.label.wanted.connect(self._set_label)
+        self.trouble = QLabel(self, wordWrap=True)
+        box.addWidget(self.trouble)
         box.addStretch(1)
 
     def show_clips(self, clips: Sequence[str]) -> None:
@@ -80,3 +87,26 @@ class ClipPage(QWidget):
             "transition.</p>"
         )
         self.uses.setText("".join(lines) + keys)
+        self.label.show_clips(project, clips)
+        self._say("")
+
+    def _set_label(self, column: Column, text: str) -> None:
+        """Set one part of the label of the selected clips, and say what could not be set."""
+        rows = list_clip_rows(self.document.project, self.session.selection.clips)
+        written = write_cells(self.document.project, {(row.ident, column): text for row in rows})
+        words = {
+            "kind": tr("Change kind"),
+            "layer": tr("Change layer"),
+            "stance": tr("Change stance"),
+            "end_stance": tr("Change end stance"),
+            "limb": tr("Change limb"),
+            "tags": tr("Change tags"),
+        }[column]
+        self.edit(words, lambda _: written.project)
+        self.show_clips(self.session.selection.clips)
+        self._say(tr_error(ValueError(next(iter(written.refused.values())))) if written.refused else "")
+
+    def _say(self, trouble: str) -> None:
+        self.trouble.setText(trouble)
+        self.trouble.setVisible(bool(trouble))
+        set_sheet(self.trouble, f"color: {theme(self.session.look.name).warning}")

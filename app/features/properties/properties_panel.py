@@ -50,7 +50,7 @@ class PropertiesPanel(QScrollArea):
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.pages = QStackedWidget(self)
         self.layer = LayerPage(document, session, self._try, self)
-        self.clip = ClipPage(document, session, self)
+        self.clip = ClipPage(document, session, self._try, self)
         self._none = QWidget(self)  # where the page of actions will be
         for page in (self.layer, self._none, self.clip):
             self.pages.addWidget(page)
@@ -136,6 +136,7 @@ class PropertiesPanel(QScrollArea):
             or before.base != after.base
             or before.markov is not after.markov
             or before.settings != after.settings
+            or before.marks is not after.marks
         ):
             self.show_selection()
 

@@ -98,6 +98,7 @@ class TablePanel(QWidget):
         for which in WHICH:
             self.which.addItem(TITLES_OF[which], which)
         self.which.setAccessibleName(tr("Which rows"))
+        self.which.setToolTip(tr("Show all rows, or only some"))
         self.which.setSizeAdjustPolicy(ComboBox.SizeAdjustPolicy.AdjustToContents)
         self.which.currentIndexChanged.connect(self._filter)
         self.kept = make_widget(QToolButton, self, text=tr("Filters"))

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QItemSelectionModel, QModelIndex, QPersistentModelIndex, Qt, Signal
+from PySide6.QtCore import (
+    QEvent,
+    QItemSelectionModel,
+    QModelIndex,
+    QObject,
+    QPersistentModelIndex,
+    Qt,
+    Signal,
+)
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -18,16 +26,38 @@ from PySide6.QtWidgets import (
 from app.features.table.cell_words import list_choices
 from app.features.table.table_model import TableModel
 from app.translation import tr
+from app.widgets.restyling import set_sheet
 from metagraph.playback.action_table import COLUMNS, Cell, Column, cell_text
 
 Index = QModelIndex | QPersistentModelIndex
 WIDTHS: dict[Column, int] = {
-    "name": 190, "clip": 150, "kind": 104, "layer": 70, "stance": 130, "end_stance": 120, "limb": 66,
+    "name": 230, "clip": 150, "kind": 104, "layer": 70, "stance": 130, "end_stance": 120, "limb": 66,
     "tags": 130, "likelihood": 88, "cooldown": 86, "prominence": 92, "earliest_exit": 96,
 }  # fmt: skip
 USUAL = 78
-ROW = 26  # pixels of a row's height
+ROW = 28  # pixels of a row's height
 MAY_BE_EMPTY: tuple[Column, ...] = ("tags", "end", "earliest_exit", "prominence")
+
+
+class _EnterTakes(QObject):
+    """On a list of choices: Enter takes what is chosen in it, or else what was typed, and ends editing. Qt
+    would only close the list.
+    """
+
+    def __init__(self, editor: CellEditor, line: QLineEdit) -> None:
+        super().__init__(line)
+        self.editor, self.line = editor, line
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        enters = isinstance(event, QKeyEvent) and event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        if not enters or event.type() != QEvent.Type.KeyPress or not isinstance(watched, QAbstractItemView):
+            return False
+        if watched.currentIndex().isValid():
+            self.line.setText(str(watched.currentIndex().data()))
+        watched.hide()
+        self.editor.commitData.emit(self.line)
+        self.editor.closeEditor.emit(self.line, QStyledItemDelegate.EndEditHint.NoHint)
+        return True
 
 
 class CellEditor(QStyledItemDelegate):
@@ -39,16 +69,19 @@ class CellEditor(QStyledItemDelegate):
 
     def createEditor(self, parent: QWidget, option: QStyleOptionViewItem, index: Index) -> QWidget:
         line = QLineEdit(parent)
-        line.setFrame(False)
+        set_sheet(line, "padding: 0 3px; border-radius: 0")
         model, column = self.view.rows, COLUMNS[index.column()]
         line.setAccessibleName(str(model.headerData(index.column(), Qt.Orientation.Horizontal)))
         layer = cell_text(model.project, model.rows[index.row()], "layer")
-        choices = list_choices(model.project, column, layer)
-        if choices:
-            completer = QCompleter(list(choices), line)
+        words = list_choices(model.project, column, layer)
+        if words:
+            completer = QCompleter(list(words), line)
             completer.setCaseSensitivity(Qt.CaseSensitivity.CaseInsensitive)
             completer.setFilterMode(Qt.MatchFlag.MatchContains)
             line.setCompleter(completer)
+            choices = completer.popup()
+            assert choices is not None
+            choices.installEventFilter(_EnterTakes(self, line))
         return line
 
     def setEditorData(self, editor: QWidget, index: Index) -> None:

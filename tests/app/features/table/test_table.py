@@ -197,7 +197,6 @@ def test_a_clip_waits_half_labelled_and_is_placed_when_the_rest_is_typed(table, 
     drive.pause(1)
     table.click("new one", "kind")
     table.type("gesture")
-
     assert table.index("new one", "stance").data(Qt.ItemDataRole.DisplayRole) == "needed"
     clip = table.ident("new one")
     assert clip in drive.document.project.clips
@@ -207,10 +206,9 @@ def test_a_clip_waits_half_labelled_and_is_placed_when_the_rest_is_typed(table, 
     table.type("UP")
     (action,) = drive.document.project.uses[clip]
     assert (action.kind, drive.document.project.stance(action.stance).name) == ("gesture", "up")
-    assert [row.ident for row in table.rows.rows] == [action.id], "the row stays until the filter changes"
+    drive.wait(lambda: [row.ident for row in table.rows.rows] == [action.id])  # until the filter changes
     drive.document.undo()
-    drive.pause(1)
-    assert [row.ident for row in table.rows.rows] == [clip]
+    drive.wait(lambda: [row.ident for row in table.rows.rows] == [clip])
 
 
 def test_a_clip_that_waits_for_a_stance_is_placed_by_whatever_makes_that_stance(table, toy):
@@ -302,6 +300,23 @@ def test_completions_are_the_stances_of_the_rows_layer(table):
     model = line.completer().model()
     assert [model.index(n, 0).data() for n in range(model.rowCount())] == ["rest", "up", "far"]
     table.key(KEY.Key_Escape)
+
+
+def test_enter_takes_what_was_typed_or_the_choice_that_was_gone_to(table):
+    table.click("rest beat lf", "kind")
+    QTest.keyClicks(QApplication.focusWidget(), "fid")
+    choices = QApplication.focusWidget().completer().popup()
+    table.drive.wait(choices.isVisible)
+    QTest.keyClick(choices, KEY.Key_Return)
+    assert table.says("rest beat lf", "kind") == "fidget"
+    assert not table.view.is_editing()
+    QTest.keyClicks(QApplication.focusWidget(), "e")
+    choices = QApplication.focusWidget().completer().popup()
+    table.drive.wait(choices.isVisible)
+    QTest.keyClick(choices, KEY.Key_Down)
+    first = choices.currentIndex().data()
+    QTest.keyClick(choices, KEY.Key_Return)
+    assert table.says("rest beat lf", "kind") == typed_text("kind", first) != "fidget"
 
 
 @pytest.mark.parametrize(
