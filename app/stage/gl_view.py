@@ -194,6 +194,7 @@ class ImageView(CameraMouse, QWidget):
                 self._cannot_draw(error)
         painter = QPainter(self)
         if self._offscreen:
+            painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_Source)  # also what is clear
             scene = self._compose()  # this may move the camera
             look = self.camera, self.theme, size, ratio
             drawn = self._drawn

@@ -32,5 +32,5 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         commands=(*bind_commands(COMMANDS, character), *bind_commands(WATCH_COMMANDS, WatchFeature(shell))),
-        close=lambda: character.panel.stop(),
+        close=character.close,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QMenu
 
@@ -19,6 +20,9 @@ from app.stage.navigation import NAVIGATIONS, choose_navigation, chosen_navigati
 from app.translation import tr, tr_noop
 from metagraph.graph import edits
 
+if TYPE_CHECKING:
+    from app.features.character.own_window import OwnWindow
+
 FRAME = 1 / 30  # seconds of a step
 FILE, PLAY, VIEW = "&File", "&Play", "&View"
 
@@ -29,6 +33,7 @@ class CharacterFeature(Feature):
     def __init__(self, shell: Shell) -> None:
         super().__init__(shell)
         self.stage, self.transport = shell.stage, self.session.transport
+        self.own_window: OwnWindow | None = None
 
     @property
     def panel(self) -> PreviewPanel:
@@ -168,6 +173,32 @@ class CharacterFeature(Feature):
 
     def shows_skeleton(self) -> bool:
         return self.panel.bones
+
+    def toggle_own_window(self) -> None:
+        """Show the character in a window of its own, too, or close that."""
+        if self.own_window is not None:
+            self.own_window.close()
+            return
+        from app.features.character.own_window import OwnWindow
+
+        self.own_window = OwnWindow(self.panel, self.panel.scene, self.shell.widget)
+        self.own_window.closed.connect(self._forget_window)
+        self.panel.shown_elsewhere = True
+        self.own_window.show()
+        self.shell.actions.refresh_soon()
+
+    def has_own_window(self) -> bool:
+        return self.own_window is not None
+
+    def _forget_window(self) -> None:
+        self.own_window, self.panel.shown_elsewhere = None, False
+        self.shell.actions.refresh_soon()
+
+    def close(self) -> None:
+        """Stop drawing, at closing."""
+        if self.own_window is not None:
+            self.own_window.close()
+        self.panel.stop()
 
     def show_only_character(self) -> None:
         places = self.shell.services[PanelPlaces]
@@ -395,5 +426,15 @@ COMMANDS = (
         CharacterFeature.show_only_character,
         ("F11",),
         study=True,
+    ),
+    Command(
+        "own_window",
+        VIEW,
+        "character",
+        tr_noop("Character in its own &window"),
+        CharacterFeature.toggle_own_window,
+        ("Shift+F11",),
+        tip=tr_noop("For a second screen or a recording: right-click it for its background and full screen"),
+        checked=CharacterFeature.has_own_window,
     ),
 )

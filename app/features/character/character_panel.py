@@ -65,6 +65,7 @@ class PreviewPanel(QWidget):
         super().__init__(parent)
         self.session, self.performance, self.playhead, self.figures = session, performance, playhead, figures
         self.bones = False
+        self.shown_elsewhere = False  # in a window of its own
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
         self.composed = Scene()  # what was drawn last
         self._last: tuple[MeshFigure, np.ndarray, np.ndarray] | None = None
@@ -288,7 +289,7 @@ class PreviewPanel(QWidget):
 
     def _tick(self) -> None:
         elapsed = self._clock.restart() / 1000
-        if self.session.transport.playing and self.isVisible():
+        if self.session.transport.playing and (self.isVisible() or self.shown_elsewhere):
             self.playhead.advance(min(elapsed, 0.25))
 
     def _painted(self, _: float) -> None:
