@@ -15,7 +15,7 @@ from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.half_labels import (
     find_layers,
-    find_stance,
+    find_stance_named,
     half_label_of,
     place_complete,
     set_half_labels,
@@ -51,7 +51,7 @@ Cell = tuple[str, Column]  # the id of a row, and a column
 
 
 @dataclass(frozen=True, slots=True)
-class TableRow:
+class ActionRow:
     """ident: the action's id, or the clip's where it has no action."""
 
     ident: str
@@ -70,29 +70,29 @@ class WrittenCells:
     cut: tuple[Cell, ...] = ()
 
 
-def list_rows(project: Project) -> tuple[TableRow, ...]:
+def list_rows(project: Project) -> tuple[ActionRow, ...]:
     """Return the rows in the order of the clips; those of one clip follow each other."""
     return list_clip_rows(project, project.clips)
 
 
-def list_clip_rows(project: Project, clips: Iterable[str]) -> tuple[TableRow, ...]:
+def list_clip_rows(project: Project, clips: Iterable[str]) -> tuple[ActionRow, ...]:
     """Return the rows of some clips, by id."""
-    out: list[TableRow] = []
+    out: list[ActionRow] = []
     for clip in clips:
         uses = project.uses.get(clip, ())
-        out += [TableRow(action.id, clip, action) for action in uses] or [TableRow(clip, clip, None)]
+        out += [ActionRow(action.id, clip, action) for action in uses] or [ActionRow(clip, clip, None)]
     return tuple(out)
 
 
-def find_row(project: Project, ident: str) -> TableRow | None:
+def find_row(project: Project, ident: str) -> ActionRow | None:
     """Return the row of an action or of a clip without one; None for an id that has no row."""
     action = project.action(ident)
     if action is not None:
-        return TableRow(ident, action.clip, action)
-    return TableRow(ident, ident, None) if ident in project.clips and ident not in project.uses else None
+        return ActionRow(ident, action.clip, action)
+    return ActionRow(ident, ident, None) if ident in project.clips and ident not in project.uses else None
 
 
-def cell_text(project: Project, row: TableRow, column: Column) -> str:
+def cell_text(project: Project, row: ActionRow, column: Column) -> str:
     """Return what a cell says; "" for what is not set or has no meaning in its row. Times are seconds of the
     clip with two decimals, *stands out* is per cent.
     """
@@ -124,7 +124,7 @@ def has_limb(action: Action) -> bool:
     return action.layer == "arms" and action.kind != "stance"
 
 
-def can_write(row: TableRow, column: Column) -> bool:
+def can_write(row: ActionRow, column: Column) -> bool:
     """Return whether a cell can say anything: a clip without an action has only a label."""
     if row.action is None:
         return column in LABEL_COLUMNS
@@ -162,7 +162,7 @@ def write_cells(project: Project, cells: Mapping[Cell, str]) -> WrittenCells:
     return WrittenCells(_write_half_labels(project, clips, refused), refused, cut)
 
 
-def find_cell_refusal(row: TableRow, column: Column, texts: Mapping[Column, str]) -> str | None:
+def find_cell_refusal(row: ActionRow, column: Column, texts: Mapping[Column, str]) -> str | None:
     """Return why a cell cannot say what `texts` has for it, or None. texts: all that is written into the row,
     which may change what its cells can say.
     """
@@ -293,20 +293,20 @@ def _find_target(
     now = project.stance(action.stance)
     name = place.get("stance", now.name if now is not None else "")
     layer: Layer = place.get("layer", action.layer)  # type: ignore[assignment]
-    if "layer" not in place and kind != "stance" and find_stance(project, layer, name) is None:
+    if "layer" not in place and kind != "stance" and find_stance_named(project, layer, name) is None:
         elsewhere = find_layers(project, name)
         layer = elsewhere[0] if len(elsewhere) == 1 else layer
-    stance = find_stance(project, layer, name)
+    stance = find_stance_named(project, layer, name)
     if stance is None and kind == "stance":
         project = edits.add_stance(project, layer, name)
-        stance = find_stance(project, layer, name)
+        stance = find_stance_named(project, layer, name)
     if stance is None:
         raise EditError(_no_stance(layer, name))
     if kind != "transition":
         if ends:
             raise EditError(phrase("only a transition ends in another stance"))
         return project, (kind, stance, None)
-    end = find_stance(project, layer, ends) if ends else action.end_stance
+    end = find_stance_named(project, layer, ends) if ends else action.end_stance
     if end is None:
         raise EditError(_no_stance(layer, ends) if ends else _NEEDS_END)
     why = edits.find_placing_refusal(project, [action.clip], layer, kind, stance, end)
@@ -333,7 +333,7 @@ def _set_fields(project: Project, rows: Rows, refused: dict[Cell, str]) -> tuple
         for column, text in texts.items():
             if column in PLACE_COLUMNS:
                 continue
-            if not can_write(TableRow(ident, action.clip, action), column):
+            if not can_write(ActionRow(ident, action.clip, action), column):
                 refused[ident, column] = phrase(
                     "a {kind} of this layer has no such value", kind=phrase(action.kind)
                 )

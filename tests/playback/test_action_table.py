@@ -10,7 +10,7 @@ from metagraph.graph import edits
 from metagraph.graph.editing.half_labels import half_label_of
 from metagraph.playback.action_table import (
     COLUMNS,
-    TableRow,
+    ActionRow,
     can_write,
     cell_text,
     find_row,
@@ -177,7 +177,7 @@ def test_a_clip_without_an_action_is_labelled_in_part(project):
     written = write_cells(project, {(clip, "end_stance"): "up", (clip, "cooldown"): "3"})
     assert half_label_of(written.project, clip).kind == "transition"
     assert "give it a kind and a stance first" in written.refused[clip, "cooldown"]
-    assert cell_text(written.project, TableRow(clip, clip, None), "end_stance") == "up"
+    assert cell_text(written.project, ActionRow(clip, clip, None), "end_stance") == "up"
     wrong = write_cells(written.project, {(clip, "stance"): "up"})
     assert "another stance" in wrong.refused[clip, "stance"]
 

@@ -10,11 +10,13 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication, QMessageBox
 
-from app.look.theme import KIND_MARKS
+from app.look.names import plain_action_name
+from app.look.theme import KIND_MARKS, KIND_TITLES
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.shell.places import PanelPlaces
 from app.translation import lazy_texts, tr
+from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import KINDS
 
 if TYPE_CHECKING:
@@ -45,6 +47,24 @@ LANES = lazy_texts(
 )
 
 
+def named_parts(shell: Shell) -> Iterator[Entry]:
+    """Return the stances and actions of the project, to go to by typing their names."""
+    from app.features.help.command_finder import Entry
+
+    jump = shell.stage.session.jump
+    for layer, graph in shell.document.project.graphs.items():
+        where = vocabulary_title(layer)
+        for stance in graph.stances.values():
+            group = tr("Stance, {layer}", layer=where)
+            run = partial(jump, layer, stance.id)
+            yield Entry(group, plain_action_name(stance.name), run=run, by_name=True)
+        for action in graph.actions.values():
+            if action.kind != "stance":
+                group = tr("{kind}, {layer}", kind=tr(KIND_TITLES[action.kind]), layer=where)
+                run = partial(jump, action=action.id)
+                yield Entry(group, plain_action_name(action.name), run=run, by_name=True)
+
+
 def contribute(shell: Shell) -> Contribution:
     def entries(keyed: bool) -> Iterator[Entry]:
         """Return every command as it can be used now; keyed: only those with keys."""
@@ -72,6 +92,7 @@ def contribute(shell: Shell) -> Contribution:
         places = shell.services[PanelPlaces]
         for ident, dock in places.docks.items():
             yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
+        yield from named_parts(shell)
 
     recent: list[str] = []  # the commands done from the list, the latest first
 
@@ -137,7 +158,7 @@ def contribute(shell: Shell) -> Contribution:
                 tr("&Commands…"),
                 palette,
                 ("Ctrl+Shift+P",),
-                tip=tr("Search all commands by name"),
+                tip=tr("Find commands, panels, stances and actions by name"),
             ),
             Command("about", "&Help", "", tr("&About Metagraph"), about, study=True),
         ),

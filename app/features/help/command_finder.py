@@ -30,7 +30,9 @@ SIZE = QSize(620, 560)
 
 @dataclass(frozen=True)
 class Entry:
-    """Something that can be done, or is only told of: then `run` is None. also: words it is found by, too."""
+    """Something that can be done, or is only told of: then `run` is None. also: words it is found by, too.
+    by_name: it is in the list only while its name is being typed.
+    """
 
     group: str
     words: str
@@ -38,6 +40,7 @@ class Entry:
     also: str = ""
     run: Callable[[], object] | None = None
     enabled: bool = True
+    by_name: bool = False
 
     def rank(self, wanted: str) -> int | None:
         """Return how well it matches what was typed, 0 best; None if it does not match."""
@@ -53,6 +56,8 @@ class Entry:
             return 3
         if all(word in name for word in sought):
             return 4
+        if self.by_name:
+            return None
         text = f"{self.group} {name} {self.keys} {self.also}".casefold()
         if all(word in text for word in sought):
             return 5
@@ -137,6 +142,8 @@ class CommandFinder(QDialog):
     def _fill_by_group(self) -> None:
         groups: dict[str, QTreeWidgetItem] = {}
         for entry in self.entries:
+            if entry.by_name:
+                continue
             if entry.group not in groups:
                 head = groups[entry.group] = QTreeWidgetItem(self.tree, [entry.group])
                 font = head.font(0)

@@ -38,8 +38,8 @@ def contribute(shell: Shell) -> Contribution:
         commands=(
             Command(
                 "table",
-                "&Edit",
-                "find",
+                "&Graph",
+                "author",
                 tr("&Table"),
                 show,
                 ("Ctrl+T",),

@@ -13,7 +13,7 @@ from app.features.table.cell_words import shown_text
 from metagraph.graph.editing.half_labels import has_half_label
 from metagraph.graph.model import Project
 from metagraph.graph.name_search import matches_search
-from metagraph.playback.action_table import COLUMNS, TableRow, cell_text
+from metagraph.playback.action_table import COLUMNS, ActionRow, cell_text
 
 Which = Literal["all", "actions", "waiting", "unplaced"]
 WHICH: tuple[Which, ...] = get_args(Which)
@@ -30,7 +30,7 @@ class TableFilter:
     text: str = ""
     which: Which = "all"
 
-    def takes(self, project: Project, row: TableRow) -> bool:
+    def takes(self, project: Project, row: ActionRow) -> bool:
         """Return whether a row is shown."""
         if self.which == "actions" and row.action is None:
             return False
@@ -43,7 +43,7 @@ class TableFilter:
         return matches_search(self.text, " ".join(_words(project, row)))
 
 
-def _words(project: Project, row: TableRow) -> list[str]:
+def _words(project: Project, row: ActionRow) -> list[str]:
     return [shown_text(column, cell_text(project, row, column)) for column in SEARCHED]
 
 

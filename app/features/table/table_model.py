@@ -15,7 +15,7 @@ from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import tr
 from metagraph.graph.editing.half_labels import half_label_of, has_half_label
 from metagraph.graph.model import Project
-from metagraph.playback.action_table import COLUMNS, Cell, Column, TableRow, can_write, cell_text, list_rows
+from metagraph.playback.action_table import COLUMNS, ActionRow, Cell, Column, can_write, cell_text, list_rows
 
 Index = QModelIndex | QPersistentModelIndex
 Role = Qt.ItemDataRole
@@ -30,7 +30,7 @@ class TableModel(QAbstractTableModel):
         super().__init__()
         self.look, self.project = look, Project()
         self.filter = TableFilter()
-        self.rows: list[TableRow] = []
+        self.rows: list[ActionRow] = []
         self.refused: Mapping[Cell, str] = {}
         self._sorted: tuple[Column | None, bool] = (None, False)
 
@@ -55,7 +55,7 @@ class TableModel(QAbstractTableModel):
             if rows:
                 self.dataChanged.emit(self.index(0, 0), self.index(len(rows) - 1, len(COLUMNS) - 1))
             return
-        by_clip: dict[str, list[TableRow]] = {}
+        by_clip: dict[str, list[ActionRow]] = {}
         for row in found.values():
             by_clip.setdefault(row.clip, []).append(row)
         kept = {row.ident: row for row in rows}
@@ -84,7 +84,7 @@ class TableModel(QAbstractTableModel):
             self.rows.sort(key=lambda row: self._sort_key(row, column), reverse=down)
         self.endResetModel()
 
-    def _sort_key(self, row: TableRow, column: Column) -> tuple[Any, ...]:
+    def _sort_key(self, row: ActionRow, column: Column) -> tuple[Any, ...]:
         text = cell_text(self.project, row, column)
         if column in NUMBERS:
             return (text == "", float(text or 0.0))
@@ -155,13 +155,13 @@ class TableModel(QAbstractTableModel):
             return self.refused.get((row.ident, column)) or self._tip(row, column)
         return None
 
-    def _shown(self, row: TableRow, column: Column) -> str:
+    def _shown(self, row: ActionRow, column: Column) -> str:
         text = cell_text(self.project, row, column)
         if column == "kind" and text:
             return f"{KIND_MARKS[text]} {shown_text(column, text)}"
         return shown_text(column, text) or (tr("needed") if self._is_needed(row, column) else "")
 
-    def _is_needed(self, row: TableRow, column: Column) -> bool:
+    def _is_needed(self, row: ActionRow, column: Column) -> bool:
         """Return whether a half labelled clip waits for what a cell would say."""
         if row.action is not None or not has_half_label(self.project, row.clip):
             return False
@@ -171,7 +171,7 @@ class TableModel(QAbstractTableModel):
         needed = ("kind", "stance", "end_stance") if known.kind == "transition" else ("kind", "stance")
         return column in needed and not getattr(known, column)
 
-    def _ink(self, row: TableRow, column: Column) -> QBrush | None:
+    def _ink(self, row: ActionRow, column: Column) -> QBrush | None:
         if self._is_needed(row, column):
             return QBrush(QColor(self.look.warning))
         text = cell_text(self.project, row, column)
@@ -179,7 +179,7 @@ class TableModel(QAbstractTableModel):
             return QBrush(self.look.kind(text))
         return QBrush(QColor(self.look.dim)) if row.action is None or column == "clip" else None
 
-    def _tip(self, row: TableRow, column: Column) -> str:
+    def _tip(self, row: ActionRow, column: Column) -> str:
         if row.action is None and column not in ("name", "clip"):
             return tr("This clip has no action yet. It gets one when its kind and stance are known.")
         return ""

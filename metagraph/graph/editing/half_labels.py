@@ -84,10 +84,10 @@ def place_complete(project: Project) -> Project:
 
 def find_layers(project: Project, stance: str) -> tuple[Layer, ...]:
     """Return the layers that have a stance of a name."""
-    return tuple(layer for layer in LAYERS if find_stance(project, layer, stance) is not None)
+    return tuple(layer for layer in LAYERS if find_stance_named(project, layer, stance) is not None)
 
 
-def find_stance(project: Project, layer: Layer, name: str) -> str | None:
+def find_stance_named(project: Project, layer: Layer, name: str) -> str | None:
     """Return the id of a layer's stance by its name, without case; None if there is none."""
     wanted = name.strip().casefold()
     stances = project.graphs[layer].stances.values()
@@ -126,13 +126,13 @@ def _find_place(project: Project, clip: str, known: HalfLabel) -> tuple[Project,
     if len(layers) != 1:
         return project, None
     layer: Layer = layers[0]
-    stance = find_stance(project, layer, known.stance)
-    end = find_stance(project, layer, known.end_stance) if known.kind == "transition" else None
+    stance = find_stance_named(project, layer, known.stance)
+    end = find_stance_named(project, layer, known.end_stance) if known.kind == "transition" else None
     if edits.find_placing_refusal(project, [clip], layer, known.kind, stance, end) is not None:
         return project, None
     if stance is None:
         project = edits.add_stance(project, layer, known.stance)
-        stance = find_stance(project, layer, known.stance)
+        stance = find_stance_named(project, layer, known.stance)
     assert stance is not None
     return project, (layer, known.kind, stance, end)
 

@@ -88,3 +88,16 @@ def test_what_was_done_last_comes_before_equal_matches(qapp):
     dialog.search.setText("lro")
     assert [e.words for e in dialog.listed()] == ["light room"], "letters in order find it, too"
     dialog.deleteLater()
+
+
+def test_stances_and_actions_are_gone_to_by_their_names(toys):
+    toys.do("palette")
+    finder = toys.window.findChild(CommandFinder)
+    assert not any(e.by_name for e in finder.listed()), "thousands of them would hide the commands"
+    finder.search.setText("wave")
+    assert [(e.words, e.group) for e in finder.listed() if e.by_name] == [("rest wave rt", "Gesture, Arms")]
+    next(e for e in finder.listed() if e.by_name).run()
+    assert toys.session.selection.actions == (toys.id("rest wave rt"),)
+    finder.search.setText("far")
+    QTest.keyClick(finder.search, Qt.Key.Key_Return)
+    toys.wait(lambda: toys.session.place.stance() == toys.id("far"))
