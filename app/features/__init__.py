@@ -36,6 +36,7 @@ FEATURES = (
     "export",
     "render",
     "study",
+    "guide",
     "welcome",
     "help",
 )

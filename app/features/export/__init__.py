@@ -48,6 +48,7 @@ class ExportButton(QPushButton):
         super().__init__(tr("Export"), parent)
         action = shell.actions["export"]
         self.setToolTip(action.toolTip())
+        self.setObjectName("export button")
         self.setProperty("strong", True)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.clicked.connect(action.trigger)

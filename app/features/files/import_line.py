@@ -74,7 +74,8 @@ class ImportLine(QToolBar):
         """Show what came of an import."""
         self.forget()
         words = describe_import(result)
-        fresh = not result.failures and not result.apart and self._unlabelled(result)
+        unlabelled = self._unlabelled(result)
+        fresh = not result.failures and not result.apart and unlabelled
         if not fresh and not result.failures and words == describe_imported(result):
             return
         if fresh:
@@ -86,6 +87,8 @@ class ImportLine(QToolBar):
         self.why.setVisible(bool(result.failures or result.notes))
         for remedy in remedies(result):
             self._offer(tr_phrase(remedy.label), partial(self._mend, remedy))
+        if unlabelled and not fresh:  # what came in goes on all the same
+            self._offer(tr("Label clips…"), lambda: self._do("propose"))
         self.show()
 
     def _offer(self, label: str, do: Callable[[], object]) -> None:

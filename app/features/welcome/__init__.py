@@ -49,7 +49,11 @@ def contribute(shell: Shell) -> Contribution:
                 lambda: files.open(SAMPLE, template=True),
             ),
         )
-        page = WelcomePage(choices, files, shell.stage.session, document, rooms)
+
+        def guide() -> None:
+            shell.actions["guide"].trigger()
+
+        page = WelcomePage(choices, files, shell.stage.session, document, rooms, guide)
         shell.services[Workspaces].changed.connect(page.follow_soon)
         pages.append(page)
 

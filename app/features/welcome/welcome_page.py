@@ -119,7 +119,8 @@ class WelcomeCard(QAbstractButton):
 
 class WelcomePage(QWidget):
     """Lies over a room as long as nothing is in the project and nothing was done; closed by hand it stays so
-    until another project is begun. `rooms` returns where it may lie, the best first.
+    until another project is begun. `rooms` returns where it may lie, the best first. `guide` leads to a first
+    character.
     """
 
     def __init__(
@@ -129,6 +130,7 @@ class WelcomePage(QWidget):
         session: StageSession,
         document: Document,
         rooms: Callable[[], Sequence[QWidget]],
+        guide: Callable[[], object],
     ) -> None:
         super().__init__(rooms()[0])
         self.files, self.session, self.document, self.rooms = files, session, document, rooms
@@ -150,6 +152,13 @@ class WelcomePage(QWidget):
             QToolButton, self, text=tr("Start with an empty graph"), toolTip=tr("Close this page")
         )
         self.skip.clicked.connect(self._close)
+        self.guide = make_widget(
+            QToolButton,
+            self,
+            text=tr("First character in two minutes"),
+            toolTip=tr("Be led through importing, labelling, watching and exporting"),
+        )
+        self.guide.clicked.connect(guide)
         grid = QGridLayout()
         grid.setSpacing(12)
         for n, card in enumerate(self.cards):
@@ -165,7 +174,12 @@ class WelcomePage(QWidget):
         middle.addStretch(1)
         layout.addLayout(middle, 8)
         layout.addSpacing(4)
-        layout.addWidget(self.skip, 0, Qt.AlignmentFlag.AlignHCenter)
+        below = QHBoxLayout()
+        below.addStretch(1)
+        below.addWidget(self.guide)
+        below.addWidget(self.skip)
+        below.addStretch(1)
+        layout.addLayout(below)
         layout.addStretch(1)
         document.loaded.connect(self._again)
         document.changed.connect(lambda *_: self.follow())
