@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from app.cli import live_graph_options
 from app.cli.kept_options import kept_name, kept_seed
 from app.cli.outputs import ProjectOutput
-from metagraph.live import OSC_PORT, PORT
+from metagraph.live import OSC_PORT, PORT, VMC_PORT
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Project
@@ -32,6 +32,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--osc-port", type=int, metavar="PORT",
                         help=f"of OSC over UDP, 0 for any that is free (default: {OSC_PORT})")  # fmt: skip
+    parser.add_argument(
+        "--vmc", nargs="?", const="", metavar="[HOST:]PORT",
+        help="send poses to a program that receives VMC, such as VSeeFace, VNyan or Warudo "
+        f"(default: 127.0.0.1:{VMC_PORT})",
+    )  # fmt: skip
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
     parser.add_argument(
@@ -80,12 +85,15 @@ def run(options: Namespace) -> int:
             origins=tuple(options.origin),
             stdio=options.mcp or not options.no_stdin,
             mcp=options.mcp,
+            vmc=_parse_receiver(options.vmc) if options.vmc is not None else None,
         )
     )
     live_graph_options.require_consistent_options(options)
     opened = open_whole(options.project)
     for note in opened.notes:
         print(f"note: {note}", file=sys.stderr)
+    if wanted.vmc is not None:
+        _require_humanoid(opened.project)
     graphs = live_graph_options.read_graphs(options, opened.project)
     voice = live_graph_options.read_live_voice(options, graphs)
     session = LiveSession(
@@ -110,6 +118,29 @@ def _port(options: Namespace, none: bool, named: int | None, usual: int) -> int 
     if none or (options.mcp and named is None):
         return None
     return usual if named is None else named
+
+
+def _parse_receiver(text: str) -> tuple[str, int]:
+    """Return host and port of what receives VMC: "", "39539", "host" or "host:39539". Raises LiveError."""
+    from metagraph.live.server import LiveError
+
+    host, _, port = text.rpartition(":") if ":" in text or text.isdecimal() else (text, "", "")
+    try:
+        return host or "127.0.0.1", int(port or VMC_PORT)
+    except ValueError:
+        raise LiveError(f"--vmc: '{text}' is no host and port, such as 127.0.0.1:{VMC_PORT}") from None
+
+
+def _require_humanoid(project: Project) -> None:
+    """Raise LiveError for a character that VMC cannot show."""
+    from metagraph.graph.requests import RequestError
+    from metagraph.live.server import LiveError
+    from metagraph.live.vmc import VmcBody
+
+    try:
+        VmcBody.of(project)
+    except RequestError as error:
+        raise LiveError(f"--vmc: {error}") from None
 
 
 async def _play(
@@ -162,9 +193,10 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     ways = [f"{spoken} on standard input"] if options.stdio else []
     ways += [f"WebSocket on {ready.websocket}"] if ready.websocket is not None else []
     ways += [f"OSC on {ready.osc[0]}, port {ready.osc[1]}"] if ready.osc is not None else []
+    sent = f" It sends VMC to {options.vmc[0]}:{options.vmc[1]}." if options.vmc is not None else ""
     token = "; clients need the token" if ready.token else ""
     print(
-        f"The character listens: {', '.join(ways) or 'to nobody'}{token}. Ctrl+C ends it.",
+        f"The character listens: {', '.join(ways) or 'to nobody'}{token}.{sent} Ctrl+C ends it.",
         file=sys.stderr,
         flush=True,
     )

@@ -25,13 +25,14 @@ Space = Literal["local", "model"]
 
 
 class Poses(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """How poses are streamed. rate: frames a second. format: "osc" for clients that speak it. joints: their
-    names, in order; all if null. space: rotations relative to the parent joint, or positions and rotations in
-    the character's space. translations: of all joints, not only the root's.
+    """How poses are streamed. rate: frames a second. format: "osc" for clients that speak it, "vmc" where the
+    server sends to a program that receives VMC. joints: their names, in order; all if null. space: rotations
+    relative to the parent joint, or positions and rotations in the character's space. translations: of all
+    joints, not only the root's.
     """
 
     rate: Annotated[float, Meta(gt=0, le=FASTEST)] = 30.0
-    format: Literal["json", "binary", "osc"] = "json"
+    format: Literal["json", "binary", "osc", "vmc"] = "json"
     joints: Annotated[tuple[str, ...], Meta(max_length=1000)] | None = None
     space: Space = "local"
     translations: bool = False

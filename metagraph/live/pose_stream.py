@@ -1,4 +1,4 @@
-"""Poses on their way to an engine: what a client wants of them, as JSON, as packed numbers, or as OSC."""
+"""Poses on their way to an engine: what a client wants of them, as JSON, packed numbers, OSC or VMC."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
 from metagraph.live.osc_bytes import pad_osc
+from metagraph.live.vmc import VmcBody
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.posing.overlay import Overlay
@@ -38,7 +39,7 @@ class PoseFrame:
 
 @dataclass
 class Stream:
-    """What a client wants: joints `[J]`, their names, and when the next pose is due."""
+    """What a client wants: joints `[J]`, their names, and when the next pose is due. body: of VMC alone."""
 
     wish: Poses
     joints: Array
@@ -46,10 +47,13 @@ class Stream:
     morphs: tuple[str, ...]
     next: float
     prefixes: list[bytes] = field(default_factory=list)
+    body: VmcBody | None = None
 
     @classmethod
     def of(cls, wish: Poses, project: Project, now: float) -> Stream:
-        """Return the stream of a wish. Raises RequestError for joints that are not there."""
+        """Return the stream of a wish. Raises RequestError for joints that are not there, and for VMC of a
+        character that is no humanoid.
+        """
         skeleton = project.skeleton
         if skeleton is None:
             raise RequestError("the project has no clips, so there are no poses")
@@ -64,9 +68,9 @@ class Stream:
             for name in fit_curves_to_face(project, entry.motion).morphs
         )
         places = np.array([skeleton.names.index(name) for name in names], np.int64)
-        return cls(
-            wish, places, tuple(names), (*morphs, *(m for m in project.face.morphs if m not in morphs)), now
-        )
+        faces = (*morphs, *(m for m in project.face.morphs if m not in morphs))
+        body = VmcBody.of(project, faces) if wish.format == "vmc" else None
+        return cls(wish, places, tuple(names), faces, now, body=body)
 
     @property
     def key(self) -> Any:
@@ -116,6 +120,8 @@ def frame(
     they are needed.
     """
     wish, joints = stream.wish, stream.joints
+    if stream.body is not None:
+        return stream.body.messages(now, pose, dict.fromkeys(stream.morphs, 0.0) | weights)
     root = pose.translations[0]
     rotations, places = pose.rotations[joints], pose.translations[joints] if wish.translations else None
     if wish.space == "model" and turned is not None:

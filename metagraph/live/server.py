@@ -31,7 +31,7 @@ class Options(Struct, frozen=True):
     """Where to listen. host: loopback, on both IP versions, where it is empty. port, osc: 0 for any free one,
     None for none. origins: web pages that may connect besides those of this machine, "null" for those from
     files. stdio: whether standard input and output are a client. mcp: whether that speaks the Model Context
-    Protocol.
+    Protocol. vmc: host and port of a program that receives VMC, None for none.
     """
 
     host: str = ""
@@ -41,6 +41,7 @@ class Options(Struct, frozen=True):
     origins: tuple[str, ...] = ()
     stdio: bool = False
     mcp: bool = False
+    vmc: tuple[str, int] | None = None
 
 
 class LiveError(ValueError):
@@ -57,7 +58,7 @@ def check_live_options(options: Options) -> Options:
             "character; "
         )
         raise LiveError(words + f"choose one, for example --token {secrets.token_urlsafe(12)}")
-    for port in (options.port, options.osc):
+    for port in (options.port, options.osc, options.vmc[1] if options.vmc is not None else None):
         if port is not None and not 0 <= port <= 65535:
             raise LiveError(f"a port lies between 0 and 65535, not {port}")
     return options
@@ -109,6 +110,8 @@ class Server:
                 websocket = await self._open_websocket(hosts, options.port)
             if options.osc is not None:
                 osc = await self._open_osc(hosts[0], options.osc)
+            if options.vmc is not None:
+                await self._open_vmc(*options.vmc)
         except OSError as error:
             await self.close()
             words = error.strerror or str(error)
@@ -154,6 +157,14 @@ class Server:
             lambda: OscLine(self.hub, self.clock), (host, port)
         )
         return host, int(transport.get_extra_info("sockname")[1])
+
+    async def _open_vmc(self, host: str, port: int) -> None:
+        from metagraph.live.vmc_line import VmcLine
+
+        loop = asyncio.get_running_loop()
+        await loop.create_datagram_endpoint(
+            lambda: VmcLine(self.hub, self.clock), remote_addr=(host.strip("[]"), port)
+        )
 
     def _line(self, line: bytes | None) -> None:
         if line is not None:

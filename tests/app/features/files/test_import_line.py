@@ -136,6 +136,13 @@ def test_the_details_say_each_thing_once_and_the_line_can_be_closed(drive, line,
     assert line.isHidden()
 
 
+def test_what_came_in_is_offered_to_label_though_other_files_failed(drive, line, folder):
+    (folder / "bad.bvh").write_text("noise")
+    drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "bad.bvh")])
+    drive.wait(line.isVisible)
+    assert line.offered[-1].text() == "Label clips…"
+
+
 def test_the_line_goes_with_the_project_it_was_about(drive, line, folder):
     (folder / "bad.bvh").write_text("noise")
     drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "bad.bvh")])
