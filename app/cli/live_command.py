@@ -196,7 +196,7 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     sent = f" It sends VMC to {options.vmc[0]}:{options.vmc[1]}." if options.vmc is not None else ""
     token = "; clients need the token" if ready.token else ""
     print(
-        f"The character listens: {', '.join(ways) or 'to nobody'}{token}.{sent} Ctrl+C ends it.",
+        f"The character listens{': ' + ', '.join(ways) if ways else ' to nobody'}{token}.{sent} Ctrl+C ends it.",
         file=sys.stderr,
         flush=True,
     )

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from metagraph.engines.targets.vrm import humanoid
 from metagraph.graph import anatomy
-from metagraph.graph.face.expression_presets import presets_of
+from metagraph.graph.face.expression_presets import measure_presets, presets_of
 from metagraph.graph.face.rig import axes_of
 from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
@@ -116,14 +116,9 @@ class VmcBody:
         return rotations * [1.0, -1.0, -1.0, 1.0], positions * [-1.0, 1.0, 1.0]
 
     def expressions_of(self, weights: Mapping[str, float]) -> dict[str, float]:
-        """Return each expression's value, 0..1: how much of its mix of morph targets the weights hold."""
-        out: dict[str, float] = {}
-        for preset, name in EXPRESSIONS.items():
-            mix = self.mixes.get(preset)
-            if mix:
-                held = sum(weights.get(target, 0.0) * amount for target, amount in mix.items())
-                out[name] = min(1.0, max(0.0, held / sum(amount * amount for amount in mix.values())))
-        return out
+        """Return each expression's value, 0..1."""
+        held = measure_presets(self.mixes, weights)
+        return {name: float(held[preset]) for preset, name in EXPRESSIONS.items() if preset in held}
 
     def messages(self, now: float, pose: Pose, weights: Mapping[str, float]) -> bytes:
         """Return one pose as OSC messages, each after its size, as in a bundle. Morph targets are sent by

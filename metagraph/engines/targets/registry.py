@@ -30,6 +30,7 @@ MODULES = (
     "statecharts",
     "agents",
     "vrm",
+    "vrma",
     "usd",
     "blender",
 )

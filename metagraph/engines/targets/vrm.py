@@ -166,10 +166,10 @@ def _between_eyes(project: Project, bones: Mapping[str, int], eyes: list[int]) -
     return [round(float(x), 6) for x in at[eyes].mean(0) - at[bones["head"]]]
 
 
-def _write(order: ExportOrder) -> ExportedFiles:
-    project, skeleton = order.project, order.project.skeleton
-    assert skeleton is not None
-    roles = anatomy.project_roles(project)
+def find_standing(skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
+    """Return the T in which VRM wants a humanoid to stand, on its feet. Raises ExportError for one without
+    the bones that VRM needs, or that does not face +Z.
+    """
     lacking = [role for role in REQUIRED if role not in roles]
     if lacking:
         raise ExportError(
@@ -182,6 +182,14 @@ def _write(order: ExportOrder) -> ExportedFiles:
     axes = axes_of(skeleton, roles, at)
     if axes[2] @ [0, 0, 1] < 0.95:
         raise ExportError(phrase("a VRM character must face +Z in its rest pose, and this one does not"))
+    return _grounded(t_pose(skeleton, roles, axes[0]), skeleton, roles)
+
+
+def _write(order: ExportOrder) -> ExportedFiles:
+    project, skeleton = order.project, order.project.skeleton
+    assert skeleton is not None
+    roles = anatomy.project_roles(project)
+    stand = find_standing(skeleton, roles)
     body, notes = mesh_of(order)
     if body is None:
         raise ExportError(
@@ -196,13 +204,12 @@ def _write(order: ExportOrder) -> ExportedFiles:
     clips = [fit_curves_to_face(project, motion) for motion in played if motion is not None]
     names = unique_names([clip.name for clip in clips])
     path = order.folder / f"{order.stem}.vrm"
-    stand = t_pose(skeleton, roles, axes[0])
     write_glb(
         path,
         [replace(c.renamed(n), skeleton=skeleton) for c, n in zip(clips, names, strict=True)],
         replace(body, skeleton=skeleton),
         engine=ForEngine(
-            stand=_grounded(stand, skeleton, roles),
+            stand=stand,
             extensions={"VRMC_vrm": extension(project, bones, body.morphs, mesh, meta)},
         ),
     )
@@ -222,6 +229,11 @@ def _grounded(pose: Pose, skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
     return Pose(pose.rotations, translations)
 
 
+UNREPEATED = plural_phrase(
+    "{count} clip that an action repeats plays once: other actions use it, too",
+    "{count} clips that an action repeats play once: other actions use them, too",
+    0,
+)
 TARGETS = (
     ExportTarget(
         "vrm",
@@ -234,14 +246,7 @@ TARGETS = (
         (
             Loss(phrase("no meta-graph: the avatar's program moves it and finds the clips by name")),
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
-            Loss(
-                plural_phrase(
-                    "{count} clip that an action repeats plays once: other actions use it, too",
-                    "{count} clips that an action repeats play once: other actions use them, too",
-                    0,
-                ),
-                count_unrepeated,
-            ),
+            Loss(UNREPEATED, count_unrepeated),
         ),
     ),
 )

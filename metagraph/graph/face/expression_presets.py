@@ -7,6 +7,9 @@ are called. The presets are those of VRM 1.0.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
 
 from metagraph.graph.face.names import find_morphs, plain_curve_name
 
@@ -52,3 +55,31 @@ def presets_of(names: Iterable[str], bound: Mapping[str, str] | None = None) -> 
         if made:
             out[preset] = made
     return out
+
+
+ROUNDS = 6  # presets that a face is taken for at once
+
+
+def measure_presets(mixes: Mapping[str, Mapping[str, float]], weights: Mapping[str, Any]) -> dict[str, Any]:
+    """Return preset -> value, 0..1, of those that together come near to some weights of morph targets: the
+    preset that explains most comes first, and the next explains what is left (matching pursuit). Of two that
+    explain as much, it is the simpler one: an open jaw is "aa" rather than surprise.
+
+    mixes: as `presets_of` returns them. weights: numbers, or arrays of one shape, by morph target; values
+    have the same shape.
+    """
+    targets = sorted({target for mix in mixes.values() for target in mix if target in weights})
+    if not targets:
+        return {}
+    mixes = {preset: mixes[preset] for preset in sorted(mixes, key=lambda p: len(PRESETS.get(p, ())))}
+    shape = np.shape(weights[targets[0]])
+    left = np.stack([np.reshape(weights[t], -1) for t in targets], 1).astype(float)
+    made = np.array([[mix.get(t, 0.0) for t in targets] for mix in mixes.values()])
+    size = np.maximum((made * made).sum(1), 1e-12)
+    held, rows = np.zeros((len(left), len(made))), np.arange(len(left))
+    for _ in range(ROUNDS):
+        more = np.clip(left @ made.T / size, 0.0, 1.0 - held)
+        best = (more * (2 * left @ made.T - more * size)).argmax(1)  # by how much the rest becomes less
+        held[rows, best] += more[rows, best]
+        left -= more[rows, best, None] * made[best]
+    return {preset: held[:, n].reshape(shape) for n, preset in enumerate(mixes)}

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from metagraph.graph.face.expression_presets import PRESETS, presets_of
+import numpy as np
+import pytest
+
+from metagraph.graph.face.expression_presets import PRESETS, measure_presets, presets_of
 from sample_clips.make.face_targets import TARGETS
 
 EYES = ("eyeBlinkLeft", "eyeBlinkRight", "eyeWideLeft", "eyeLookUpLeft", "eyeLookUpRight", "eyeLookInLeft")
@@ -37,3 +40,23 @@ def test_what_is_called_like_a_preset_is_it() -> None:
 
 def test_what_the_user_bound_counts() -> None:
     assert presets_of(["mouth_wide_open", "x"], {"viseme_aa": "x"})["aa"] == {"x": 1.0}
+
+
+def test_a_face_is_taken_for_as_few_presets_as_explain_it():
+    mixes = presets_of(("eyeBlinkLeft", "eyeBlinkRight", "jawOpen", "mouthSmileLeft", "mouthSmileRight"))
+    held = measure_presets(mixes, {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0, "jawOpen": 0.0})
+    assert held["blink"] == pytest.approx(1.0)
+    assert held["blinkLeft"] == held["blinkRight"] == 0.0
+    left = measure_presets(mixes, {"eyeBlinkLeft": 0.5, "eyeBlinkRight": 0.0})
+    assert left["blinkLeft"] == pytest.approx(0.5) and left["blinkRight"] == 0.0
+
+
+def test_an_open_jaw_is_a_vowel_and_not_surprise():
+    held = measure_presets(presets_of(("jawOpen",)), {"jawOpen": np.array([0.0, 0.3])})
+    assert held["aa"][1] > 0 and held["aa"][0] == 0.0
+    assert not held["surprised"].any()
+
+
+def test_a_face_that_makes_no_preset_holds_none():
+    assert measure_presets({}, {"jawOpen": 1.0}) == {}
+    assert measure_presets(presets_of(("jawOpen",)), {"tail": 1.0}) == {}
