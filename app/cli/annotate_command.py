@@ -44,30 +44,47 @@ def add_arguments(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=ROLE",
-        help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, speech, "
-        "partner's speech, ignore",
+        help=(
+            "set the role of a tier: left arm, right arm, arms, head action, head stance, body, "
+            "speech, partner's speech, ignore"
+        ),
     )
     parser.add_argument(
         "--label",
         action="append",
         default=[],
         metavar="LABEL=MEANING",
-        help='what a label means: gesture, fidget, transition, ignore ..., then tags ("gesture positive")',
+        help=(
+            'set the meaning of a label: gesture, fidget, transition, ignore ..., then tags ("gesture '
+            'positive")'
+        ),
     )
     meaning = parser.add_mutually_exclusive_group()
     meaning.add_argument(
-        "--states", action="store_true", help="positive and negative gestures are states of their own"
+        "--states", action="store_true", help="model positive and negative gestures as separate states"
     )
     meaning.add_argument(
-        "--shares", action="store_true", help="they are shares of all gestures (the default)"
+        "--shares",
+        action="store_true",
+        help=("model positive and negative gestures as shares of all gestures (the default)"),
     )
     parser.add_argument(
-        "--smoothing", type=float, default=0.0, help="added to every count (default: 0, as in the paper)"
+        "--smoothing",
+        type=float,
+        default=0.0,
+        help=("number to add to every count (default: 0, as in the paper)"),
     )
     parser.add_argument(
-        "--learn", action="store_true", help="learn the models of all layers that were annotated"
+        "--learn",
+        action="store_true",
+        help=("learn the models of all annotated layers, and save them in the project"),
     )
-    parser.add_argument("--perform", metavar="NAME", type=kept_name, help="keep it as a performance")
+    parser.add_argument(
+        "--perform",
+        metavar="NAME",
+        type=kept_name,
+        help=("save the annotated actions as a performance of the project"),
+    )
 
 
 def run(options: Namespace) -> int:
@@ -88,7 +105,7 @@ def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
     project = opened.project
     reading = _reading(read_elan(options.annotation), options, project.tiers, project.labels)
     if options.smoothing < 0:
-        raise ValueError("--smoothing is 0 or more")
+        raise ValueError("--smoothing must be 0 or more")
     doubts = describe_doubts(reading)
     if not any(reading.observed.values()) and (options.learn or options.perform is not None):
         tiers = ", ".join(repr(t.name) for t in reading.annotation.tiers[:12]) or "none"
@@ -206,5 +223,5 @@ def _lines(data: Mapping[str, Any], reading: AnnotationReading, path: Path) -> I
     yield (
         f"saved {path}"
         if data["saved"]
-        else "nothing was saved; --learn learns models from it, --perform NAME keeps it as a performance"
+        else "nothing was saved: add --learn to learn models, or --perform NAME to save a performance"
     )

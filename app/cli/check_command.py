@@ -20,7 +20,7 @@ PLAYED = 600.0  # seconds
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
-        "--strict", action="store_true", help="warnings count as problems for the exit code, too"
+        "--strict", action="store_true", help="also end with exit code 3 if there are only warnings"
     )
     parser.add_argument(
         "--play",

@@ -70,7 +70,7 @@ def stage_performance(project: Project, options: Namespace) -> Plan:
     if kept is None:
         return improvise(project, length, options.seed, options.mode or "talking")
     if options.mode is not None:
-        raise ValueError("--mode is for what the models improvise; a kept performance has a mode of its own")
+        raise ValueError("--mode sets how the character improvises; a saved performance has its own mode")
     seed = kept.seed if options.seed is None else options.seed
     return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
@@ -106,13 +106,17 @@ def add_performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     )
     parser.set_defaults(usual_seconds=seconds, start=0.0)
     parser.add_argument(
-        "--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)"
+        "--performance",
+        metavar="NAME",
+        help=("play this saved performance of the project (default: improvise)"),
     )
     parser.add_argument(
         "--mode",
         choices=MODES,
-        help="what the character does while the models improvise (default: talking); not with --performance",
+        help="what the character does while it improvises (default: talking); not with --performance",
     )
     parser.add_argument(
-        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+        "--seed",
+        type=int,
+        help=("random seed; another seed gives another performance (default: the project's seed)"),
     )

@@ -18,7 +18,9 @@ SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("-o", "--out", type=Path, default=Path("out"), help="a folder (default: out)")
+    parser.add_argument(
+        "-o", "--out", type=Path, default=Path("out"), help=("the folder to write into (default: out)")
+    )
     add_performance_arguments(parser, 60.0)
 
 

@@ -20,38 +20,41 @@ SHOWN = 8  # files named on the screen
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("project", type=Path, nargs="?", help="the project file")
-    parser.add_argument("-o", "--out", type=Path, help="a folder")
+    parser.add_argument("-o", "--out", type=Path, help="the folder to write into")
     parser.add_argument(
         "-t",
         "--target",
         default="metagraph",
-        help="what to write for (default: metagraph, one JSON and one GLB)",
+        help="the engine or format to write for (default: metagraph, one JSON and one GLB)",
     )
-    parser.add_argument("--targets", action="store_true", help="list the targets there are")
+    parser.add_argument("--targets", action="store_true", help="list the targets")
     parser.add_argument(
-        "--watch", action="store_true", help="go on, and write again whenever the project is saved"
-    )
-    parser.add_argument(
-        "--serve", action="store_true", help="go on, and show the web page to this machine's browser"
+        "--watch", action="store_true", help=("keep running, and export again whenever the project is saved")
     )
     parser.add_argument(
-        "--vectors", action="store_true", help="write conformance vectors for runtimes as well"
+        "--serve",
+        action="store_true",
+        help=("keep running, and serve the web page to a browser on this computer"),
+    )
+    parser.add_argument("--vectors", action="store_true", help="also write conformance vectors for runtimes")
+    parser.add_argument(
+        "--tools", action="store_true", help="also write the requests as tools for a language model"
     )
     parser.add_argument(
-        "--tools", action="store_true", help="write what may be asked as tools for a language model as well"
-    )
-    parser.add_argument(
-        "--expanded", action="store_true", help="list the expanded state machine in the JSON as well"
+        "--expanded", action="store_true", help="also write the expanded state machine into the JSON"
     )
     parser.add_argument(
         "--compress",
         action="store_true",
-        help="pack the GLB (EXT_meshopt_compression): half the size, for runtimes and viewers that know it",
+        help=(
+            "compress the GLB with EXT_meshopt_compression: half the size, for runtimes and viewers "
+            "that support it"
+        ),
     )
     parser.add_argument(
         "--overwrite",
         action="store_true",
-        help="also files that an export of something else, or somebody, put there",
+        help="also replace files of another export, or files that Metagraph did not write",
     )
     parser.add_argument(
         "--sounds",
@@ -59,9 +62,9 @@ def add_arguments(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="FOLDER",
-        help="also copy sounds of lines that lie there, outside the project's folder",
+        help="also copy sounds of lines from this folder outside the project's folder",
     )
-    parser.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
+    parser.add_argument("--no-mesh", action="store_true", help=("write the GLB without the character's mesh"))
 
 
 def run(options: Namespace) -> int:
@@ -77,7 +80,8 @@ def run(options: Namespace) -> int:
         return 0
     if options.project is None or options.out is None:
         print(
-            "metagraph export: which project, and where to? metagraph export my.metagraph.yaml -o game/",
+            "metagraph export: give a project and a folder, such as: metagraph export "
+            "my.metagraph.yaml -o game/",
             file=sys.stderr,
         )
         return 2
@@ -88,7 +92,7 @@ def run(options: Namespace) -> int:
 
         claim(options.out / NAME)
     if options.serve and options.target != "web":
-        print("metagraph export: only the web page can be served: --target web --serve", file=sys.stderr)
+        print("metagraph export: --serve needs --target web", file=sys.stderr)
         return 2
     if not (options.watch or options.serve):
         _once(options)

@@ -23,32 +23,42 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         nargs="+",
         metavar="MODEL... TAKES",
-        help="models (.mgmodel), and clips or folders of them that the models have not learned from; of "
-        "folders they have learned from, what was held out is taken",
+        help=(
+            "models (.mgmodel), and takes (clips or folders) that the models have not learned from; "
+            "from folders they have learned from, only held-out takes are used"
+        ),
     )
     add_speech_argument(parser)
-    parser.add_argument("-o", "--out", type=Path, help="write a page, JSON and CSV into this folder")
+    parser.add_argument("-o", "--out", type=Path, help=("write a report page, JSON and CSV into this folder"))
     parser.add_argument(
         "--floor",
         type=Path,
         metavar="FOLDER",
-        help="other true motion to the same speech, clips of the same names (default: of planted takes, "
-        "another performance; else half of the takes beside the other half)",
+        help=(
+            "other recorded motion to the same speech, in clips with the same names (default: another "
+            "performance of synthetic takes; else one half of the takes against the other)"
+        ),
     )
     add_manner_arguments(parser)
 
 
 def add_manner_arguments(parser: ArgumentParser) -> None:
     """Add the options that say how models are sampled and judged."""
-    parser.add_argument("--seeds", type=int, default=5, help="takes of each model (default: 5)")
-    parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
+    parser.add_argument("--seeds", type=int, default=5, help="number of takes per model (default: 5)")
     parser.add_argument(
-        "--lookahead", type=int, help="frames of sound ahead, 0 for live use (default: all the model uses)"
+        "--temperature", type=float, default=1.0, help=("how much the motion varies, 0 to 1.2 (default: 1)")
+    )
+    parser.add_argument(
+        "--lookahead",
+        type=int,
+        help=("frames of sound the model hears ahead; 0 for live use (default: as many as the model uses)"),
     )
     parser.add_argument(
         "--guidance", type=float, help="how closely a matching model follows the speech (default: 1.5)"
     )
-    parser.add_argument("--draws", type=int, default=200, help="draws of blocks for intervals (default: 200)")
+    parser.add_argument(
+        "--draws", type=int, default=200, help=("bootstrap draws for the intervals (default: 200)")
+    )
 
 
 def read_manner(options: Namespace) -> SamplingManner:
@@ -61,7 +71,7 @@ def read_manner(options: Namespace) -> SamplingManner:
     if not 0 <= options.draws <= 10000:
         raise ValueError(f"--draws is 0 to 10000, not {options.draws}")
     if options.lookahead is not None and options.lookahead < 0:
-        raise ValueError("--lookahead is 0 frames or more")
+        raise ValueError("--lookahead must be 0 frames or more")
     guidance = GUIDANCE if options.guidance is None else options.guidance
     return SamplingManner(options.seeds, options.temperature, options.lookahead, guidance)
 
@@ -177,16 +187,17 @@ def list_judging_cautions(
         out.append(f"{seconds:.0f} s are little to judge a model on: intervals are wide.")
     if "floor" in beside:
         out.append(
-            "The floor is half of the takes beside the other half, not other motion to the same speech."
+            "The floor compares one half of the takes with the other, not two performances of the same "
+            "speech."
         )
     elif "other motion" not in beside:
         out.append("There is too little motion for a floor.")
     if not any(t.marks.hesitations for t in takes):
-        out.append("No partner hesitates, or words are missing: nothing is said of listening.")
+        out.append("No partner hesitates, or words are missing, so listening is not measured.")
     kinds = {m.card.kind for m in models.values()}
     if len(kinds) > 1:
         out.append(
-            "These models differ in several things at once (the CVAE has neither past poses nor a flow): "
-            "`ablate` changes one at a time."
+            "These models differ in several ways at once (the CVAE has neither past poses nor a flow). "
+            "`ablate` changes one thing at a time."
         )
     return tuple(out)

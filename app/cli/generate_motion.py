@@ -44,28 +44,38 @@ def add_heard_arguments(parser: ArgumentParser, needed: bool) -> None:
         type=Path,
         nargs="+",
         metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: as the sound is called, "
-        "else by loudness)",
+        help=(
+            "transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: a file named "
+            "like the sound, else loudness)"
+        ),
     )
     add_language_arguments(parser)
-    parser.add_argument("--side", type=int, choices=(1, 2), default=1, help="whose motion (default: 1)")
-    parser.add_argument("--seed", type=int, default=1, help="another take (default: 1)")
-    parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
+    parser.add_argument(
+        "--side", type=int, choices=(1, 2), default=1, help=("the speaker who moves (default: 1)")
+    )
+    parser.add_argument(
+        "--seed", type=int, default=1, help=("random seed; another seed gives another take (default: 1)")
+    )
+    parser.add_argument(
+        "--temperature", type=float, default=1.0, help=("how much the motion varies, 0 to 1.2 (default: 1)")
+    )
     parser.add_argument("--guidance", type=float, help="how closely a matching model follows the speech")
     parser.add_argument(
-        "--lookahead", type=int, help="frames of sound ahead, 0 for live use (default: all the model uses)"
+        "--lookahead",
+        type=int,
+        help=("frames of sound the model hears ahead; 0 for live use (default: as many as the model uses)"),
     )
     parser.add_argument(
         "--activity",
         choices=ROLES,
-        help="whoever speaks, this is the role: 'listening' makes a listener (default: as it is)",
+        help=("play this role throughout: 'listening' makes a listener (default: the role of the recording)"),
     )
     parser.add_argument(
         "--from",
         dest="first",
         type=Path,
         metavar="CLIP",
-        help="a clip whose first pose it goes on from, a stance say (default: the mean pose)",
+        help="start from the first pose of this clip, such as a stance (default: the mean pose)",
     )
 
 
@@ -73,13 +83,18 @@ def cut_arguments(parser: ArgumentParser) -> None:
     """Add the options of `cut`."""
     add_model_argument(parser)
     add_heard_arguments(parser, needed=False)
-    parser.add_argument("-o", "--out", type=Path, required=True, help="a folder for the pieces")
+    parser.add_argument("-o", "--out", type=Path, required=True, help="the folder for the clips")
     parser.add_argument(
-        "--minutes", type=float, default=3.0, help="how much is made to be cut, by several seeds (default: 3)"
+        "--minutes",
+        type=float,
+        default=3.0,
+        help=("minutes of motion to generate, from several seeds (default: 3)"),
     )
-    parser.add_argument("--least", type=float, default=1.0, help="seconds of a piece (default: 1)")
-    parser.add_argument("--most", type=float, default=8.0, help="seconds of a piece (default: 8)")
-    parser.add_argument("--project", type=Path, help="add the pieces to this project")
+    parser.add_argument(
+        "--least", type=float, default=1.0, help=("seconds of the shortest clip (default: 1)")
+    )
+    parser.add_argument("--most", type=float, default=8.0, help="seconds of the longest clip (default: 8)")
+    parser.add_argument("--project", type=Path, help="add the clips to this project")
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +114,7 @@ def read_heard(options: Namespace, tracks: int) -> HeardInput:
 
     paths: list[Path] = options.speech or []
     if len(paths) > 2 or len(options.words or ()) > 2:
-        raise ValueError("a conversation of two has one or two sounds, and at most two files with words")
+        raise ValueError("give one or two sounds and at most two transcripts for a conversation of two")
     speech, name = _read_speech(options, paths) if paths else _planted_speech(options)
     for note in speech.notes:
         print(f"note: {note}", file=sys.stderr)
@@ -135,7 +150,7 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str
         if not path.is_file():
             raise FileError(path, "the sound file does not exist", remedy="Check the path of the speech.")
         if path.suffix.lower() not in SOUNDS:
-            raise FileError(path, "is no sound", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
+            raise FileError(path, "is not a sound file", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
     words = _words_beside(paths[0]) if options.words is None else options.words
     swapped = options.side == 2 and len(paths) == 2 and not words
     sounds = tuple(reversed(paths)) if swapped else tuple(paths)
@@ -163,7 +178,7 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
 
     seconds = samples.shape[1] / RATE
     if not np.isfinite(samples).all():
-        raise FileError(place, "holds a sample that is not a number", remedy="Export it anew.")
+        raise FileError(place, "holds a sample that is not a number", remedy="Export it again.")
     if seconds < LEAST:
         raise FileError(place, f"lasts {seconds:.2f} s", remedy=f"Give at least {LEAST:g} s of speech.")
     if not any(np.isfinite(integrated_loudness(channel, RATE)) for channel in samples):
@@ -180,7 +195,7 @@ def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int)
 
     if speech.conversation is None:
         if len(samples) == 1:
-            print("note: only one voice: the speaker's own. The partner never speaks", file=sys.stderr)
+            print("note: the sound has only the speaker's voice; the partner stays silent", file=sys.stderr)
         return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
         print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)
@@ -213,7 +228,9 @@ def make_motion(options: Namespace, model: Model, heard: HeardInput, seed: int) 
         stance = read_clips(options.first)[0]
         if stance.skeleton != model.rig.skeleton:
             raise FileError(
-                options.first, "has another skeleton than the model", remedy="Retarget it to the model's."
+                options.first,
+                "has another skeleton than the model",
+                remedy=("Retarget it to the model's skeleton."),
             )
         first = first_pose(stance)
     return sample_whole(
@@ -361,7 +378,7 @@ def _told(path: Path, card: ModelCard, count: int) -> list[str]:
         f"  made with {', '.join(f'{n} {v}' for n, v in sorted(card.versions.items())) or 'unknown'}",
     ]
     for what, takes in (("learned from", card.takes), ("held out", card.held_out)):
-        licences = sorted({t.licence or "no licence told" for t in takes})
+        licences = sorted({t.licence or "no licence given" for t in takes})
         minutes = sum(t.seconds for t in takes) / 60
         lines.append(f"  {what} {len(takes)} takes, {minutes:.1f} min" + (": " if takes else ""))
         lines += [f"    {t.name}{' (mirrored)' if t.mirrored else ''}, {t.seconds:.1f} s" for t in takes[:10]]

@@ -40,20 +40,21 @@ PERFECT = {
     "diversity": "true",
 }
 MEANINGS = {
-    "distance": "how the landmarks' distances from the mean pose are distributed: W1 over the mean distance",
-    "speed": "mean speed over the true one; speed_w1: W1 likewise",
-    "acceleration": "mean acceleration over the true one",
-    "wrist_range": "range between quartiles of the wrists' distances over the true one",
-    "still": "how often a hand rests (under 4 cm/s, the mean over half a second) over the true one",
-    "trembling": "mean acceleration of hands that rest over the true one",
-    "role": "mean change of the distances while speaking over that while listening; role_w1: W1 of "
-    "figures 7, 8",
-    "stroke": "speed of the hands within 0.25 s of own stresses over their mean speed",
-    "nods": "vertical speed of the nose beside the head in the second after own responses, and after the "
-    "partner's hesitations, over its mean",
-    "profile": "correlation of the hands' mean speed about own stresses with the true one",
-    "frechet": "distance between Gaussians of seconds of motion",
-    "diversity": "mean distance of the landmarks between two takes to the same speech, cm",
+    "distance": "distribution of the landmarks' distances from the mean pose: W1 divided by the mean "
+    "distance",
+    "speed": "mean speed divided by the recorded one; speed_w1: W1 of the speeds",
+    "acceleration": "mean acceleration divided by the recorded one",
+    "wrist_range": "interquartile range of the wrists' distances, divided by the recorded one",
+    "still": "share of time a hand rests (mean over half a second below 4 cm/s), divided by the recorded one",
+    "trembling": "mean acceleration of resting hands, divided by the recorded one",
+    "role": "mean change of the distances while speaking, divided by that while listening; role_w1: W1 "
+    "of figures 7, 8",
+    "stroke": "speed of the hands within 0.25 s of own stresses, divided by their mean speed",
+    "nods": "vertical speed of the nose relative to the head in the second after own responses and "
+    "after the partner's hesitations, divided by its mean",
+    "profile": "correlation of the hands' mean speed around own stresses with the recorded one",
+    "frechet": "distance between Gaussians fitted to one-second pieces of motion",
+    "diversity": "mean distance of the landmarks between two takes for the same speech, in cm",
 }
 _STYLE = f"""
 body {{ max-width: 1180px; }} svg {{ max-width: 1000px; }} .wide-table {{ overflow-x: auto; }}
@@ -125,7 +126,7 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
     systems |= {name: seeds[0] for name, seeds in judged.made.items()}
     far = {name: figures.landmark_distances(motion, mean) for name, motion in systems.items()}
     most = max(float(v.max()) for v in far.values())
-    parts = ["<h1>Generated motion beside recorded motion</h1>", "<div class='card'>"]
+    parts = ["<h1>Generated and recorded motion</h1>", "<div class='card'>"]
     parts += [f"<p>{escape(str(k))}: {escape(str(v))}</p>" for k, v in told.items()]
     parts += ["</div>", *(f"<p class='warn'>{escape(n)}</p>" for n in notes)]
     parts += ["<h2>Table</h2>", format_report_table(judged.rows)]
@@ -139,13 +140,13 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
     for name, motion in systems.items():
         parts.append(_figure(figures.draw_over_time(motion[0], mean, most), f"{name}: the first take"))
     parts.append(
-        _figure(figures.draw_boxes(far, "cm"), "All takes; whiskers by Tukey, notches about the median")
+        _figure(figures.draw_boxes(far, "cm"), "All takes; Tukey's whiskers, notches around the median")
     )
     first = {name: motion[0] for name, motion in systems.items()}
     parts.append(
         _figure(figures.draw_overlaid(first), "Poses of the first take, one a second, from the front")
     )
-    for number, who, words in ((7, SELF, "oneself speaks"), (8, PARTNER, "the partner speaks")):
+    for number, who, words in ((7, SELF, "the speaker speaks"), (8, PARTNER, "the partner speaks")):
         parts.append(f"<h2>Figure {number}: how fast that distance changes while {words}</h2>")
         grown = {name: figures.distance_changes(motion, mean, who) for name, motion in systems.items()}
         parts.append(_figure(figures.draw_boxes(grown, "cm/s"), "All takes; the first seed of each model"))

@@ -22,8 +22,10 @@ def add_takes_arguments(parser: ArgumentParser) -> None:
         type=Path,
         nargs="+",
         metavar="TAKES",
-        help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
-        "and talk_2.bvh for the sides of talk.wav",
+        help=(
+            "clips, or folders of clips, each with its sound in the same folder: talk.bvh and "
+            "talk.wav, or talk_1.bvh and talk_2.bvh for the two speakers of talk.wav"
+        ),
     )
     add_speech_argument(parser)
 
@@ -37,7 +39,7 @@ def add_speech_argument(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="sounds and words that lie elsewhere, or folders of them (default: beside the clips)",
+        help="sounds and transcripts, or folders of them (default: the clips' folders)",
     )
     add_language_arguments(parser)
 
@@ -79,7 +81,9 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
     if not batch.takes:
         place = ", ".join(str(p) for p in options.takes)
         if not failures:
-            raise FileError(place, "holds no takes", remedy="Give clips with their sound beside them.")
+            raise FileError(
+                place, "holds no takes", remedy=("Give clips that have their sound in the same folder.")
+            )
         raise ValueError(f"none of the {len(failures)} takes in {place} can be used: {failures[0]}")
     return batch
 

@@ -32,24 +32,34 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         nargs="*",
         metavar="TAKES",
-        help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
-        "and talk_2.bvh for the sides of talk.wav",
+        help=(
+            "clips, or folders of clips, each with its sound in the same folder: talk.bvh and "
+            "talk.wav, or talk_1.bvh and talk_2.bvh for the two speakers of talk.wav"
+        ),
     )
     add_speech_argument(parser)
-    parser.add_argument("-o", "--out", type=Path, required=True, help="the model (.mgmodel)")
+    parser.add_argument("-o", "--out", type=Path, required=True, help="the model to write (.mgmodel)")
     add_training_arguments(parser, "matching")
     parser.add_argument(
         "--minutes", type=float, help=f"of the clock, all runs together (default: {MINUTES:g})"
     )
-    parser.add_argument("--seconds", type=float, help="of the processor instead, all runs together")
-    parser.add_argument("--seed", type=int, default=1, help="another training (default: 1)")
     parser.add_argument(
-        "--loss", choices=("paper", "whitened", "finished"), help="of a flow (default: what suits it)"
+        "--seconds", type=float, help=("processor time in seconds instead, for all runs together")
     )
     parser.add_argument(
-        "--mirror", action="store_true", help="learn from mirror twins as well; nobody is right-handed then"
+        "--seed", type=int, default=1, help=("random seed; another seed gives another training (default: 1)")
     )
-    parser.add_argument("--resume", action="store_true", help="go on where it was stopped")
+    parser.add_argument(
+        "--loss",
+        choices=("paper", "whitened", "finished"),
+        help=("the loss of a flow model (default: the one that suits the model)"),
+    )
+    parser.add_argument(
+        "--mirror",
+        action="store_true",
+        help=("also learn from mirrored takes; the result has no dominant hand"),
+    )
+    parser.add_argument("--resume", action="store_true", help="continue a training that was stopped")
 
 
 def add_training_arguments(parser: ArgumentParser, kind: str) -> None:
@@ -58,11 +68,13 @@ def add_training_arguments(parser: ArgumentParser, kind: str) -> None:
         "--size",
         choices=("small", "tokens", "paper"),
         default="small",
-        help="'tokens' is a small flow-vae on pieces of 160 ms, as matching; 'paper' learns for hundreds of "
-        "hours on a processor (default: small)",
+        help=(
+            "'tokens' is a small flow-vae on pieces of 160 ms, like matching; 'paper' trains for "
+            "hundreds of processor hours (default: small)"
+        ),
     )
-    parser.add_argument("--two-tracks", action="store_true", help="hear both voices apart")
-    parser.add_argument("--threads", type=int, default=0, help="of the processor (default: all)")
+    parser.add_argument("--two-tracks", action="store_true", help="hear the two voices separately")
+    parser.add_argument("--threads", type=int, default=0, help="processor threads to use (default: all)")
 
 
 def add_ablation_arguments(parser: ArgumentParser) -> None:
@@ -72,20 +84,34 @@ def add_ablation_arguments(parser: ArgumentParser) -> None:
 
     add_takes_arguments(parser)
     parser.add_argument(
-        "-o", "--out", type=Path, required=True, help="a folder for models and table; what is there is kept"
+        "-o",
+        "--out",
+        type=Path,
+        required=True,
+        help=("the folder for models and table; models already there are used again"),
     )
     add_training_arguments(parser, "matching")
     parser.add_argument(
-        "--seconds", type=float, default=300.0, help="of the processor for each training (default: 300)"
+        "--seconds", type=float, default=300.0, help=("processor time in seconds per training (default: 300)")
     )
-    parser.add_argument("--trainings", type=int, default=1, help="of each kind, by seeds (default: 1)")
+    parser.add_argument(
+        "--trainings",
+        type=int,
+        default=1,
+        help=("number of trainings of each variant, with different seeds (default: 1)"),
+    )
     parser.add_argument(
         "--change",
         action="append",
         metavar="NAME",
-        help="only this change, beside the whole model; as often as you like (default: all)",
+        help="only this change, compared with the full model; repeat for more (default: all)",
     )
-    parser.add_argument("--floor", type=Path, metavar="FOLDER", help="as for evaluate")
+    parser.add_argument(
+        "--floor",
+        type=Path,
+        metavar="FOLDER",
+        help=("other recorded motion to the same speech, as for 'evaluate'"),
+    )
     add_manner_arguments(parser)
 
 
@@ -137,7 +163,7 @@ def train(options: Namespace) -> int:
     ]
     lines += [f"  {name}: {value:.4g}" for name, value in card.statistics.items()]
     if stopped:
-        lines.append("go on with: --resume")
+        lines.append("to continue, add --resume")
     else:
         lines.append(f"what it would need to go on is in {folder_of(out)}")
     say(options, "\n".join(lines), data)
@@ -152,7 +178,7 @@ def _begin(options: Namespace) -> None:
 
     out: Path = options.out
     if not options.takes:
-        raise ValueError("give takes to learn from, or --resume to go on")
+        raise ValueError("give takes to learn from, or --resume to continue")
     if out.exists() or (folder_of(out) / PLAN).exists():
         what = out if out.exists() else folder_of(out)
         raise ValueError(f"{what} is there already: choose another name, or go on with --resume")

@@ -25,55 +25,59 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of `label`."""
     parser.add_argument(
-        "folder", type=Path, help="a folder of clips, or a project whose clips wait to be labelled"
+        "folder", type=Path, help="a folder of clips, or a project with clips that have no label yet"
     )
     parser.add_argument(
-        "-o", "--out", type=Path, help="the project to write (default: beside the folder, called after it)"
+        "-o", "--out", type=Path, help="the project to write (default: next to the folder, with its name)"
     )
     parser.add_argument(
         "--above",
         type=float,
         default=0.0,
         metavar="SURE",
-        help="place only what is at least so sure, 0 to 1 (default: all)",
+        help="place only clips whose proposal is at least this certain, 0 to 1 (default: all)",
     )
     parser.add_argument(
         "--from",
         dest="sources",
         action="append",
         choices=("name", "motion", "learned"),
-        help="believe only this; may be repeated",
+        help="use only this source of evidence; repeat for more",
     )
     parser.add_argument(
         "--learned",
         action="store_true",
-        help="use what you taught the window: corrections, name patterns, saved projects",
+        help=("also use what you taught Metagraph in the window: corrections, name patterns, saved projects"),
     )
     parser.add_argument(
         "--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)"
     )
     parser.add_argument(
-        "--retarget", action="store_true", help="bring clips of other skeletons onto that of most clips"
+        "--retarget",
+        action="store_true",
+        help=("retarget clips of other skeletons to the skeleton that most clips have"),
     )
     parser.add_argument(
         "--no-contacts",
         action="store_true",
-        help="with --retarget: leave hands that touch their own body where the arms bring them",
+        help="with --retarget: do not correct hands that touch their own body",
     )
     parser.add_argument(
         "--no-bridges",
         action="store_true",
-        help="leave stances that no clip leads to or from as they are, instead of blending to them",
+        help="do not blend to stances that no clip leads to or from",
     )
     parser.add_argument(
         "--play",
         type=float,
         default=60.0,
         metavar="SECONDS",
-        help="play the result for so many seconds, and each action once, and report what a viewer would "
-        "see go wrong; 0 to leave that out (default: 60)",
+        help=(
+            "play the result for this many seconds and each action once, and report visible faults; 0 "
+            "skips this (default: 60)"
+        ),
     )
-    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
+    parser.add_argument("--no-pictures", action="store_true", help="write the report without pictures")
 
 
 def run(options: Namespace) -> int:
@@ -91,7 +95,7 @@ def run(options: Namespace) -> int:
         raise FileError(
             source,
             "there is no such folder or project",
-            "on labelling it",
+            "while labelling it",
             "Give a folder of clips, or a project.",
         )
     path = with_project_ending(
@@ -237,13 +241,15 @@ def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
     words = (
         f"added {counts['added']} clips to the project, which keeps its {counts['kept']} clips and {actions} "
     )
-    words += "actions as they were"
+    words += "unchanged actions"
     if begun.skipped:
         words += f"; skipped {begun.skipped} clips that it has already"
     if begun.waiting:
         words += f"; {begun.waiting} of its clips wait to be labelled: metagraph label {path}"
     if not begun.clips:
-        words += "; nothing was changed. --overwrite makes the project anew and keeps this one as a version"
+        words += (
+            "; nothing was changed. Add --overwrite to make the project again and keep this one as a version"
+        )
     return words, counts
 
 
@@ -321,9 +327,9 @@ def _begun(options: Namespace, path: Path) -> Begun:
         contacts=not options.no_contacts,
     )
     if not result.loaded:
-        why = result.failures[0] if result.failures else "no clip was found in it"
+        why = result.failures[0] if result.failures else "has no clips"
         raise FileError(
-            source, why, "on importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
+            source, why, "while importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
         )
     known = {(x, entry.take) for entry in before.clips.values() for x in (entry.path, entry.digest)}
     fresh = replace(

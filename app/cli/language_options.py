@@ -24,8 +24,10 @@ def add_language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help="a pack of words of your own, YAML or JSON, that is then the language unless --language says "
-        "so; may be given for several",
+        help=(
+            "your own word list, YAML or JSON; it is the language unless --language names one; repeat "
+            "for more"
+        ),
     )
 
 

@@ -35,28 +35,45 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
     parser.add_argument(
-        "--no-stdin", action="store_true", help="do not read requests from standard input, nor end with it"
+        "--no-stdin",
+        action="store_true",
+        help=("do not read requests from standard input, and keep running when it ends"),
     )
     parser.add_argument(
         "--mcp", action="store_true",
-        help="speak the Model Context Protocol on standard input and output, for language models; nothing "
-        "else listens but on ports that are named",
+        help=("speak the Model Context Protocol on standard input and output, for language models; "
+             "WebSocket and OSC listen only if a port is given"),
     )  # fmt: skip
-    parser.add_argument("--host", default="", help="listen there, not on this machine alone; needs a token")
-    parser.add_argument("--token", help="what clients must say first (default: $METAGRAPH_TOKEN)")
     parser.add_argument(
-        "--origin", action="append", default=[], help='let web pages of this origin connect; "null" for files'
+        "--host",
+        default="",
+        help=("the network address to listen on (default: this computer only); needs a token"),
     )
     parser.add_argument(
-        "--seed", type=kept_seed, help="another performance of the same project (default: the project's seed)"
+        "--token", help=("the token that clients must send first (default: $METAGRAPH_TOKEN)")
     )
-    parser.add_argument("--no-idle", action="store_true", help="do nothing that is not asked for")
+    parser.add_argument(
+        "--origin",
+        action="append",
+        default=[],
+        help=('let web pages of this origin connect; "null" for pages opened from disk'),
+    )
+    parser.add_argument(
+        "--seed",
+        type=kept_seed,
+        help=("random seed; another seed gives another performance (default: the project's seed)"),
+    )
+    parser.add_argument(
+        "--no-idle", action="store_true", help=("play only what is requested, without idle actions")
+    )
     parser.add_argument(
         "--keep",
         metavar="NAME",
         type=kept_name,
-        help="keep what was asked in the project at the end, as a performance; and beside it what a motion "
-        "graph moved with",
+        help=(
+            "save the requests as a performance of the project at the end, and the motion of a motion "
+            "graph in a file next to it"
+        ),
     )
     live_graph_options.add_arguments(parser)
 
@@ -193,7 +210,7 @@ def _keep(session: LiveSession, options: Namespace) -> None:
             import msgspec
 
             print(msgspec.json.encode(played).decode(), flush=True)
-            remedy = "What was played stands on standard output, since no file could be written."
+            remedy = "No file could be written, so the performance was printed to standard output."
         cause = error.cause if isinstance(error, FileError) else str(error)
         raise FileError(options.project, cause, getattr(error, "where", ""), remedy) from None
     print(f"kept as '{project.performances[ident].name}'", file=sys.stderr)

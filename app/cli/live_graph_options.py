@@ -34,32 +34,36 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     add_speech_arguments(parser, required=False)
     parser.add_argument(
-        "--retarget", action="store_true", help="bring takes of another skeleton onto the character's"
+        "--retarget", action="store_true", help="retarget takes of another skeleton to the character's"
     )
     parser.add_argument(
         "--voice",
         type=Path,
         metavar="FILE",
-        help="a sound file that the character moves to from the start, heard as it plays; with --takes",
+        help="a sound file to which the character moves from the start, heard as it plays; with --takes",
     )
     parser.add_argument(
         "--announce",
         type=float,
         metavar="SECONDS",
-        help="tell the clauses of --voice so long before they begin (default: they are only heard)",
+        help=(
+            "announce the clauses of --voice this many seconds ahead (default: the character only hears them)"
+        ),
     )
 
 
 def require_consistent_options(options: Namespace) -> None:
     """Raise ValueError for options that do not go together."""
     if options.takes and not options.speech:
-        raise ValueError("--takes needs --speech: what was said in each take, a file called as the take is")
+        raise ValueError(
+            "--takes needs --speech: a file for each take, with the same name, that has what was said"
+        )
     if not options.takes and (options.speech or options.retarget):
-        raise ValueError("--speech and --retarget need --takes, long takes to move with")
+        raise ValueError("--speech and --retarget need --takes")
     if options.announce is not None and options.voice is None:
-        raise ValueError("--announce needs --voice, whose clauses it tells")
+        raise ValueError("--announce needs --voice")
     if options.announce is not None and not 0 <= options.announce <= 60:
-        raise ValueError("--announce is 0 to 60 seconds")
+        raise ValueError("--announce must be 0 to 60 seconds")
 
 
 def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
@@ -115,7 +119,7 @@ def read_live_voice(options: Namespace, graphs: Mapping[str, LiveGraph]) -> Play
     if options.voice is None:
         return None
     if NAME not in graphs:
-        raise ValueError("--voice needs --takes, long takes to move with, or a project that has its own")
+        raise ValueError("--voice needs --takes, or a project that has its own long takes")
     from metagraph.live.played_voice import read_played_voice
 
     return read_played_voice(options.voice, NAME, options.announce)

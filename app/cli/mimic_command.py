@@ -36,7 +36,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         help=f"write it: a video, a contact sheet, motion, or the requests ({', '.join(OUT)})",
     )
-    parser.add_argument("--keep", metavar="NAME", help="keep it as a performance of the project")
+    parser.add_argument("--keep", metavar="NAME", help="save the result as a performance of the project")
     parser.add_argument(
         "--take",
         type=Path,
@@ -47,27 +47,29 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--no-mirror",
         action="store_true",
-        help="the character's left is the person's left, not as in a mirror",
+        help="match left with left, instead of mirroring the person",
     )
     parser.add_argument(
-        "--gaze", action="store_true", help="the character looks where the person's head is turned, too"
+        "--gaze", action="store_true", help="also make the character look where the person's head points"
     )
     parser.add_argument(
-        "--layer", action="append", choices=LAYERS, help="only this layer mimics; may be given several times"
+        "--layer", action="append", choices=LAYERS, help="mimic on this layer only; repeat for more"
     )
     parser.add_argument(
-        "--fps", type=float, help="frames a second of the keypoints, where they have no times (default: 30)"
+        "--fps", type=float, help="frames a second of keypoints that have no times (default: 30)"
     )
     parser.add_argument(
         "--picture",
         metavar="WxH",
-        help="the camera's picture, where coordinates are shares of it (default: 16:9)",
+        help="size of the camera's picture, for coordinates given as shares of it (default: 16:9)",
     )
     parser.add_argument(
-        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+        "--seed",
+        type=int,
+        help=("random seed; another seed gives another performance (default: the project's seed)"),
     )
     parser.add_argument(
-        "--size", default="960x540", help="width x height of pictures in pixels (default: 960x540)"
+        "--size", default="960x540", help="width x height of the pictures in pixels (default: 960x540)"
     )
 
 
@@ -249,5 +251,5 @@ def _lines(
             f"{row['at']:8.2f}  {row['layer']:5} {row['name']:20} {when}{' (again)' if row['again'] else ''}"
         )
     if not rows:
-        out.append("no stance of the project was made out")
+        out.append("the keypoints match no stance of the project")
     return [*out, *(f"written {path}" for path in written)]

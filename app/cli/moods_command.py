@@ -17,11 +17,13 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar="MOOD",
         help=f"put the character in a mood: {', '.join(FEELINGS)}, or 'valence,arousal'",
     )
-    parser.add_argument("--intensity", type=float, help="how large gestures are played, 0 to 2; 1 as made")
+    parser.add_argument(
+        "--intensity", type=float, help=("how large gestures play, 0 to 2; 1 is the size of the clips")
+    )
     parser.add_argument(
         "--from-voices",
         action="store_true",
-        help="give lines that say nothing of their mood the arousal that is heard in their sound",
+        help="set the arousal of lines without a mood from their sound",
     )
 
 

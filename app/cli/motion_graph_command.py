@@ -48,26 +48,28 @@ def add_arguments(parser: ArgumentParser) -> None:
             "takes",
             type=Path,
             nargs="+",
-            help="clip files, folders of them, or projects; all of one skeleton",
+            help="clip files, folders of clips, or projects, all with the same skeleton",
         )
-        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.add_argument("--json", action="store_true", help="print JSON for programs")
         if speech is not False:  # None: it may be given, and then its changes are key states too
             add_speech_arguments(out, required=bool(speech))
         out.set_defaults(run=run)
         return out
 
-    built = action("build", "build the graph of takes, and tell what is in it", build_and_print, speech=None)
+    built = action("build", "build the graph of takes, and describe it", build_and_print, speech=None)
     _graph_options(built)
     built.add_argument(
         "--keep",
         type=Path,
         metavar="FOLDER",
-        help="keep what is finished there, to take up again after an end",
+        help="save finished parts here, so that a stopped run can continue",
     )
-    words = "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away"
+    words = "compare graphs for k = 2, 3 and 4, with and without parts that cannot be reached"
     _graph_options(action("table", words, print_states, speech=None), k=False)
-    _synthesize_options(action("synthesize", "make motion that goes with speech", synthesize, speech=True))
-    words = "hold out each take, search the others for its speech, and count what is found"
+    _synthesize_options(
+        action("synthesize", "make motion for speech from a motion graph", synthesize, speech=True)
+    )
+    words = "leave each take out once, make motion for its speech from the others, and count matches"
     _evaluate_options(action("evaluate", words, print_evaluation, speech=True))
     words = "count how often hands and head move with what is said"
     action("co-occurrence", words, print_co_occurrence, speech=True)
@@ -80,22 +82,24 @@ def _graph_options(out: ArgumentParser, k: bool = True) -> None:
             "--k",
             type=int,
             default=3,
-            help="a transition may cost what frames so many apart differ by (default: 3)",
+            help=("frames between two poses whose difference sets the threshold of transitions (default: 3)"),
         )
     out.add_argument(
         "--level",
         type=float,
         default=0.95,
-        help="share of those it may be as dear as, 0 to 1 (default: 0.95)",
+        help="quantile of those differences that is the threshold, 0 to 1 (default: 0.95)",
     )
     out.add_argument(
         "--keys",
         type=float,
         default=0.2225,
-        help="share of frames transitions may leave and enter (default: 0.2225)",
+        help="share of frames that transitions may leave and enter (default: 0.2225)",
     )
     out.add_argument(
-        "--most", type=int, help="keep only so many of the cheapest transitions of a frame (default: all)"
+        "--most",
+        type=int,
+        help=("keep only this many of the cheapest transitions of each frame (default: all)"),
     )
 
 
@@ -106,64 +110,77 @@ def _synthesize_options(made: ArgumentParser) -> None:
     wanted.add_argument(
         "--take",
         metavar="N",
-        help="speech of this take, by number from 1 or by name, which is itself left out",
+        help="use the speech of this take (number from 1, or name) and leave its motion out",
     )
-    wanted.add_argument("--new", type=Path, metavar="FILE", help="speech of this file")
+    wanted.add_argument("--new", type=Path, metavar="FILE", help="use the speech of this file")
     wanted.add_argument(
-        "--again", type=Path, metavar="FILE", help="the motion of a live session again, kept by `live --keep`"
+        "--again",
+        type=Path,
+        metavar="FILE",
+        help=("make the motion of a live session again, from the file of `live --keep`"),
     )
     made.add_argument(
-        "--start", type=float, default=0.0, help="from this second of the speech on (default: 0)"
+        "--start", type=float, default=0.0, help="second of the speech to start at (default: 0)"
     )
     made.add_argument(
-        "-s", "--seconds", type=float, help="so long (default: 15, or to the end of a shorter speech)"
+        "-s",
+        "--seconds",
+        type=float,
+        help=("length in seconds (default: 15, or to the end of a shorter speech)"),
     )
     made.add_argument(
         "--search",
         choices=("exact", "greedy"),
         default="exact",
-        help="the cheapest path, or a quick one (default: exact)",
+        help="find the cheapest path, or a good one quickly (default: exact)",
     )
     made.add_argument(
         "--without",
         action="append",
         default=[],
         choices=(*SPOKEN, "idle", "peaks", "edges"),
-        help="leave a constraint out; edges: where segments begin and end, so that only kinds count",
+        help="drop a constraint; edges: where segments begin and end, so that only their kinds count",
     )
     made.add_argument(
-        "--strict", action="store_true", help="find nothing rather than give up constraints one by one"
+        "--strict",
+        action="store_true",
+        help=("fail if the constraints cannot all be met, instead of dropping them one by one"),
     )
     made.add_argument(
         "--free-jumps",
         action="store_true",
-        help="jump as often as it likes, and to where it stands, for what jumps look like alone",
+        help="put no limit on jumps, to study the jumps alone",
     )
     made.add_argument(
         "--tolerance",
         type=float,
         default=0.1,
-        help="seconds starts, ends and stresses may be off (default: 0.1)",
+        help="seconds by which starts, ends and stresses may be off (default: 0.1)",
     )
-    made.add_argument("--seed", type=int, default=1, help="another path of the greedy search (default: 1)")
-    made.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
+    made.add_argument("--seed", type=int, default=1, help="random seed of the greedy search (default: 1)")
+    made.add_argument("-o", "--out", type=Path, required=True, help="the .bvh or .glb file to write")
     add_soft_arguments(made)
 
 
 def _evaluate_options(tried: ArgumentParser) -> None:
     """Add which searches are tried, and how."""
     _graph_options(tried)
-    tried.add_argument("-o", "--out", type=Path, help="write each case to a .csv file")
+    tried.add_argument("-o", "--out", type=Path, help="write every case to this .csv file")
     tried.add_argument(
-        "--search", action="append", choices=("exact", "greedy"), help="only this search (default: both)"
+        "--search",
+        action="append",
+        choices=("exact", "greedy"),
+        help=("evaluate this search only (default: both)"),
     )
-    tried.add_argument("--quick", action="store_true", help="all constraints only, without leaving any out")
+    tried.add_argument(
+        "--quick", action="store_true", help=("evaluate with all constraints only, not with each left out")
+    )
     tried.add_argument(
         "--live",
         action="store_true",
-        help="instead: motion that is extended while it plays, for speech that is heard or announced",
+        help=("evaluate motion that is extended while it plays, for heard and for announced speech, instead"),
     )
-    tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
+    tried.add_argument("--seed", type=int, default=1, help="random seed of the greedy search (default: 1)")
     add_soft_arguments(tried)
 
 
@@ -234,9 +251,9 @@ def _checked(options: Namespace) -> None:
     if not 0 < options.keys <= 1:
         raise ValueError(f"--keys is a share above 0 and up to 1, not {options.keys:g}")
     if getattr(options, "k", 3) < 2:
-        raise ValueError("--k is at least 2: frames one apart differ by nothing that a transition could cost")
+        raise ValueError("--k must be at least 2, since consecutive frames set no useful threshold")
     if options.most is not None and options.most < 1:
-        raise ValueError("--most is at least 1")
+        raise ValueError("--most must be at least 1")
 
 
 def build_and_print(options: Namespace) -> int:
@@ -297,7 +314,7 @@ def _facts(whole: MotionGraph, kept: MotionGraph | None) -> dict[str, Any]:
 
 
 def _limits(limit: Threshold) -> dict[str, Any]:
-    by = "Johnson's S_B" if limit.distribution is not None else "what was observed"
+    by = "Johnson's S_B" if limit.distribution is not None else "the observed differences"
     return {"k": limit.k, "level": limit.level, "limit": limit.limit, "observed": limit.observed, "by": by}
 
 
@@ -450,11 +467,14 @@ def _seconds(options: Namespace, new: SpokenTake) -> float:
     if options.start < 0 or (options.start >= end and options.seconds is None):
         place = options.new or Path(options.take)
         raise FileError(
-            place, f"its speech lasts from 0 to {end:.1f} s", "", "Let --start lie within, or give --seconds."
+            place,
+            f"its speech lasts from 0 to {end:.1f} s",
+            "",
+            "Choose a --start within the speech, or give --seconds.",
         )
     seconds: float = min(WINDOW, end - options.start) if options.seconds is None else options.seconds
     if not 0 < seconds <= 3600:
-        raise ValueError("--seconds is more than 0 and at most 3600")
+        raise ValueError("--seconds must be more than 0 and at most 3600")
     return seconds
 
 

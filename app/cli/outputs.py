@@ -37,7 +37,7 @@ NEVER = (("generate", "train"), ("generate", "planted"), ("study", "simulate"))
 PROJECTS = ("label", "contacts", "merge")
 # Actions that change a study's folder in place, with rules of their own for what is there.
 STUDIES = ("run", "freeze", "withdraw", "delete", "import", "plan", "collect", "serve")
-OVERWRITE = "also replace files that this command did not write, or that were changed since"
+OVERWRITE = "also replace files that this command did not write, or that someone changed since"
 
 
 def offer_overwrite(parser: ArgumentParser, command: str) -> None:
@@ -126,7 +126,7 @@ class ProjectOutput:
                 self.path,
                 "was written by another program while this command worked",
                 "",
-                "It is as that program left it. Run the command again.",
+                "That program's version was kept. Run the command again.",
             )
         if was_at is not None:
             project = move_project(project, was_at, self.path)

@@ -20,44 +20,58 @@ def add_arguments(parser: ArgumentParser) -> None:
 
     def action(name: str, words: str, run: Callable[[Namespace], int]) -> ArgumentParser:
         out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
-        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.add_argument("--json", action="store_true", help="print JSON for programs")
         out.set_defaults(run=run)
         return out
 
     made = action(
-        "make", "draw the videos of a study and write the page that shows them", make_perceptual_study
+        "make", "render the videos of a study and write the page that shows them", make_perceptual_study
     )
-    made.add_argument("plan", type=Path, help="a perceive.yaml")
+    made.add_argument("plan", type=Path, help="the perceive.yaml of the study")
     made.add_argument(
-        "--into", type=Path, required=True, metavar="FOLDER", help="a folder that is not there yet"
+        "--into",
+        type=Path,
+        required=True,
+        metavar="FOLDER",
+        help=("the folder to make; it must not exist yet"),
     )
     served = action(
-        "serve", "show the page to browsers, and keep what they answer, until stopped", serve_perceptual_study
+        "serve", "serve the page to browsers and save the answers, until you stop it", serve_perceptual_study
     )
     _study(served)
-    served.add_argument("--port", type=int, default=0, help="(default: any that is free)")
     served.add_argument(
-        "--address", default="127.0.0.1", help="of the interface to listen on (default: this machine alone)"
+        "--port", type=int, default=0, help=("the port to listen on (default: any free port)")
     )
-    brought = action("collect", "keep answers that the page has saved as files", print_perceptual_answers)
+    served.add_argument(
+        "--address",
+        default="127.0.0.1",
+        help=("the network address to listen on (default: this computer only)"),
+    )
+    brought = action("collect", "add answers that the page has saved as files", print_perceptual_answers)
     _study(brought)
-    brought.add_argument("answers", type=Path, nargs="+", help="the files, or folders of them")
-    told = action("report", "write what the answers show: a page and tables as CSV", report_perceptual_study)
+    brought.add_argument("answers", type=Path, nargs="+", help="the files, or folders that have them")
+    told = action(
+        "report", "write a report of the answers: a page, and tables as CSV", report_perceptual_study
+    )
     _study(told)
     told.add_argument("--out", type=Path, help="where to write it (default: report, in the study's folder)")
     planning_arguments(action)
-    gone = action("withdraw", "leave somebody's answers out of all reports from now on", withdraw_person)
+    gone = action(
+        "withdraw",
+        "withdraw a participant: leave the answers out of all reports from now on",
+        withdraw_person,
+    )
     _study(gone)
-    gone.add_argument("participant", help="their code")
-    gone.add_argument("--why", default="", help="in words, kept in the log")
-    deleted = action("delete", "delete all answers of somebody, and note that it was done", delete_person)
+    gone.add_argument("participant", help="the participant's code")
+    gone.add_argument("--why", default="", help="the reason, which the log keeps")
+    deleted = action("delete", "delete all answers of a participant, and log the deletion", delete_person)
     _study(deleted)
-    deleted.add_argument("participant", help="their code")
-    deleted.add_argument("--yes", action="store_true", help="do not ask")
+    deleted.add_argument("participant", help="the participant's code")
+    deleted.add_argument("--yes", action="store_true", help="do not ask for confirmation")
 
 
 def _study(parser: ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, help="the folder that 'make' or 'simulate' wrote")
+    parser.add_argument("folder", type=Path, help="the study's folder, which 'make' or 'simulate' wrote")
 
 
 def make_perceptual_study(options: Namespace) -> int:
@@ -189,7 +203,7 @@ def print_perceptual_answers(options: Namespace) -> int:
     for words in failed:
         print(f"note: {words}", file=sys.stderr)
     lines = [f"{d['code']}: {d['new']} new events, {d['kept']} in all" for d in done]
-    say(options, "\n".join(lines) or "nothing was kept", {"collected": done, "failed": failed})
+    say(options, "\n".join(lines) or "nothing was added", {"collected": done, "failed": failed})
     return 0 if done and not failed else NOTHING
 
 

@@ -18,41 +18,85 @@ Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 def add_arguments(action: Action) -> None:
     """Add the actions."""
     planned = action(
-        "plan", "say how many answers, and how many people, a forced choice needs", write_perceptual_plan
+        "plan", "compute how many answers and people a forced choice needs", write_perceptual_plan
     )
-    planned.add_argument("--share", type=float, required=True, help="of choices that is expected, 0.5 to 1")
-    planned.add_argument("--smallest", type=float, help="the smallest share that would matter")
-    planned.add_argument("--items", type=int, default=10, help="stretches of motion in all (10)")
+    planned.add_argument("--share", type=float, required=True, help="expected share of choices, 0.5 to 1")
+    planned.add_argument("--smallest", type=float, help="the smallest share that matters")
+    planned.add_argument("--items", type=int, default=10, help="number of items (default: 10)")
     planned.add_argument(
-        "--each", type=int, help="answers of a person about the pair (default: one of each item)"
+        "--each", type=int, help="answers of each person about the pair (default: one for each item)"
     )
-    planned.add_argument("--people-differ", type=float, default=0.5, metavar="SD", help="log odds (0.5)")
-    planned.add_argument("--items-differ", type=float, default=0.3, metavar="SD", help="log odds (0.3)")
-    planned.add_argument("--chance", type=float, default=0.8, help="to show it (0.8)")
-    planned.add_argument("--tests", type=int, default=1, help="that share 0.05 (1)")
-    planned.add_argument("--participants", type=int, help="tell the chance with so many instead")
-    planned.add_argument("--studies", type=int, default=200, help="that are simulated (200)")
+    planned.add_argument(
+        "--people-differ",
+        type=float,
+        default=0.5,
+        metavar="SD",
+        help=("standard deviation between people, in log odds (default: 0.5)"),
+    )
+    planned.add_argument(
+        "--items-differ",
+        type=float,
+        default=0.3,
+        metavar="SD",
+        help=("standard deviation between items, in log odds (default: 0.3)"),
+    )
+    planned.add_argument(
+        "--chance", type=float, default=0.8, help=("power: the chance to show the effect (default: 0.8)")
+    )
+    planned.add_argument(
+        "--tests", type=int, default=1, help=("number of tests that share the level of 0.05 (default: 1)")
+    )
+    planned.add_argument(
+        "--participants", type=int, help=("compute the power with this many participants instead")
+    )
+    planned.add_argument(
+        "--studies", type=int, default=200, help=("number of simulated studies (default: 200)")
+    )
     planned.add_argument("--seed", type=int, default=1)
     faked = action(
         "simulate",
-        "write a study without videos, answered by people who do not exist",
+        "write a study without videos, answered by simulated people",
         simulate_perceptual_study,
     )
-    faked.add_argument("out", type=Path, help="a folder that is not there yet")
-    faked.add_argument("--like", type=Path, metavar="PLAN", help="a perceive.yaml of yours")
-    faked.add_argument("--participants", type=int, help="how many (default: the plan's)")
+    faked.add_argument("out", type=Path, help="the folder to make; it must not exist yet")
+    faked.add_argument("--like", type=Path, metavar="PLAN", help="use this perceive.yaml")
+    faked.add_argument("--participants", type=int, help="number of participants (default: the plan's)")
     faked.add_argument(
-        "--liked", action="append", default=[], metavar="CONDITION=LOGODDS", help="how much one is liked"
+        "--liked",
+        action="append",
+        default=[],
+        metavar="CONDITION=LOGODDS",
+        help=("how much people prefer a condition, in log odds"),
     )
-    faked.add_argument("--people-differ", type=float, default=0.4, metavar="SD", help="log odds (0.4)")
-    faked.add_argument("--items-differ", type=float, default=0.3, metavar="SD", help="log odds (0.3)")
-    faked.add_argument("--left", type=float, default=0.0, help="log odds the left side gains (0)")
     faked.add_argument(
-        "--lapses", type=float, default=0.02, help="share of answers given without looking (0.02)"
+        "--people-differ",
+        type=float,
+        default=0.4,
+        metavar="SD",
+        help=("standard deviation between people, in log odds (default: 0.4)"),
     )
-    faked.add_argument("--careless", type=float, default=0.0, help="share of people who never look (0)")
-    faked.add_argument("--unfinished", type=float, default=0.0, help="share of people who break off (0)")
-    faked.add_argument("--seed", type=int, default=1, help="other people (1)")
+    faked.add_argument(
+        "--items-differ",
+        type=float,
+        default=0.3,
+        metavar="SD",
+        help=("standard deviation between items, in log odds (default: 0.3)"),
+    )
+    faked.add_argument(
+        "--left", type=float, default=0.0, help=("bias towards the left side, in log odds (default: 0)")
+    )
+    faked.add_argument(
+        "--lapses", type=float, default=0.02, help=("share of answers given without looking (default: 0.02)")
+    )
+    faked.add_argument(
+        "--careless", type=float, default=0.0, help=("share of people who never look (default: 0)")
+    )
+    faked.add_argument(
+        "--unfinished", type=float, default=0.0, help=("share of people who break off (default: 0)")
+    )
+    faked.add_argument(
+        "--seed", type=int, default=1, help=("random seed; another seed gives other people (default: 1)")
+    )
 
 
 def require_empty(folder: Path) -> None:
@@ -76,7 +120,7 @@ def write_perceptual_plan(options: Namespace) -> int:
     )
 
     if options.tests < 1 or options.items < 1:
-        raise ValueError("tests and items are at least 1")
+        raise ValueError("--tests and --items must be at least 1")
     if not 0.5 < options.share < 1:
         raise ValueError(f"--share is more than 0.5 and less than 1, not {options.share:g}")
     if not 0 < options.chance < 1:
@@ -186,7 +230,7 @@ def simulate_perceptual_study(options: Namespace) -> int:
         raters = replace(raters, liked={"deaf": -0.8})
     if options.participants is not None:
         if not 1 <= options.participants <= 1000:
-            raise ValueError("a study has 1 to 1000 participants")
+            raise ValueError("--participants must be 1 to 1000")
         mine = changed(mine, participants=options.participants)
     strange = set(raters.liked) - set(mine.conditions)
     if strange:

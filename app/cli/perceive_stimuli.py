@@ -119,7 +119,7 @@ class Stimuli:
             self.path,
             cause,
             f"conditions.{name}",
-            remedy or "Correct it; docs/researchers/perceptual-plan.md describes every field.",
+            remedy or "Correct it. docs/researchers/perceptual-plan.md describes every field.",
         )
 
     def _file(self, path: str, item: Stretch) -> Path:
@@ -147,7 +147,7 @@ class Stimuli:
         else:
             shown, folder = self._motion(name, made, item)
         if shown.skeleton is None:
-            raise self._failure(name, "its project has no clips; there is nothing to draw")
+            raise self._failure(name, "its project has no clips to draw")
         start = item.start if made.conversation is not None or not apart else 0.0
 
         def spoken(begin: float, seconds: float) -> np.ndarray | None:
@@ -194,7 +194,9 @@ class Stimuli:
         project = replace(project, conversations={**project.conversations, ident: talk})
         shown = self._plans.show(project, ident, folder)
         if shown.notes:
-            raise self._failure(name, shown.notes[0], "Mend it in the project: a study shows all or nothing.")
+            raise self._failure(
+                name, shown.notes[0], "Repair it in the project. A study cannot be made with missing files."
+            )
         return shown, folder
 
     def _performance(self, made: Condition) -> tuple[ShownPlayback, Path]:
@@ -245,9 +247,9 @@ class Stimuli:
         if project is not None and clip.skeleton != project.skeleton:
             raise FileError(
                 path,
-                "is of another skeleton than the project",
+                "has another skeleton than the project",
                 f"conditions.{name}",
-                "Import it and name it as a clip, or leave 'project' out for the default body.",
+                "Import it and give it as a clip, or remove 'project' to use the default body.",
             )
         return clip
 

@@ -34,39 +34,44 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     add_performance_arguments(parser, 10.0)
     parser.add_argument(
-        "-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb, .usda or .bvh file"
+        "-o", "--out", type=Path, required=True, help="the .png, .mp4, .glb, .usda or .bvh file to write"
     )
     parser.add_argument(
-        "--progress", action="store_true", help="tell after each picture of a video how many there are"
+        "--progress", action="store_true", help="report progress after each picture of a video"
     )
     parser.add_argument(
-        "--start", type=float, default=0.0, help="second of the performance to begin at (default: 0)"
+        "--start", type=float, default=0.0, help="second of the performance to start at (default: 0)"
     )
-    parser.add_argument("--clip", help="draw this clip of the project alone")
+    parser.add_argument("--clip", help="draw only this clip of the project")
     parser.add_argument(
-        "--conversation", metavar="NAME", help="draw all who talk in this conversation, with their sound"
+        "--conversation", metavar="NAME", help=("draw this conversation: all its speakers, with their sound")
     )
     parser.add_argument(
         "--captions",
         action=BooleanOptionalAction,
-        help="show the words of who speaks (default: as the timeline says)",
+        help="show captions (default: as set in the timeline)",
     )
     parser.add_argument(
         "--cuts",
         action=BooleanOptionalAction,
-        help="cut a conversation as its camera lane says, or hold still (default: where there are cuts)",
+        help=(
+            "follow the cuts of the conversation's camera lane, or keep one camera (default: follow "
+            "them, if there are any)"
+        ),
     )
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
-    parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
-    parser.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")
+    parser.add_argument("--fps", type=float, default=30.0, help="frames a second of a video (default: 30)")
+    parser.add_argument(
+        "--frames", type=int, default=24, help=("number of pictures on a contact sheet (default: 24)")
+    )
     parser.add_argument(
         "--sticks", action="store_true", help="draw a stick figure where a character has no mesh"
     )
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
     from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO
 
-    parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="what it is lit by")
-    parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="what is behind it")
+    parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="the light")
+    parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="the background")
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
@@ -93,7 +98,7 @@ def read_size(text: str) -> tuple[int, int]:
     except ValueError:
         raise ValueError(f"a size is given as 960x540, not {text!r}") from None
     if not (16 <= width <= 7680 and 16 <= height <= 7680):
-        raise ValueError("a size lies between 16x16 and 7680x7680")
+        raise ValueError("--size must be between 16x16 and 7680x7680")
     return width, height
 
 
@@ -205,13 +210,13 @@ def _actor(figure: Any, shown: ShownPlayback, times: Any) -> Any:
 def run(options: Namespace) -> int:
     project = open_for_command(options.project)
     if project.skeleton is None:
-        raise ValueError("the project has no clips; there is nothing to draw")
+        raise ValueError("the project has no clips to draw")
     if not 1 <= options.fps <= 240:
-        raise ValueError("a video has 1 to 240 pictures a second")
+        raise ValueError("--fps must be 1 to 240")
     if not 2 <= options.frames <= 1000:
-        raise ValueError("a contact sheet has 2 to 1000 pictures")
+        raise ValueError("--frames must be 2 to 1000")
     if not 0 <= options.start <= 36000:
-        raise ValueError("a performance is written from 0 to 36000 seconds on")
+        raise ValueError("--start must be 0 to 36000 seconds")
     if options.out.suffix not in (".png", ".mp4", *MOTION):
         name = options.out.suffix or options.out.name
         raise ValueError(

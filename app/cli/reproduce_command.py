@@ -20,11 +20,13 @@ def add_arguments(parser: ArgumentParser) -> None:
         "exhibits",
         nargs="*",
         metavar="EXHIBIT",
-        help="exhibits by name, or papers with all of theirs (default: all; --list names them)",
+        help=(
+            "tables and figures by name, or papers for all of theirs (default: all; --list shows the names)"
+        ),
     )
     parser.add_argument("--into", type=Path, metavar="FOLDER", help="write report.html and report.json there")
     parser.add_argument(
-        "--list", action="store_true", help="say which exhibits there are and how long each takes"
+        "--list", action="store_true", help="list the tables and figures, and how long each takes"
     )
     parser.add_argument(
         "--project", type=Path, metavar="FILE", help="your project (default: the sample project)"
@@ -33,16 +35,21 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--takes",
         type=Path,
         metavar="FOLDER",
-        help="your recorded conversations: clips with sound, and words, beside them (default: made-up ones)",
+        help=(
+            "your recorded conversations: clips with their sounds and transcripts in one folder "
+            "(default: synthetic ones)"
+        ),
     )
     parser.add_argument(
         "--model",
         type=Path,
         metavar="FILE",
-        help="a learned generator (.mgmodel; default: the one that comes with the program)",
+        help="a learned model (.mgmodel; default: the one that comes with Metagraph)",
     )
     parser.add_argument(
-        "--full", action="store_true", help="as much made-up motion as the papers recorded, and more draws"
+        "--full",
+        action="store_true",
+        help=("use as much synthetic motion as the papers recorded, and more bootstrap draws"),
     )
 
 
@@ -59,7 +66,7 @@ def run(options: Namespace) -> int:
     if options.list:
         return _list(options, exhibits)
     if options.into is None:
-        raise ValueError("say where the report goes: --into FOLDER; or --list for what there is")
+        raise ValueError("give a folder for the report with --into FOLDER, or use --list")
     claim(options.into / "report.html", options.into / "report.json")
     material = _material(options)
     made = []
@@ -69,7 +76,7 @@ def run(options: Namespace) -> int:
         shown, seconds = _made(exhibit, material)
         made.append((exhibit, shown, seconds))
     told = {"Metagraph": __version__, "project": material.project.name}
-    told["conversations"] = material.told or "made up"
+    told["conversations"] = material.told or "synthetic"
     content = {
         "report.html": format_exhibits(made, told),
         "report.json": json.dumps(

@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "audio",
         type=Path,
         nargs="+",
-        help="a sound with one channel a speaker, or one file for each",
+        help="a sound with one channel per speaker, or one file per speaker",
     )
     parser.add_argument(
         "--words",
@@ -39,18 +39,20 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one for each "
-        "(default: loudness tells)",
+        help=(
+            "transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one "
+            "per speaker (default: use loudness)"
+        ),
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
-    add_language_arguments(parser, "as the project is set to, else auto")
+    add_language_arguments(parser, "the project's language, else auto")
     parser.add_argument(
         "--speakers",
         metavar="NAMES",
-        help="who of them takes part, in which order, with commas: 'Ann,Cleo', or numbers (default: all)",
+        help="the speakers who take part, in order: 'Ann,Cleo', or numbers (default: all)",
     )
-    parser.add_argument("--project", type=Path, help="keep it in this project")
-    parser.add_argument("--name", help="what the conversation is called (default: as the sound)")
+    parser.add_argument("--project", type=Path, help="save the conversation in this project")
+    parser.add_argument("--name", help="name of the conversation (default: the sound's name)")
 
 
 def run(options: Namespace) -> int:

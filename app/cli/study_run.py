@@ -12,9 +12,13 @@ PROBLEMS = 3
 def run_arguments(parser: ArgumentParser) -> None:
     """Add the options of `run`."""
     parser.add_argument("study", type=Path, help="a study file, or the folder it is in")
-    parser.add_argument("--participant", metavar="ID", help="who takes part (default: it is asked)")
     parser.add_argument(
-        "--experimenter", action="store_true", help="notes are the experimenter's, not the participant's"
+        "--participant", metavar="ID", help=("the participant's pseudonym (default: the window asks)")
+    )
+    parser.add_argument(
+        "--experimenter",
+        action="store_true",
+        help=("record notes as the experimenter, not as the participant"),
     )
 
 
@@ -71,7 +75,7 @@ def check_study(options: Namespace) -> int:
         print(study.plan.title)
         for who, blocks, stands in rows:
             order = "; ".join(f"{condition}: {', '.join(tasks)}" for condition, tasks in blocks)
-            order = order or "drawn when they begin"
+            order = order or "drawn at the start"
             print(f"  {who}  {order}  ({stands})")
         for problem in problems:
             print(f"problem: {problem}")

@@ -26,12 +26,15 @@ def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
         required=required,
         default=[],
         metavar="FILE",
-        help="what was said in each take: .eaf, .TextGrid or a conversation's .json, called as the take is",
+        help="what was said in each take: .eaf, .TextGrid or a conversation's .json, with the take's name",
     )
     parser.add_argument(
         "--side",
         default="1",
-        help="whose motion the takes are: a number in the files' order, or a name (default: 1)",
+        help=(
+            "the speaker whose motion the takes are: a number in the order of the files, or a name "
+            "(default: 1)"
+        ),
     )
 
 
@@ -50,7 +53,7 @@ def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
             raise FileError(
                 path,
                 "there is no such file or folder",
-                "on reading takes",
+                "while reading takes",
                 "Give clip files, folders of them, or projects.",
             )
         if path.suffix in (".yaml", ".yml"):
@@ -66,8 +69,8 @@ def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
     if not out:
         raise FileError(
             paths[0],
-            "it holds no clips",
-            "on reading takes",
+            "has no clips",
+            "while reading takes",
             "Give clip files, folders of them, or projects.",
         )
     twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
@@ -95,7 +98,7 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
     if made is None:
         told = read_transcript(path)
         if not any(told.segments.values()):
-            raise FileError(path, "it holds no clauses, responses and hesitations", "", _SAVED)
+            raise FileError(path, "has no clauses, responses or hesitations", "", _SAVED)
         names = [
             n
             for n in dict.fromkeys((*told.speakers, *told.segments))
@@ -155,7 +158,7 @@ def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
         return speakers[name] if name in speakers else next(iter(speakers.values()))
     if number < len(speakers):
         return list(speakers.values())[number]
-    raise FileError(path, "it holds no words", "", "Give a transcript with words and their times.")
+    raise FileError(path, "has no words", "", "Give a transcript with words and their times.")
 
 
 def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
@@ -163,7 +166,7 @@ def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[s
     takes = read_take_files(options.takes)
     files = {path.stem: path for path in options.speech}
     if len(files) < len(options.speech):
-        raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
+        raise ValueError("two speech files have the same name: rename one")
     missing = [n for n, _ in takes if n not in files]
     left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
     if missing or left:
