@@ -1,4 +1,4 @@
-"""What the commands share: a project read, a performance planned, words or JSON said."""
+"""What commands share: they read a project, plan a performance, and print words or JSON."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def run_until_stopped() -> Iterator[None]:
 
 
 def open_for_command(path: Path) -> Project:
-    """Read a project with what it names, which the command must not write over; say what is odd about it."""
+    """Read a project, protect the files that it names from the command, and print what is odd about it."""
     found = open_whole(path)
     declare_inputs(*files_of(found.project, path.resolve().parent))
     for note in found.notes:
@@ -57,13 +57,13 @@ def explain_code_3(why: str) -> None:
 
 
 def stage_performance(project: Project, options: Namespace) -> Plan:
-    """Return the performance that is asked for, or an improvised one; its length goes into the options."""
+    """Return the requested performance, or an improvised one, and set the option of its length."""
     kept = _kept(project, options.performance) if options.performance is not None else None
     if options.seconds is None:
         length = kept.length if kept is not None else options.usual_seconds
         options.seconds = max(0.0, length - options.start)
     if not 0 < options.seconds <= LONGEST:
-        raise ValueError(f"a performance lasts more than 0 and at most {LONGEST} seconds")
+        raise ValueError(f"--seconds must be more than 0 and at most {LONGEST}")
     length = options.start + options.seconds
     if options.start and kept is not None:  # a part is the same as in the whole
         length = max(length, kept.length)
@@ -79,7 +79,7 @@ def _kept(project: Project, name: str) -> Performance:
     found = next((p for i, p in project.performances.items() if name in (i, p.name)), None)
     if found is None:
         names = ", ".join(f"'{p.name}'" for p in project.performances.values()) or "none"
-        raise ValueError(f"there is no performance '{name}' in the project; it keeps {names}")
+        raise ValueError(f"there is no performance '{name}' in the project; it has {names}")
     return found
 
 
@@ -94,8 +94,8 @@ def may_delete(options: Namespace, folder: Path) -> bool:
     if options.yes:
         return True
     if options.json or not sys.stdin.isatty():
-        raise ValueError(f"deleting {folder} cannot be taken back: say --yes")
-    asked = f"Delete {folder} and all that is in it? It cannot be taken back. [y/N] "
+        raise ValueError(f"deleting {folder} cannot be undone: confirm with --yes")
+    asked = f"Delete {folder} and everything in it? This cannot be undone. [y/N] "
     return input(asked).lower() == "y"
 
 
@@ -108,7 +108,7 @@ def add_performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     parser.add_argument(
         "--performance",
         metavar="NAME",
-        help=("play this saved performance of the project (default: improvise)"),
+        help="play this saved performance of the project (default: improvise)",
     )
     parser.add_argument(
         "--mode",
@@ -118,5 +118,5 @@ def add_performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     parser.add_argument(
         "--seed",
         type=int,
-        help=("random seed; another seed gives another performance (default: the project's seed)"),
+        help="random seed; another seed gives another performance (default: the project's seed)",
     )

@@ -29,12 +29,12 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--targets", action="store_true", help="list the targets")
     parser.add_argument(
-        "--watch", action="store_true", help=("keep running, and export again whenever the project is saved")
+        "--watch", action="store_true", help="keep running, and export again whenever the project is saved"
     )
     parser.add_argument(
         "--serve",
         action="store_true",
-        help=("keep running, and serve the web page to a browser on this computer"),
+        help="keep running, and serve the web page to a browser on this computer",
     )
     parser.add_argument("--vectors", action="store_true", help="also write conformance vectors for runtimes")
     parser.add_argument(
@@ -46,10 +46,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--compress",
         action="store_true",
-        help=(
-            "compress the GLB with EXT_meshopt_compression: half the size, for runtimes and viewers "
-            "that support it"
-        ),
+        help="compress the GLB with EXT_meshopt_compression: half the size, for runtimes and viewers "
+        "that support it",
     )
     parser.add_argument(
         "--overwrite",
@@ -64,11 +62,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar="FOLDER",
         help="also copy sounds of lines from this folder outside the project's folder",
     )
-    parser.add_argument("--no-mesh", action="store_true", help=("write the GLB without the character's mesh"))
+    parser.add_argument("--no-mesh", action="store_true", help="write the GLB without the character's mesh")
 
 
 def run(options: Namespace) -> int:
-    """Write a project for a target; with `watch` and `serve` go on until told to stop."""
+    """Write a project for a target; with `watch` and `serve` keep running until the user stops it."""
     from metagraph.engines.targets import registry
 
     if options.targets:
@@ -111,7 +109,7 @@ def _go_on(options: Namespace) -> None:
         _once(options)
     if options.serve:
         options.out.mkdir(parents=True, exist_ok=True)
-        print(f"the page is at {Served(options.out).url} (Ctrl+C stops)", file=sys.stderr, flush=True)
+        print(f"the page is at {Served(options.out).url} (stop with Ctrl+C)", file=sys.stderr, flush=True)
     if options.watch:
         _watch(options)
     while True:
@@ -119,7 +117,7 @@ def _go_on(options: Namespace) -> None:
 
 
 def _watch(options: Namespace) -> None:
-    """Export, and again after each saving; what goes wrong is told, and the next saving tried."""
+    """Export, and export again after each save. An error is printed, and the next save is tried."""
     seen: tuple[int, int] | None = None
     while True:
         now = _state(options.project)
@@ -181,7 +179,7 @@ def _once(options: Namespace) -> None:
         )
         if graph is None:
             print(
-                f"note: target '{options.target}' is not played by a runtime: there are no vectors for it",
+                f"note: target '{options.target}' has no runtime, so there are no vectors for it",
                 file=sys.stderr,
             )
         else:

@@ -40,25 +40,23 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     made.add_argument("-o", "--out", type=Path, required=True, help="the folder to write into")
     made.add_argument(
-        "--count", type=int, default=25, help=("number of conversations, of two takes each (default: 25)")
+        "--count", type=int, default=25, help="number of conversations, of two takes each (default: 25)"
     )
     made.add_argument(
-        "-s", "--seconds", type=float, default=180.0, help=("seconds of each conversation (default: 180)")
+        "-s", "--seconds", type=float, default=180.0, help="seconds of each conversation (default: 180)"
     )
     made.add_argument("--seed", type=int, default=1, help="random seed of the speech (default: 1)")
     made.add_argument(
         "--moves",
         type=int,
         default=1,
-        help=(
-            "random seed of the motion; another seed gives another performance of the same speech "
-            "(default: 1)"
-        ),
+        help="random seed of the motion; another seed gives another performance of the same speech "
+        "(default: 1)",
     )
     made.add_argument(
         "--project",
         type=Path,
-        help=("the project whose graph moves both speakers (default: the sample project)"),
+        help="the project whose graph moves both speakers (default: the sample project)",
     )
 
 
@@ -78,14 +76,14 @@ def write_planted_takes(options: Namespace) -> int:
     project = open_for_command(SAMPLE if own else options.project)
     for name in ("seed", "moves"):
         if getattr(options, name) < 0:
-            raise ValueError(f"--{name} is a whole number from 0 on")
+            raise ValueError(f"--{name} must be a whole number, 0 or more")
     asked = Planted(count=options.count, seconds=options.seconds, seed=options.seed, moves=options.moves)
     licence = "MIT: synthetic speech, and motion of Metagraph's own sample clips." if own else ""
     new = write_planted(project, options.out, asked, licence, make_progress_printer(options, "conversations"))
     hours = 2 * asked.count * asked.seconds / 3600
     words = (
         f"{asked.count} conversations, {2 * asked.count} takes, {hours:.2f} h in {options.out} "
-        f"({new} new, {asked.count - new} were there)"
+        f"({new} new, {asked.count - new} made earlier)"
     )
     data = {"folder": str(options.out), "conversations": asked.count, "new": new, "hours": round(hours, 4)}
     say(options, words, data)

@@ -44,31 +44,29 @@ def add_heard_arguments(parser: ArgumentParser, needed: bool) -> None:
         type=Path,
         nargs="+",
         metavar="FILE",
-        help=(
-            "transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: a file named "
-            "like the sound, else loudness)"
-        ),
+        help="transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: a file named "
+        "like the sound, else loudness)",
     )
     add_language_arguments(parser)
     parser.add_argument(
-        "--side", type=int, choices=(1, 2), default=1, help=("the speaker who moves (default: 1)")
+        "--side", type=int, choices=(1, 2), default=1, help="the speaker who moves (default: 1)"
     )
     parser.add_argument(
-        "--seed", type=int, default=1, help=("random seed; another seed gives another take (default: 1)")
+        "--seed", type=int, default=1, help="random seed; another seed gives another take (default: 1)"
     )
     parser.add_argument(
-        "--temperature", type=float, default=1.0, help=("how much the motion varies, 0 to 1.2 (default: 1)")
+        "--temperature", type=float, default=1.0, help="how much the motion varies, 0 to 1.2 (default: 1)"
     )
     parser.add_argument("--guidance", type=float, help="how closely a matching model follows the speech")
     parser.add_argument(
         "--lookahead",
         type=int,
-        help=("frames of sound the model hears ahead; 0 for live use (default: as many as the model uses)"),
+        help="frames of sound the model hears ahead; 0 for live use (default: as many as the model uses)",
     )
     parser.add_argument(
         "--activity",
         choices=ROLES,
-        help=("play this role throughout: 'listening' makes a listener (default: the role of the recording)"),
+        help="play this role throughout: 'listening' makes a listener (default: the role of the recording)",
     )
     parser.add_argument(
         "--from",
@@ -88,11 +86,9 @@ def cut_arguments(parser: ArgumentParser) -> None:
         "--minutes",
         type=float,
         default=3.0,
-        help=("minutes of motion to generate, from several seeds (default: 3)"),
+        help="minutes of motion to generate, from several seeds (default: 3)",
     )
-    parser.add_argument(
-        "--least", type=float, default=1.0, help=("seconds of the shortest clip (default: 1)")
-    )
+    parser.add_argument("--least", type=float, default=1.0, help="seconds of the shortest clip (default: 1)")
     parser.add_argument("--most", type=float, default=8.0, help="seconds of the longest clip (default: 8)")
     parser.add_argument("--project", type=Path, help="add the clips to this project")
 
@@ -169,7 +165,7 @@ def _words_beside(sound: Path) -> list[Path]:
 
 
 def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
-    """Raise FileError where a sound cannot be used; tell where it is cut off."""
+    """Raise FileError if a sound cannot be used; warn if it clips."""
     import numpy as np
 
     from metagraph.errors import FileError
@@ -185,7 +181,7 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
         raise FileError(place, "is silent", remedy="Check the microphone, or what was exported.")
     if max(speech.clipped, default=0.0) > 1e-4:
         share = 100 * max(speech.clipped)
-        print(f"note: {share:.2g} % of the sound is clipped. Record it at a lower level", file=sys.stderr)
+        print(f"note: {share:.2g} % of the sound clips. Record it at a lower level", file=sys.stderr)
 
 
 def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:
@@ -198,12 +194,12 @@ def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int)
             print("note: the sound has only the speaker's voice; the partner stays silent", file=sys.stderr)
         return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
-        print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)
+        print(f"note: side {options.side} does not speak, so it listens", file=sys.stderr)
     return conversation_activity(speech.conversation, options.side - 1, frames)
 
 
 def as_role(activity: Any, role: str) -> Any:
-    """Return activity in which whoever speaks, this is the role."""
+    """Return activity that gives the speaker this role throughout."""
     import numpy as np
 
     from metagraph.generation.features import BOTH, NONE, PARTNER, SELF
@@ -230,7 +226,7 @@ def make_motion(options: Namespace, model: Model, heard: HeardInput, seed: int) 
             raise FileError(
                 options.first,
                 "has another skeleton than the model",
-                remedy=("Retarget it to the model's skeleton."),
+                remedy="Retarget it to the model's skeleton.",
             )
         first = first_pose(stance)
     return sample_whole(
@@ -255,7 +251,7 @@ def write_motion(options: Namespace) -> int:
 
     out: Path = options.out
     if out.suffix.lower() not in OUT:
-        raise ValueError(f"motion is written as {' or '.join(OUT)}, not as '{out.suffix or out.name}'")
+        raise ValueError(f"motion can be written as {' or '.join(OUT)}, not as '{out.suffix or out.name}'")
     model = read_model(options.model)
     heard = read_heard(options, model.card.tracks)
     clip = make_motion(options, model, heard, options.seed)
@@ -298,7 +294,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
     from metagraph.synthesis.cut import candidates, uncut
 
     if not 0 < options.minutes <= MINUTES:
-        raise ValueError(f"--minutes is above 0 and at most {MINUTES:g}, not {options.minutes:g}")
+        raise ValueError(f"--minutes must be more than 0 and at most {MINUTES:g}, not {options.minutes:g}")
     model = read_model(options.model)
     heard = read_heard(options, model.card.tracks)
     out: Path = options.out
@@ -339,7 +335,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
 
 
 def _added(output: ProjectOutput, files: list[Path]) -> int:
-    """Add pieces to a project; return how many. Their names, and so their entries, tell model and seed."""
+    """Add pieces to a project and return how many. Their names have the model and the seed."""
     from app.cli.command_output import open_for_command
     from metagraph.formats.imports import import_files
 
@@ -353,7 +349,7 @@ def _added(output: ProjectOutput, files: list[Path]) -> int:
 
 
 def print_model(options: Namespace) -> int:
-    """Tell what a model is."""
+    """Describe a model."""
     import msgspec
 
     from app.cli.command_output import say

@@ -63,7 +63,7 @@ table {{ font-size: 12px; }} td:first-child {{ min-width: 110px; }} td .dim {{ f
 
 
 def report_as_data(rows: Sequence[MeasureRow], told: dict[str, Any]) -> dict[str, Any]:
-    """Return the table as plain data; what is unknown is null. told: what stands beside the rows."""
+    """Return the table as plain data, with null for unknown values. told: further entries beside the rows."""
 
     def plain(value: float) -> float | None:
         return round(value, 5) if isfinite(value) else None
@@ -80,7 +80,7 @@ def report_as_data(rows: Sequence[MeasureRow], told: dict[str, Any]) -> dict[str
 
 
 def report_as_text(rows: Sequence[MeasureRow]) -> str:
-    """Return the table as text, a line a system."""
+    """Return the table as text, with a line for each system."""
     wide = max([7, *(len(row.name) for row in rows)])
     short = [n.replace("nods_", "nods ").replace("_", " ") for n in NAMES]
     columns = [max(len(n), 6) for n in short]
@@ -94,7 +94,7 @@ def report_as_text(rows: Sequence[MeasureRow]) -> str:
 
 
 def report_as_csv(rows: Sequence[MeasureRow]) -> str:
-    """Return the table as CSV: name, measure, value and its interval a line."""
+    """Return the table as CSV, with name, measure, value and interval in each line."""
     lines = [["system", "measure", "value", "low", "high"]]
     for row in rows:
         for n in NAMES:
@@ -133,7 +133,7 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
     parts.append(
         "<p class='dim'>Under each value what 95 % of draws of blocks of 15 s give. <i>floor</i>: other "
         "motion as true as the recorded one; <i>mismatched</i>: recorded motion to other speech; <i>mean "
-        "pose</i>: somebody who stands still. No value says more than what stands beside it.</p>"
+        "pose</i>: a figure that stands still. Read each value only together with these.</p>"
     )
     words = "".join(f"<dt>{escape(k)}</dt><dd>{escape(v)}</dd>" for k, v in MEANINGS.items())
     parts += [f"<dl>{words}</dl>", "<h2>Figure 6: distance from the mean pose</h2>"]
@@ -157,7 +157,7 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
 
 
 def format_report_table(rows: Sequence[MeasureRow]) -> str:
-    """Return the table as HTML: a measure a line, a system a column."""
+    """Return the table as HTML, with a row for each measure and a column for each system."""
     head = "".join(f"<th>{escape(n)}</th>" for n in ("", *(row.name for row in rows), "perfect"))
     body = []
     for n in NAMES:

@@ -25,18 +25,14 @@ def add_arguments(parser: ArgumentParser) -> None:
         "paths",
         type=Path,
         nargs="*",
-        help=(
-            "clip files and folders (BVH, GLB, glTF, VRM animation, FBX), and other projects, whose "
-            "stances and actions come with their clips"
-        ),
+        help="clip files and folders (BVH, GLB, glTF, VRM animation, FBX), and other projects, whose "
+        "stances and actions come with their clips",
     )
     parser.add_argument(
         "--labels",
         type=Path,
         metavar="FILE",
-        help=(
-            "place the clips and change actions according to this label file (Blender's add-on writes one)"
-        ),
+        help="place the clips and change actions according to this label file (Blender's add-on writes one)",
     )
     parser.add_argument(
         "--retarget", action="store_true", help="retarget clips of other skeletons to the project's"
@@ -143,7 +139,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     }
     imported = describe_import(result, window=False)
     if again:
-        imported += f" ({len(result.loaded) - again} new, {again} here already and read again)"
+        imported += f" ({len(result.loaded) - again} new, {again} read again)"
     found = [*taken, *([imported] if files or not taken else [])]
     words = f"{path}: {'. '.join(found)}"
     say(options, words if options.labels is None else f"{words}. Labelled {placed} of {len(rows)}", data)

@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--learned",
         action="store_true",
-        help=("also use what you taught Metagraph in the window: corrections, name patterns, saved projects"),
+        help="also use what you taught Metagraph in the window: corrections, name patterns, saved projects",
     )
     parser.add_argument(
         "--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)"
@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--retarget",
         action="store_true",
-        help=("retarget clips of other skeletons to the skeleton that most clips have"),
+        help="retarget clips of other skeletons to the skeleton that most clips have",
     )
     parser.add_argument(
         "--no-contacts",
@@ -72,10 +72,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=60.0,
         metavar="SECONDS",
-        help=(
-            "play the result for this many seconds and each action once, and report visible faults; 0 "
-            "skips this (default: 60)"
-        ),
+        help="play the result for this many seconds and each action once, and report visible faults; 0 "
+        "skips this (default: 60)",
     )
     parser.add_argument("--no-pictures", action="store_true", help="write the report without pictures")
 
@@ -89,7 +87,7 @@ def run(options: Namespace) -> int:
     from metagraph.formats.store import SUFFIX
 
     if not 0 <= options.play <= LONGEST:
-        raise ValueError(f"--play takes 0 to {LONGEST} seconds")
+        raise ValueError(f"--play must be 0 to {LONGEST} seconds")
     source: Path = options.folder
     if not source.exists():
         raise FileError(
@@ -177,7 +175,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     for line in gaps:
         print(f"no bridge: {line}", file=sys.stderr)
     for why, clips in reasons(found.aside):
-        print(f"aside: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
+        print(f"skipped: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for why, clips in reasons(taken.left):
         print(f"left: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for message in errors:
@@ -214,7 +212,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
 
 
 def _exit_code(left: int, errors: int, faults: int) -> int:
-    """Return the exit code, and say on the terminal why it is not 0."""
+    """Return the exit code, and print why it is not 0."""
     from app.cli.command_output import explain_code_3
     from metagraph.formats.project.verified import count_in_words
 
@@ -230,7 +228,7 @@ def _exit_code(left: int, errors: int, faults: int) -> int:
 
 
 def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
-    """Return what became of a project that clips were added to, in words and as data."""
+    """Return words and data about a project to which clips were added."""
     counts = {
         "added": len(begun.clips or ()),
         "skipped": begun.skipped,
@@ -243,9 +241,9 @@ def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
     )
     words += "unchanged actions"
     if begun.skipped:
-        words += f"; skipped {begun.skipped} clips that it has already"
+        words += f"; skipped {begun.skipped} clips that it already has"
     if begun.waiting:
-        words += f"; {begun.waiting} of its clips wait to be labelled: metagraph label {path}"
+        words += f"; {begun.waiting} of its clips have no label yet: metagraph label {path}"
     if not begun.clips:
         words += (
             "; nothing was changed. Add --overwrite to make the project again and keep this one as a version"
@@ -368,7 +366,7 @@ def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Proj
 
 
 def _free_report(path: Path) -> Path:
-    """Return where the report goes: beside the project, and over nothing but an earlier report."""
+    """Return the path of the report: beside the project. It replaces nothing but an earlier report."""
     from metagraph.errors import FileError
     from metagraph.formats.outputs import claim
     from metagraph.formats.store import SUFFIX

@@ -1,4 +1,4 @@
-"""The pictures of the label report: each clip at its most telling pose, each stance as it rests."""
+"""Draw the pictures of the label report: each clip in its clearest pose, each stance at rest."""
 
 from __future__ import annotations
 

@@ -28,52 +28,48 @@ if TYPE_CHECKING:
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
     parser.add_argument(
-        "--port", type=int, help=f"of the WebSocket, 0 for any that is free (default: {PORT})"
+        "--port", type=int, help=f"the port of the WebSocket, 0 for any free port (default: {PORT})"
     )
     parser.add_argument("--osc-port", type=int, metavar="PORT",
-                        help=f"of OSC over UDP, 0 for any that is free (default: {OSC_PORT})")  # fmt: skip
+                        help=f"the UDP port of OSC, 0 for any free port (default: {OSC_PORT})")  # fmt: skip
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
     parser.add_argument(
         "--no-stdin",
         action="store_true",
-        help=("do not read requests from standard input, and keep running when it ends"),
+        help="do not read requests from standard input, and keep running when it ends",
     )
     parser.add_argument(
         "--mcp", action="store_true",
-        help=("speak the Model Context Protocol on standard input and output, for language models; "
-             "WebSocket and OSC listen only if a port is given"),
+        help="speak the Model Context Protocol on standard input and output, for language models; "
+             "WebSocket and OSC listen only if a port is given",
     )  # fmt: skip
     parser.add_argument(
         "--host",
         default="",
-        help=("the network address to listen on (default: this computer only); needs a token"),
+        help="the network address to listen on (default: this computer only); needs a token",
     )
-    parser.add_argument(
-        "--token", help=("the token that clients must send first (default: $METAGRAPH_TOKEN)")
-    )
+    parser.add_argument("--token", help="the token that clients must send first (default: $METAGRAPH_TOKEN)")
     parser.add_argument(
         "--origin",
         action="append",
         default=[],
-        help=('let web pages of this origin connect; "null" for pages opened from disk'),
+        help='let web pages of this origin connect; "null" for pages opened from disk',
     )
     parser.add_argument(
         "--seed",
         type=kept_seed,
-        help=("random seed; another seed gives another performance (default: the project's seed)"),
+        help="random seed; another seed gives another performance (default: the project's seed)",
     )
     parser.add_argument(
-        "--no-idle", action="store_true", help=("play only what is requested, without idle actions")
+        "--no-idle", action="store_true", help="play only what is requested, without idle actions"
     )
     parser.add_argument(
         "--keep",
         metavar="NAME",
         type=kept_name,
-        help=(
-            "save the requests as a performance of the project at the end, and the motion of a motion "
-            "graph in a file next to it"
-        ),
+        help="save the requests as a performance of the project at the end, and the motion of a motion "
+        "graph in a file next to it",
     )
     live_graph_options.add_arguments(parser)
 
@@ -123,7 +119,7 @@ def run(options: Namespace) -> int:
 
 
 def _port(options: Namespace, none: bool, named: int | None, usual: int) -> int | None:
-    """Return the port to listen on, None for none."""
+    """Return the port to listen on, or None."""
     if none or (options.mcp and named is None):
         return None
     return usual if named is None else named
@@ -181,7 +177,7 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     ways += [f"OSC on {ready.osc[0]}, port {ready.osc[1]}"] if ready.osc is not None else []
     token = "; clients need the token" if ready.token else ""
     print(
-        f"The character listens: {', '.join(ways) or 'to nobody'}{token}. Ctrl+C ends it.",
+        f"The character listens: {', '.join(ways) or 'to no one'}{token}. Stop with Ctrl+C.",
         file=sys.stderr,
         flush=True,
     )
@@ -205,7 +201,7 @@ def _keep(session: LiveSession, options: Namespace) -> None:
             output.save(project)
     except (FileError, ValueError, RuntimeError) as error:
         place = _kept_beside(session.project, played, options.project)
-        remedy = f"What was played is kept in '{place}', which can be opened." if place is not None else ""
+        remedy = f"The performance was saved in '{place}', which you can open." if place is not None else ""
         if place is None:
             import msgspec
 
@@ -213,7 +209,7 @@ def _keep(session: LiveSession, options: Namespace) -> None:
             remedy = "No file could be written, so the performance was printed to standard output."
         cause = error.cause if isinstance(error, FileError) else str(error)
         raise FileError(options.project, cause, getattr(error, "where", ""), remedy) from None
-    print(f"kept as '{project.performances[ident].name}'", file=sys.stderr)
+    print(f"saved as '{project.performances[ident].name}'", file=sys.stderr)
 
 
 def _kept_beside(project: Project, played: Performance, path: Path) -> Path | None:

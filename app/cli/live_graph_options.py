@@ -1,4 +1,4 @@
-"""What `metagraph live` is told of a motion graph that moves the character, and of a voice that it plays."""
+"""Options of `metagraph live` for a motion graph that moves the character, and for a voice that it plays."""
 
 from __future__ import annotations
 
@@ -46,9 +46,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--announce",
         type=float,
         metavar="SECONDS",
-        help=(
-            "announce the clauses of --voice this many seconds ahead (default: the character only hears them)"
-        ),
+        help="announce the clauses of --voice this many seconds ahead (default: not announced)",
     )
 
 
@@ -67,7 +65,7 @@ def require_consistent_options(options: Namespace) -> None:
 
 
 def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
-    """Return the motion graph of the takes that were given, else of the project's own, by name. Raises
+    """Return the motion graph of the given takes, or else of the project's own takes, by name. Raises
     FileError and ValueError.
     """
     from metagraph.live.graph_motion import list_recorded_takes, live_graph
@@ -80,7 +78,9 @@ def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
             graph = live_graph(own, told)
             graph.warm(project)
         except (ValueError, RuntimeError) as error:
-            print(f"note: the project's own takes make no motion graph: {error}", file=sys.stderr)
+            print(
+                f"note: no motion graph can be built from the project's own takes: {error}", file=sys.stderr
+            )
             return {}
         return {NAME: graph}
     from app.cli.takes import pair_speech
@@ -91,7 +91,7 @@ def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
     if not graph.fits(project):
         raise ValueError(
             f"take '{clips[0].name}' has another skeleton than the character: bring the takes onto it with "
-            "--retarget, or give takes of its own"
+            "--retarget, or give takes of the character itself"
         )
     graph.warm(project)
     print(f"note: the motion graph has {kept:,} states and {edges:,} transitions", file=sys.stderr)
@@ -126,7 +126,7 @@ def read_live_voice(options: Namespace, graphs: Mapping[str, LiveGraph]) -> Play
 
 
 def keep_motion(session: LiveSession, options: Namespace) -> None:
-    """Keep what the graph's motion can be made again of, in a file beside the project. Raises FileError."""
+    """Save data to make the graph's motion again, in a file beside the project. Raises FileError."""
     motions = session.generating.motions()
     if not motions:
         return

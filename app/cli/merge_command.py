@@ -94,7 +94,7 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
     except MergeError as error:
         raise FileError(
             options.theirs,
-            phrase("does not go together with ours: {error}", error=error),
+            phrase("cannot be merged with ours: {error}", error=error),
             phrase("the project"),
             phrase("Open one of the two and import the other into it (File > Import > Import project)."),
         ) from None
@@ -102,7 +102,7 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
     for line in found.kept:
         print(f"{name}: {line}", file=sys.stderr)
     count = len(found.kept)
-    words = f"{name}: merged" + (f"; {count} to look at, listed above" if count else "")
+    words = f"{name}: merged" + (f"; look at the {count} listed above" if count else "")
     say(options, words, {"output": str(output.path), "conflicts": list(map(str, found.kept))})
     return 3 if found.kept else 0
 

@@ -1,4 +1,4 @@
-"""`metagraph mimic`: what stances a person's keypoints show, and the character doing as they do."""
+"""`metagraph mimic`: recognise stances in a person's keypoints, and let the character mimic them."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--seed",
         type=int,
-        help=("random seed; another seed gives another performance (default: the project's seed)"),
+        help="random seed; another seed gives another performance (default: the project's seed)",
     )
     parser.add_argument(
         "--size", default="960x540", help="width x height of the pictures in pixels (default: 960x540)"
@@ -81,9 +81,9 @@ def run(options: Namespace) -> int:
 
     if options.out is not None and options.out.suffix not in OUT:
         name = options.out.suffix or options.out.name
-        raise ValueError(f"it is written as {', '.join(OUT)}, not as '{name}'")
+        raise ValueError(f"the file can be {', '.join(OUT)}, not '{name}'")
     if options.take is not None and options.take.suffix not in TAKES:
-        raise ValueError(f"a take is written as {' or '.join(TAKES)}, not as '{options.take.suffix}'")
+        raise ValueError(f"a take can be written as {' or '.join(TAKES)}, not as '{options.take.suffix}'")
     picture = read_size(options.picture) if options.picture else None
     size = read_size(options.size)
     with ProjectOutput(options.project) if options.keep is not None else nullcontext() as output:
@@ -96,7 +96,7 @@ def _mimicked(
     size: tuple[int, int],
     output: ProjectOutput | None,
 ) -> int:
-    """output: where the project is saved, if it is."""
+    """output: the path at which the project is saved, or None."""
     from app.cli.command_output import open_for_command
     from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.graph.requests import Performance
@@ -202,7 +202,7 @@ def _write(
 
 
 def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
-    """Return of each sighting what was seen and when, and from when to when the character goes there."""
+    """Return what was seen and when, and when the character goes there, for each sighting."""
     from metagraph.playback.planning.extend_performance import answer_ask
 
     rows = []

@@ -18,7 +18,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help=f"put the character in a mood: {', '.join(FEELINGS)}, or 'valence,arousal'",
     )
     parser.add_argument(
-        "--intensity", type=float, help=("how large gestures play, 0 to 2; 1 is the size of the clips")
+        "--intensity", type=float, help="how large gestures play, 0 to 2; 1 is the size of the clips"
     )
     parser.add_argument(
         "--from-voices",
@@ -28,7 +28,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Tell moods; set those that are asked for, and keep them in the project."""
+    """Print the moods; set the requested ones and save them in the project."""
     from metagraph.graph.editing.performances import set_life
     from metagraph.playback.planning.understand import read_mood
 
@@ -62,7 +62,7 @@ def _said(options: Namespace, project: Project) -> int:
 
 
 def _mood(word: str | None) -> str | tuple[float, ...] | None:
-    """Return the mood a word means. Raises ValueError where it means none."""
+    """Return the mood that a word stands for. Raises ValueError for an unknown word."""
     if word is None or word in FEELINGS:
         return word
     try:
@@ -70,5 +70,7 @@ def _mood(word: str | None) -> str | tuple[float, ...] | None:
     except ValueError:
         point = ()
     if len(point) != 2 or not all(-1 <= x <= 1 for x in point):
-        raise ValueError(f"there is no mood '{word}'; there are {', '.join(FEELINGS)}, and 'valence,arousal'")
+        raise ValueError(
+            f"there is no mood '{word}'; the moods are {', '.join(FEELINGS)}, and 'valence,arousal'"
+        )
     return point

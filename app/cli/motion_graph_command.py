@@ -76,13 +76,13 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def _graph_options(out: ArgumentParser, k: bool = True) -> None:
-    """Add what the transitions of a graph may cost, and where they are."""
+    """Add the options of a graph's transitions."""
     if k:
         out.add_argument(
             "--k",
             type=int,
             default=3,
-            help=("frames between two poses whose difference sets the threshold of transitions (default: 3)"),
+            help="frames between two poses whose difference sets the threshold of transitions (default: 3)",
         )
     out.add_argument(
         "--level",
@@ -99,12 +99,12 @@ def _graph_options(out: ArgumentParser, k: bool = True) -> None:
     out.add_argument(
         "--most",
         type=int,
-        help=("keep only this many of the cheapest transitions of each frame (default: all)"),
+        help="keep only this many of the cheapest transitions of each frame (default: all)",
     )
 
 
 def _synthesize_options(made: ArgumentParser) -> None:
-    """Add for which speech motion is made, and how it is searched."""
+    """Add the options of the speech, and of the search."""
     _graph_options(made)
     wanted = made.add_mutually_exclusive_group(required=True)
     wanted.add_argument(
@@ -117,7 +117,7 @@ def _synthesize_options(made: ArgumentParser) -> None:
         "--again",
         type=Path,
         metavar="FILE",
-        help=("make the motion of a live session again, from the file of `live --keep`"),
+        help="make the motion of a live session again, from the file of `live --keep`",
     )
     made.add_argument(
         "--start", type=float, default=0.0, help="second of the speech to start at (default: 0)"
@@ -126,7 +126,7 @@ def _synthesize_options(made: ArgumentParser) -> None:
         "-s",
         "--seconds",
         type=float,
-        help=("length in seconds (default: 15, or to the end of a shorter speech)"),
+        help="length in seconds (default: 15, or to the end of a shorter speech)",
     )
     made.add_argument(
         "--search",
@@ -144,7 +144,7 @@ def _synthesize_options(made: ArgumentParser) -> None:
     made.add_argument(
         "--strict",
         action="store_true",
-        help=("fail if the constraints cannot all be met, instead of dropping them one by one"),
+        help="fail if the constraints cannot all be met, instead of dropping them one by one",
     )
     made.add_argument(
         "--free-jumps",
@@ -163,22 +163,22 @@ def _synthesize_options(made: ArgumentParser) -> None:
 
 
 def _evaluate_options(tried: ArgumentParser) -> None:
-    """Add which searches are tried, and how."""
+    """Add the options of the searches."""
     _graph_options(tried)
     tried.add_argument("-o", "--out", type=Path, help="write every case to this .csv file")
     tried.add_argument(
         "--search",
         action="append",
         choices=("exact", "greedy"),
-        help=("evaluate this search only (default: both)"),
+        help="evaluate this search only (default: both)",
     )
     tried.add_argument(
-        "--quick", action="store_true", help=("evaluate with all constraints only, not with each left out")
+        "--quick", action="store_true", help="evaluate with all constraints only, not with each left out"
     )
     tried.add_argument(
         "--live",
         action="store_true",
-        help=("evaluate motion that is extended while it plays, for heard and for announced speech, instead"),
+        help="evaluate motion that is extended while it plays, for heard and for announced speech, instead",
     )
     tried.add_argument("--seed", type=int, default=1, help="random seed of the greedy search (default: 1)")
     add_soft_arguments(tried)
@@ -220,7 +220,7 @@ def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
 
 @contextmanager
 def _until_stopped() -> Iterator[Callable[[], bool]]:
-    """Yield what tells whether Ctrl+C was pressed, so that what is done by then is kept."""
+    """Yield a function that says whether Ctrl+C was pressed, so that finished work can be kept."""
     stopped: list[int] = []
     before = signal.signal(signal.SIGINT, lambda *_: stopped.append(1))
     try:
@@ -231,7 +231,7 @@ def _until_stopped() -> Iterator[Callable[[], bool]]:
 
 def _rates(clips: Sequence[Clip]) -> str:
     other = sum(abs(c.fps - 30) > 1e-6 for c in clips)
-    return f"{other} of {len(clips)} takes were brought to 30 frames a second" if other else ""
+    return f"{other} of {len(clips)} takes were resampled to 30 frames a second" if other else ""
 
 
 # --- what is done
@@ -247,9 +247,9 @@ def _states(clips: Sequence[Clip]) -> States:
 
 def _checked(options: Namespace) -> None:
     if not 0 < options.level < 1:
-        raise ValueError(f"--level is a share between 0 and 1, not {options.level:g}")
+        raise ValueError(f"--level must be between 0 and 1, not {options.level:g}")
     if not 0 < options.keys <= 1:
-        raise ValueError(f"--keys is a share above 0 and up to 1, not {options.keys:g}")
+        raise ValueError(f"--keys must be more than 0 and at most 1, not {options.keys:g}")
     if getattr(options, "k", 3) < 2:
         raise ValueError("--k must be at least 2, since consecutive frames set no useful threshold")
     if options.most is not None and options.most < 1:
@@ -377,7 +377,7 @@ def synthesize(options: Namespace) -> int:
     _checked(options)
     if options.out.suffix not in OUT:
         raise ValueError(
-            f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
+            f"motion can be written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
         )
     wish = read_soft_wish(options)
     clips, spoken, names = pair_takes(options)
@@ -439,11 +439,11 @@ def synthesize(options: Namespace) -> int:
 
 
 def _take_number(take: str, names: list[str]) -> int:
-    """Return the place of a take among all, by name or number from 1. Raises ValueError."""
+    """Return the index of a take, given its name or its number from 1. Raises ValueError."""
     place = names.index(take) if take in names else int(take) - 1 if take.isdecimal() else -1
     if not 0 <= place < len(names):
         raise ValueError(
-            f"there is no take '{take}'; there are {', '.join(names[:10])}, or say 1 to {len(names)}"
+            f"there is no take '{take}'; the takes are {', '.join(names[:10])}, or 1 to {len(names)}"
         )
     return place
 
@@ -454,12 +454,12 @@ def _speech_of_file(options: Namespace, needs_sound: bool) -> SpokenTake:
         read_given_files(options, what).get(options.new.stem) for what in ("sounds", "transcripts")
     )
     if needs_sound and sound is None:
-        raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
+        raise ValueError(f"no sound for {options.new.name}: --sounds has none with this name")
     return read_side_speech(options.new, options.side, sound, transcript)
 
 
 def _seconds(options: Namespace, new: SpokenTake) -> float:
-    """Return how long the motion is to be. Raises FileError, ValueError."""
+    """Return the length of the motion in seconds. Raises FileError, ValueError."""
     from metagraph.errors import FileError
     from metagraph.research.motion_graph.search_evaluation import WINDOW
 
@@ -479,7 +479,7 @@ def _seconds(options: Namespace, new: SpokenTake) -> float:
 
 
 def _path_facts(found: RelaxedAnswer, states: States, looks: PathQuality) -> dict[str, Any]:
-    """Return what there is to tell a program about the path that was found."""
+    """Return data on a path that was found, for programs."""
     path = found.path
     return {
         "transitions": len(path.jumps),
@@ -523,7 +523,7 @@ def _again(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ..
 
 
 def print_evaluation(options: Namespace) -> int:
-    """Print, setting by setting, how much held-out speech finds motion."""
+    """Print for each setting how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
     from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
@@ -561,7 +561,7 @@ def print_evaluation(options: Namespace) -> int:
 
 
 def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
-    """Print how motion that is extended while it plays goes with speech that becomes known bit by bit."""
+    """Print how well motion that is extended while it plays follows speech that becomes known in pieces."""
     from app.cli.command_output import say
     from metagraph.research.motion_graph.extending_evaluation import (
         hold_out_takes,
@@ -576,7 +576,7 @@ def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Seg
 
 
 def print_co_occurrence(options: Namespace) -> int:
-    """Print how often each kind of segment goes with which movement, beside chance."""
+    """Print how often each kind of segment comes with which movement, and how often by chance."""
     from app.cli.command_output import say
     from metagraph.synthesis.cooccurrence import count_cooccurrence as count
 

@@ -21,10 +21,8 @@ def add_soft_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help=(
-            "sounds of the recordings, with the names of the takes and of the speech of --new; a "
-            "sound with two channels has a channel for each speaker"
-        ),
+        help="sounds of the recordings, with the names of the takes and of the speech of --new; a "
+        "sound with two channels has a channel for each speaker",
     )
     group.add_argument(
         "--transcripts",
@@ -32,20 +30,16 @@ def add_soft_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help=(
-            "transcripts with times, with the names of the takes, if the files of --speech have no "
-            "words: .TextGrid, .srt, .vtt, .json …"
-        ),
+        help="transcripts with times, with the names of the takes, if the files of --speech have no "
+        "words: .TextGrid, .srt, .vtt, .json …",
     )
     group.add_argument(
         "--loudness",
         type=float,
         default=0.0,
         metavar="W",
-        help=(
-            "cost of a second whose loudness differs by one standard deviation of the speaker, as a "
-            "share of the threshold (default: 0; try 0.25)"
-        ),
+        help="cost of a second whose loudness differs by one standard deviation of the speaker, as a "
+        "share of the threshold (default: 0; try 0.25)",
     )
     group.add_argument(
         "--rate",
@@ -59,16 +53,14 @@ def add_soft_arguments(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="WORD",
-        help=(
-            'take the motion for this word from where a take says it or a similar word: big, or "big '
-            '= huge, tall"'
-        ),
+        help='take the motion for this word from where a take says it or a similar word: big, or "big '
+        '= huge, tall"',
     )
     group.add_argument(
         "--words",
         type=Path,
         metavar="FILE",
-        help=("a file of such words, one on each line; lines that begin with # are comments"),
+        help="a file of such words, one on each line; lines that begin with # are comments",
     )
     group.add_argument(
         "--word-price",
@@ -87,15 +79,13 @@ def add_soft_arguments(parser: ArgumentParser) -> None:
         type=float,
         default=0.0,
         metavar="PERCENT",
-        help=(
-            "change the speed by up to this much, outside strokes, steps and transitions, where that "
-            "improves the timing of starts, ends and stresses (default: 0; try 15)"
-        ),
+        help="change the speed by up to this much, outside strokes, steps and transitions, where that "
+        "improves the timing of starts, ends and stresses (default: 0; try 15)",
     )
 
 
 def read_soft_wish(options: Namespace) -> SoftWish:
-    """Return what is wished. Raises ValueError, and FileError for a file of words."""
+    """Return the preferences. Raises ValueError, and FileError for a file of words."""
     from metagraph.formats.word_lists import read_word_lists
     from metagraph.synthesis.iconic_words import word_wish
     from metagraph.synthesis.soft_constraints import SoftWish

@@ -175,7 +175,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if given and not given[0].startswith("-") and "." not in given[0] and not Path(given[0]).exists():
             near = get_close_matches(given[0], COMMANDS, 1)
             hint = f"did you mean '{near[0]}'?" if near else f"the commands are {', '.join(COMMANDS)}"
-            parser.error(f"there is no command and no project '{given[0]}'; {hint}")
+            parser.error(f"'{given[0]}' is neither a command nor a project; {hint}")
         given = ["window", *given]
         parser = _parser("window")
     options = parser.parse_args(given)
@@ -194,7 +194,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         place = f"{error.filename}: " if error.filename else ""
         return _fail(
             options,
-            f"{place}{error.strerror or error}. Choose another place, or see whether you may write there.",
+            f"{place}{error.strerror or error}. Choose another place, or check that you may write there.",
         )
     except MemoryError:
         return _fail(options, "there is not enough memory for this")

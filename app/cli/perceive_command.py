@@ -33,19 +33,17 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         required=True,
         metavar="FOLDER",
-        help=("the folder to make; it must not exist yet"),
+        help="the folder to make; it must not exist yet",
     )
     served = action(
         "serve", "serve the page to browsers and save the answers, until you stop it", serve_perceptual_study
     )
     _study(served)
-    served.add_argument(
-        "--port", type=int, default=0, help=("the port to listen on (default: any free port)")
-    )
+    served.add_argument("--port", type=int, default=0, help="the port to listen on (default: any free port)")
     served.add_argument(
         "--address",
         default="127.0.0.1",
-        help=("the network address to listen on (default: this computer only)"),
+        help="the network address to listen on (default: this computer only)",
     )
     brought = action("collect", "add answers that the page has saved as files", print_perceptual_answers)
     _study(brought)
@@ -125,7 +123,7 @@ def make_perceptual_study(options: Namespace) -> int:
         f"{study.show / 'index.html'}: {len(made.key.stimuli)} videos, {len(each)} participants of "
         f"{max(each)} trials",
         f"SHA-256 of the secret: {made.key.commitment}",
-        "Give people the folder 'show' and a code each, and nothing else of it; or serve it.",
+        "Give each participant a code and the folder 'show', and nothing else; or serve the page.",
     ]
     if len(each) % rounds:
         lines.append(
@@ -133,7 +131,8 @@ def make_perceptual_study(options: Namespace) -> int:
         )
     alike = [(a, b, i) for a, b in plan.pairs for i in items if shown[a, i] == shown[b, i]]
     lines += [
-        f"note: '{a}' and '{b}' show the very same in item '{i}': choose another stretch" for a, b, i in alike
+        f"note: '{a}' and '{b}' look exactly the same in item '{i}': choose other seconds"
+        for a, b, i in alike
     ]
     data = {
         "alike": alike,
@@ -168,10 +167,10 @@ def serve_perceptual_study(options: Namespace) -> int:
     try:
         served = begin(study, options.port, options.address)
     except (OSError, OverflowError) as error:
-        raise ValueError(f"{options.address}:{options.port} cannot be listened on ({error})") from None
+        raise ValueError(f"{options.address}:{options.port} is not available ({error})") from None
     try:
         with run_until_stopped():
-            print(f"the page is at {served.url}#CODE (Ctrl+C stops)", file=sys.stderr, flush=True)
+            print(f"the page is at {served.url}#CODE (stop with Ctrl+C)", file=sys.stderr, flush=True)
             while True:
                 time.sleep(3600)
     finally:
@@ -197,7 +196,7 @@ def print_perceptual_answers(options: Namespace) -> int:
         except FileError as error:
             failed.append(str(error))
         except SheetError as error:
-            failed.append(f"{path.name}: {error}. Nothing of it was kept; the file is left as it is.")
+            failed.append(f"{path.name}: {error}. Nothing was added; the file is unchanged.")
         else:
             done.append({"code": sheet.code, "kept": found.kept, "new": found.new, "file": str(path)})
     for words in failed:
@@ -256,8 +255,8 @@ def withdraw_person(options: Namespace) -> int:
     new = note(study, options.participant, options.why)
     say(
         options,
-        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}; "
-        "write the report anew",
+        f"{options.participant}: {'left out from now on' if new else 'withdrawn earlier'}; "
+        "write the report again",
         {"participant": options.participant, "new": new},
     )
     return 0
@@ -276,7 +275,7 @@ def delete_person(options: Namespace) -> int:
     note = remove(study, options.participant)
     say(
         options,
-        f"{options.participant}: {note['files']} files deleted; write the report anew",
+        f"{options.participant}: {note['files']} files deleted; write the report again",
         {"deleted": note},
     )
     return 0

@@ -31,26 +31,26 @@ def add_arguments(action: Action) -> None:
         type=float,
         default=0.5,
         metavar="SD",
-        help=("standard deviation between people, in log odds (default: 0.5)"),
+        help="standard deviation between people, in log odds (default: 0.5)",
     )
     planned.add_argument(
         "--items-differ",
         type=float,
         default=0.3,
         metavar="SD",
-        help=("standard deviation between items, in log odds (default: 0.3)"),
+        help="standard deviation between items, in log odds (default: 0.3)",
     )
     planned.add_argument(
-        "--chance", type=float, default=0.8, help=("power: the chance to show the effect (default: 0.8)")
+        "--chance", type=float, default=0.8, help="power: the chance to show the effect (default: 0.8)"
     )
     planned.add_argument(
-        "--tests", type=int, default=1, help=("number of tests that share the level of 0.05 (default: 1)")
+        "--tests", type=int, default=1, help="number of tests that share the level of 0.05 (default: 1)"
     )
     planned.add_argument(
-        "--participants", type=int, help=("compute the power with this many participants instead")
+        "--participants", type=int, help="compute the power with this many participants instead"
     )
     planned.add_argument(
-        "--studies", type=int, default=200, help=("number of simulated studies (default: 200)")
+        "--studies", type=int, default=200, help="number of simulated studies (default: 200)"
     )
     planned.add_argument("--seed", type=int, default=1)
     faked = action(
@@ -66,36 +66,36 @@ def add_arguments(action: Action) -> None:
         action="append",
         default=[],
         metavar="CONDITION=LOGODDS",
-        help=("how much people prefer a condition, in log odds"),
+        help="how much people prefer a condition, in log odds",
     )
     faked.add_argument(
         "--people-differ",
         type=float,
         default=0.4,
         metavar="SD",
-        help=("standard deviation between people, in log odds (default: 0.4)"),
+        help="standard deviation between people, in log odds (default: 0.4)",
     )
     faked.add_argument(
         "--items-differ",
         type=float,
         default=0.3,
         metavar="SD",
-        help=("standard deviation between items, in log odds (default: 0.3)"),
+        help="standard deviation between items, in log odds (default: 0.3)",
     )
     faked.add_argument(
-        "--left", type=float, default=0.0, help=("bias towards the left side, in log odds (default: 0)")
+        "--left", type=float, default=0.0, help="bias towards the left side, in log odds (default: 0)"
     )
     faked.add_argument(
-        "--lapses", type=float, default=0.02, help=("share of answers given without looking (default: 0.02)")
+        "--lapses", type=float, default=0.02, help="share of answers given without looking (default: 0.02)"
     )
     faked.add_argument(
-        "--careless", type=float, default=0.0, help=("share of people who never look (default: 0)")
+        "--careless", type=float, default=0.0, help="share of people who never look (default: 0)"
     )
     faked.add_argument(
-        "--unfinished", type=float, default=0.0, help=("share of people who break off (default: 0)")
+        "--unfinished", type=float, default=0.0, help="share of people who break off (default: 0)"
     )
     faked.add_argument(
-        "--seed", type=int, default=1, help=("random seed; another seed gives other people (default: 1)")
+        "--seed", type=int, default=1, help="random seed; another seed gives other people (default: 1)"
     )
 
 
@@ -104,9 +104,9 @@ def require_empty(folder: Path) -> None:
     from metagraph.research.study.perceive.folder import KEY
 
     if (folder / KEY).exists() or (folder / "answers").exists():
-        raise ValueError(f"{folder} holds a study already, perhaps with answers: name another folder")
+        raise ValueError(f"{folder} has a study already, perhaps with answers: give another folder")
     if folder.exists() and not folder.is_dir():
-        raise ValueError(f"{folder} is a file: name a folder")
+        raise ValueError(f"{folder} is a file: give a folder")
 
 
 def write_perceptual_plan(options: Namespace) -> int:
@@ -122,11 +122,11 @@ def write_perceptual_plan(options: Namespace) -> int:
     if options.tests < 1 or options.items < 1:
         raise ValueError("--tests and --items must be at least 1")
     if not 0.5 < options.share < 1:
-        raise ValueError(f"--share is more than 0.5 and less than 1, not {options.share:g}")
+        raise ValueError(f"--share must be more than 0.5 and less than 1, not {options.share:g}")
     if not 0 < options.chance < 1:
-        raise ValueError(f"--chance is between 0 and 1, not {options.chance:g}")
+        raise ValueError(f"--chance must be between 0 and 1, not {options.chance:g}")
     if options.smallest is not None and not 0.5 < options.smallest < 1:
-        raise ValueError(f"--smallest is more than 0.5 and less than 1, not {options.smallest:g}")
+        raise ValueError(f"--smallest must be more than 0.5 and less than 1, not {options.smallest:g}")
     alpha, each = 0.05 / options.tests, options.each or options.items
     expected = Expected(options.share, options.people_differ, options.items_differ)
     answers = binomial.count_needed_answers(options.share, options.chance, alpha)
@@ -145,12 +145,12 @@ def write_perceptual_plan(options: Namespace) -> int:
         data["smallest"] = binomial.count_needed_answers(options.smallest, options.chance, alpha)
         data["equivalent"] = binomial.equivalence_needed(options.smallest - 0.5, options.chance, alpha)
         lines += [
-            f"  to show the smallest that matters, {options.smallest:.0%}: {_count(data['smallest'])}",
+            f"  to show the smallest share that matters, {options.smallest:.0%}: {_count(data['smallest'])}",
             f"  to show that a half is within {1 - options.smallest:.0%} and {options.smallest:.0%}: "
             f"{_count(data['equivalent'])}",
         ]
     lines.append(
-        f"answers of one person are alike: {data['design_effect']:.2f} times as many for {each} of each"
+        f"answers of one person are similar: {data['design_effect']:.2f} times as many for {each} of each"
     )
     rest = (options.items, each)
     if options.participants is not None:
@@ -171,9 +171,9 @@ def write_perceptual_plan(options: Namespace) -> int:
             data["power"] = {"chance": best.value, "low": best.low, "high": best.high}
         told = _chance(best) if best is not None else ""
         lines.append(
-            f"people, by {options.studies} simulated studies of the mixed model: {people}: {told}"
+            f"people, from {options.studies} simulated studies with the mixed model: {people}: {told}"
             if people is not None
-            else f"even 400 people are too few with {options.items} items that differ so much: {told}"
+            else f"even 400 people are too few with {options.items} items and these differences: {told}"
         )
     say(options, "\n".join(lines), data)
     return 0
@@ -254,7 +254,7 @@ def _raters(options: Namespace) -> Raters:
         except ValueError:
             found = ""
         if not found:
-            raise ValueError(f"what is liked is given as CONDITION=LOGODDS, not {words!r}")
+            raise ValueError(f"--liked takes CONDITION=LOGODDS, not {words!r}")
     return Raters(
         liked,
         options.people_differ,

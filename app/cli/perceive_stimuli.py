@@ -1,5 +1,5 @@
 """The videos of a perceptual study, drawn as `render` draws: one camera for an item in all conditions, one
-length, one loudness; names that tell nothing.
+length, one loudness; names that reveal nothing.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Stimuli:
         self._plans = ConversationPlans()
 
     def source(self, name: str, item: Stretch) -> StimulusSource:
-        """Return what a condition shows of an item."""
+        """Return what a condition shows for an item."""
         made = self.plan.conditions[name]
         # Of what is not made for each item one whole is kept.
         apart = any("{item}" in p for p in _paths(made))
@@ -66,7 +66,7 @@ class Stimuli:
         if start + item.seconds > found.length + LATE:
             raise self._failure(
                 name,
-                f"lasts {found.length:.2f} s, and item '{item.id}' reaches to {start + item.seconds:.2f} s",
+                f"lasts {found.length:.2f} s, but item '{item.id}' ends at {start + item.seconds:.2f} s",
             )
         return replace(found, start=start)
 
@@ -101,7 +101,7 @@ class Stimuli:
         return frame_whole_figure(box, look.width / look.height, ASIDE if several else 0.0)
 
     def pictures(self, name: str, item: Stretch, camera: Any) -> Iterator[np.ndarray]:
-        """Yield what a condition shows of an item."""
+        """Yield the pictures that a condition shows for an item."""
         from preview.video_reading import read_pictures
 
         look, found = self.plan.video, self.source(name, item)
@@ -164,7 +164,7 @@ class Stimuli:
         if ident is None:
             kept = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
             raise self._failure(
-                name, f"there is no conversation '{made.conversation}' in the project; it keeps {kept}"
+                name, f"there is no conversation '{made.conversation}' in the project; it has {kept}"
             )
         talk = project.conversations[ident]
         sides = []
@@ -178,9 +178,7 @@ class Stimuli:
             motion = side.motion
             if made.taken:
                 if side.take is None or side.take not in project.clips:
-                    raise self._failure(
-                        name, f"side {n + 1} of '{talk.name}' has no take that was recorded along with it"
-                    )
+                    raise self._failure(name, f"side {n + 1} of '{talk.name}' has no take recorded with it")
                 motion = side.take
             elif isinstance(made.motion, tuple):
                 path = made.motion[n]
@@ -241,7 +239,7 @@ class Stimuli:
                 path,
                 f"holds no take '{take}'" if take else f"holds {len(found)} takes",
                 f"conditions.{name}",
-                f"Name one behind '#', as {path.name}#{found[0].name}; there are {kept}.",
+                f"Add its name after '#', as in {path.name}#{found[0].name}; it has {kept}.",
             )
         clip = clips[0]
         if project is not None and clip.skeleton != project.skeleton:
@@ -290,13 +288,13 @@ def replace_struct(value: Any, **fields: Any) -> Any:
 
 
 def with_clip(project: Project, ident: str, clip: Clip) -> Project:
-    """Return a project that has a clip more; it is never saved."""
+    """Return a project with one more clip, which is never saved."""
     entry = ClipEntry(ident, ident, "", frames=clip.frames, fps=clip.fps, motion=clip)
     return replace(project, clips={**project.clips, ident: entry})
 
 
 def delay_clip(clip: Clip, seconds: float) -> Clip:
-    """Return a clip whose first frame stands for a while before it."""
+    """Return a clip that holds its first frame for a while before it plays."""
     count = round(seconds * clip.fps)
     if count <= 0:
         return clip

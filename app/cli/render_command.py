@@ -44,7 +44,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--clip", help="draw only this clip of the project")
     parser.add_argument(
-        "--conversation", metavar="NAME", help=("draw this conversation: all its speakers, with their sound")
+        "--conversation", metavar="NAME", help="draw this conversation: all its speakers, with their sound"
     )
     parser.add_argument(
         "--captions",
@@ -54,15 +54,13 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--cuts",
         action=BooleanOptionalAction,
-        help=(
-            "follow the cuts of the conversation's camera lane, or keep one camera (default: follow "
-            "them, if there are any)"
-        ),
+        help="follow the cuts of the conversation's camera lane, or keep one camera (default: follow "
+        "them, if there are any)",
     )
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     parser.add_argument("--fps", type=float, default=30.0, help="frames a second of a video (default: 30)")
     parser.add_argument(
-        "--frames", type=int, default=24, help=("number of pictures on a contact sheet (default: 24)")
+        "--frames", type=int, default=24, help="number of pictures on a contact sheet (default: 24)"
     )
     parser.add_argument(
         "--sticks", action="store_true", help="draw a stick figure where a character has no mesh"
@@ -75,7 +73,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
-    """Return the figure that draws a project, and say where it is not its character's mesh. `sticks` draws a
+    """Return the figure that draws a project, and print a note if it is not the character's mesh. `sticks` draws a
     stick figure in place of the default body. Raises FileError.
     """
     from preview.character_file import figure_from_file as drawn
@@ -96,7 +94,7 @@ def read_size(text: str) -> tuple[int, int]:
     try:
         width, height = (int(x) for x in text.lower().split("x"))
     except ValueError:
-        raise ValueError(f"a size is given as 960x540, not {text!r}") from None
+        raise ValueError(f"give --size as 960x540, not {text!r}") from None
     if not (16 <= width <= 7680 and 16 <= height <= 7680):
         raise ValueError("--size must be between 16x16 and 7680x7680")
     return width, height
@@ -220,7 +218,7 @@ def run(options: Namespace) -> int:
     if options.out.suffix not in (".png", ".mp4", *MOTION):
         name = options.out.suffix or options.out.name
         raise ValueError(
-            f"pictures are written as .png, videos as .mp4, motion as .glb, .usda or .bvh, not as '{name}'"
+            f"pictures can be written as .png, videos as .mp4, motion as .glb, .usda or .bvh, not as '{name}'"
         )
     size, folder = read_size(options.size), options.project.resolve().parent
     clip = None
@@ -281,7 +279,7 @@ class Shot:
 def _direction(
     project: Project, options: Namespace, shown: ShownPlayback, folder: Path, seen: Sequence[Seen]
 ) -> Direction:
-    """Return the cuts and captions of what is written, as the options or else the timeline's notes say."""
+    """Return the cuts and captions of a video, from the options or else from the timeline's notes."""
     from app.stage.cutting import list_captions
     from metagraph.graph.timeline_edits import timeline_of
 
@@ -306,9 +304,7 @@ def _talking(project: Project, options: Namespace, folder: Path) -> ShownPlaybac
     found = next((i for i, c in project.conversations.items() if options.conversation in (i, c.name)), None)
     if found is None:
         names = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
-        raise ValueError(
-            f"there is no conversation '{options.conversation}' in the project; it keeps {names}"
-        )
+        raise ValueError(f"there is no conversation '{options.conversation}' in the project; it has {names}")
     shown = ConversationPlans().show(project, found, folder)
     for note in shown.notes:
         print(f"note: {note}", file=sys.stderr)
@@ -328,7 +324,7 @@ def _outs(out: Path, shown: ShownPlayback) -> list[Path]:
 def mix_sound(
     shown: ShownPlayback, folder: Path, seconds: float, start: float = 0.0
 ) -> tuple[np.ndarray, int] | None:
-    """Return the sound of what is said from a start on, None where nothing is said at all."""
+    """Return the sound of the speech from a start on, or None if nobody speaks."""
     lines = {
         s.line: line
         for one in shown.everyone

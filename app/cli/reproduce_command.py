@@ -1,4 +1,4 @@
-"""`metagraph reproduce`: the papers' tables and figures, made again beside what they print."""
+"""`metagraph reproduce`: make the papers' tables and figures again, next to the published ones."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "exhibits",
         nargs="*",
         metavar="EXHIBIT",
-        help=(
-            "tables and figures by name, or papers for all of theirs (default: all; --list shows the names)"
-        ),
+        help="tables and figures by name, or papers for all of theirs (default: all; --list shows the names)",
     )
     parser.add_argument("--into", type=Path, metavar="FOLDER", help="write report.html and report.json there")
     parser.add_argument(
@@ -35,10 +33,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--takes",
         type=Path,
         metavar="FOLDER",
-        help=(
-            "your recorded conversations: clips with their sounds and transcripts in one folder "
-            "(default: synthetic ones)"
-        ),
+        help="your recorded conversations: clips with their sounds and transcripts in one folder "
+        "(default: synthetic ones)",
     )
     parser.add_argument(
         "--model",
@@ -49,7 +45,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--full",
         action="store_true",
-        help=("use as much synthetic motion as the papers recorded, and more bootstrap draws"),
+        help="use as much synthetic motion as the papers recorded, and more bootstrap draws",
     )
 
 
@@ -117,7 +113,7 @@ def _list(options: Namespace, exhibits: Sequence[Exhibit]) -> int:
 
 
 def _made(exhibit: Exhibit, material: ExhibitMaterial) -> tuple[MadeExhibit, float]:
-    """Return an exhibit and how long it took; one that cannot be made says why, and spoils no other."""
+    """Return an exhibit and the seconds it took. One that cannot be made has the reason instead."""
     from time import perf_counter
 
     from metagraph.errors import FileError
@@ -132,7 +128,7 @@ def _made(exhibit: Exhibit, material: ExhibitMaterial) -> tuple[MadeExhibit, flo
         told = (
             str(error)
             if known
-            else f"it failed ({type(error).__name__}: {error}); report it with the project"
+            else f"failed ({type(error).__name__}: {error}); report this together with the project"
         )
         shown = MadeExhibit(about, missing=told)
     return shown, perf_counter() - began

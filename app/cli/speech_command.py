@@ -39,10 +39,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help=(
-            "transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one "
-            "per speaker (default: use loudness)"
-        ),
+        help="transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one "
+        "per speaker (default: use loudness)",
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
     add_language_arguments(parser, "the project's language, else auto")
@@ -56,11 +54,11 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Read a conversation, tell what is in it; with `out` write it, with `project` keep it there."""
+    """Read a conversation and print what is in it; write it to `out`, and save it in `project`, if given."""
     words = [path for some in options.words for path in some]
     out: Path | None = options.out
     if out is not None and out.suffix.casefold() not in [s.casefold() for s in OUT]:
-        raise ValueError(f"it is written as {', '.join(OUT)}, not as '{out.suffix or out.name}'")
+        raise ValueError(f"the file can be {', '.join(OUT)}, not '{out.suffix or out.name}'")
     with ProjectOutput(options.project) if options.project is not None else nullcontext() as output:
         return _read(options, words, out, output)
 
@@ -108,9 +106,9 @@ def _read(options: Namespace, words: list[Path], out: Path | None, output: Proje
         shares = join_shares([share for part in parts for share in part.looks])
         lines += [f"  whoever is {share.words()}" for share in shares]
         name = open_for_command(options.project).conversations[ident].name
-        lines.append(f"kept in {options.project} as '{name}' ({ident})")
+        lines.append(f"saved in {options.project} as '{name}' ({ident})")
         if name != read.conversation.name:
-            lines.append(f"  there is a '{read.conversation.name}' already, which stays as it was")
+            lines.append(f"  there is a '{read.conversation.name}' already, which is unchanged")
     if out is not None:
         lines.append(f"written to {out}")
     data = {
@@ -164,7 +162,7 @@ def _keep(output: ProjectOutput, project: Project, read: Read) -> str:
 
 
 def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
-    """Return a conversation of those who are named, or numbered from 1, in that order. Raises ValueError."""
+    """Return a conversation with only the given speakers (names, or numbers from 1), in that order. Raises ValueError."""
     from metagraph.graph.conversation.model import side_name, with_sides
 
     names = [side_name(conversation, n) for n in range(len(conversation.sides))]
@@ -174,12 +172,12 @@ def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
     for name in asked:
         if name.casefold() not in known:
             there = ", ".join(f"'{x}'" for x in names)
-            raise ValueError(f"nobody is called '{name}'; there are {there}, or numbers from 1")
+            raise ValueError(f"there is no speaker '{name}'; the speakers are {there}, or numbers from 1")
     return with_sides(conversation, [known[name.casefold()] for name in asked])
 
 
 def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
-    """Return what all sides do, where the project's graph moves all of them."""
+    """Return what all sides do, with the project's graph moving all of them."""
     from app.cli.command_output import open_for_command
     from metagraph.speech.duet import duet
 

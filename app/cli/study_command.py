@@ -75,13 +75,13 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--seed",
         type=int,
         default=1,
-        help=("random seed; another seed gives other people with the same effects (default: 1)"),
+        help="random seed; another seed gives other people with the same effects (default: 1)",
     )
     made.add_argument(
         "--ratio",
         type=float,
         default=7.9,
-        help=("how many times longer the work takes by hand (default: 7.9)"),
+        help="how many times longer the work takes by hand (default: 7.9)",
     )
     made.add_argument(
         "--learning", type=float, default=-0.25, help="slope of log seconds over log clips (default: -0.25)"
@@ -90,10 +90,10 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--order",
         type=float,
         default=0.9,
-        help=("time of a second sitting as a share of the first (default: 0.9)"),
+        help="time of a second sitting as a share of the first (default: 0.9)",
     )
     made.add_argument(
-        "--spread", type=float, default=0.3, help=("standard deviation of people's log ratios (default: 0.3)")
+        "--spread", type=float, default=0.3, help="standard deviation of people's log ratios (default: 0.3)"
     )
     made.add_argument(
         "--slips",
@@ -154,7 +154,7 @@ def export_study(options: Namespace) -> int:
         count = write_xes(study, options.xes)
         lines.append(f"{options.xes}: {count} tasks")
         if INSTEAD in options.xes.read_text(encoding="utf-8"):
-            print(f"note: {INSTEAD} stands for what XML cannot hold", file=sys.stderr)
+            print(f"note: {INSTEAD} replaces characters that XML cannot have", file=sys.stderr)
         data |= {"xes": str(options.xes), "traces": count}
     say(options, "\n".join(lines), data)
     return 0

@@ -19,7 +19,7 @@ def add_arguments(action: Action) -> None:
     )
     frozen.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
     frozen.add_argument(
-        "--force", action="store_true", help=("record the digests again for files that changed")
+        "--force", action="store_true", help="record the digests again for files that changed"
     )
     gone = action(
         "withdraw",
@@ -80,7 +80,7 @@ def withdraw_participant(options: Namespace) -> int:
     new = note(study, options.participant, options.why)
     say(
         options,
-        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}",
+        f"{options.participant}: {'left out from now on' if new else 'withdrawn earlier'}",
         {"participant": options.participant, "new": new},
     )
     _told(mentions(study, options.participant))
@@ -105,9 +105,9 @@ def delete_participant(options: Namespace) -> int:
 
 
 def _told(paths: list[Path]) -> None:
-    """Tell what still holds the pseudonym."""
+    """Print the files that still have the pseudonym."""
     for path in paths[:10]:
-        print(f"note: {path} still names them; write it anew", file=sys.stderr)
+        print(f"note: {path} still has their name; write it again", file=sys.stderr)
     if len(paths) > 10:
         print(f"note: and {len(paths) - 10} more files", file=sys.stderr)
 

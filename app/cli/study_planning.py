@@ -21,7 +21,7 @@ def add_arguments(action: Action) -> None:
     made.add_argument("study", type=Path, nargs="?", help="the study's folder, or its study.yaml")
     made.add_argument("--pilot", type=Path, metavar="FOLDER", help="a pilot study whose ratios are used")
     made.add_argument(
-        "--ratio", type=float, help=("assumed ratio: how many times longer the work takes by hand")
+        "--ratio", type=float, help="assumed ratio: how many times longer the work takes by hand"
     )
     made.add_argument("--spread", type=float, help="assumed standard deviation of people's log ratios")
     made.add_argument(
@@ -33,14 +33,12 @@ def add_arguments(action: Action) -> None:
         "--within", type=float, default=1.25, help="the widest interval, as a factor (default: 1.25)"
     )
     made.add_argument(
-        "--chance", type=float, default=0.8, help=("power: the chance to reach each aim (default: 0.8)")
+        "--chance", type=float, default=0.8, help="power: the chance to reach each aim (default: 0.8)"
     )
     made.add_argument(
         "--tests",
         type=int,
-        help=(
-            "number of tests that share the level of 0.05 (default: time, F1 and the study's questionnaires)"
-        ),
+        help="tests that share the level of 0.05 (default: time, F1 and the study's questionnaires)",
     )
     made.add_argument(
         "--dropouts", type=float, default=0.0, help="share of people who will not finish (default: 0)"
@@ -65,7 +63,7 @@ def print_study_plan(options: Namespace) -> int:
     if (options.pilot is None) == (options.ratio is None or options.spread is None):
         raise ValueError("give a --pilot, or assume both --ratio and --spread")
     if not 0 <= options.dropouts < 1:
-        raise ValueError(f"dropouts are a share from 0 to less than 1, not {options.dropouts:g}")
+        raise ValueError(f"--dropouts must be 0 or more and less than 1, not {options.dropouts:g}")
     found = (
         _pilot(options.pilot)
         if options.pilot is not None
@@ -77,16 +75,18 @@ def print_study_plan(options: Namespace) -> int:
     aims = Aims(found, needed, smallest, options.within, options.chance, families=tests)
     data = {"assumed": asdict(found), "needed": asdict(needed), "smallest": smallest, "tests": tests}
     lines = [
-        f"ratio {found.ratio:.2f}, deviation of log ratios {found.spread:.2f}, reckoned with "
+        f"ratio {found.ratio:.2f}, deviation of log ratios {found.spread:.2f}, planned with "
         f"{found.worst:.2f} "
         f"({found.source})",
-        f"people, for a chance of {options.chance:.0%}" + (f", {tests} tests" if tests > 1 else "") + ":",
+        f"people needed, for a power of {options.chance:.0%}"
+        + (f", {tests} tests" if tests > 1 else "")
+        + ":",
     ]
     for what, count in (
         (f"to show a ratio of {found.ratio:.2f}", needed.show),
-        (f"to show the smallest that matters, {smallest:g}", needed.smallest),
-        (f"for an interval within {options.within:g} times either way", needed.precise),
-        (f"to show that 1 is equivalent, within {smallest:g} times either way", needed.equivalent),
+        (f"to show the smallest ratio that matters, {smallest:g}", needed.smallest),
+        (f"for an interval no wider than a factor of {options.within:g} either way", needed.precise),
+        (f"to show equivalence: a ratio within a factor of {smallest:g} of 1", needed.equivalent),
     ):
         more = f", {ceil(count / (1 - options.dropouts))} with dropouts" if count and options.dropouts else ""
         lines.append(f"  {what}: {count if count is not None else 'more than 10,000'}{more}")

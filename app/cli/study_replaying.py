@@ -23,11 +23,11 @@ def add_arguments(action: Action) -> None:
         dest="start",
         type=float,
         default=0.0,
-        help=("seconds after the start of the part (default: 0)"),
+        help="seconds after the start of the part (default: 0)",
     )
     made.add_argument("--until", type=float, help="seconds after the start of the part (default: its end)")
     made.add_argument(
-        "--video", type=Path, metavar="OUT.mp4", help=("write a video, instead of playing in the window")
+        "--video", type=Path, metavar="OUT.mp4", help="write a video, instead of playing in the window"
     )
     made.add_argument("--fps", type=float, default=10.0, help="frames a second of the video (default: 10)")
 

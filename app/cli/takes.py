@@ -1,4 +1,4 @@
-"""Long takes and what was said during them, as commands are given them."""
+"""Read long takes, and what was said during them, from the options of commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KEPT = 16000  # samples a second that are kept of one
 
 
 def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
-    """Add the options that tell what was said during takes, and by whom."""
+    """Add the options of the speech during takes, and of the speaker."""
     parser.add_argument(
         "--speech",
         type=Path,
@@ -31,10 +31,8 @@ def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
     parser.add_argument(
         "--side",
         default="1",
-        help=(
-            "the speaker whose motion the takes are: a number in the order of the files, or a name "
-            "(default: 1)"
-        ),
+        help="the speaker whose motion the takes are: a number in the order of the files, or a name "
+        "(default: 1)",
     )
 
 
@@ -75,7 +73,7 @@ def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
         )
     twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
     if twice is not None:
-        raise ValueError(f"two takes are called '{twice}', so speech cannot be told apart: rename one")
+        raise ValueError(f"two takes are called '{twice}': rename one")
     return out
 
 
@@ -117,9 +115,9 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
     if side not in (*numbers, *names):
         raise FileError(
             path,
-            f"nobody is called '{side}'",
+            f"has no speaker '{side}'",
             "its speakers",
-            f"They are {', '.join(f'{n!r}' for n in names)}; or say a number from 1 to {len(names)}.",
+            f"They are {', '.join(f'{n!r}' for n in names)}; or give a number from 1 to {len(names)}.",
         )
     return made, names.index(side) if side in names else int(side) - 1
 
@@ -173,7 +171,7 @@ def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[s
         words = [f"no speech for {', '.join(missing[:5])}"] if missing else []
         words += [f"no take for {', '.join(left[:5])}"] if left else []
         raise ValueError(
-            f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
+            f"{' and '.join(words)}: give a speech file the name of its take, as in take1.bvh and take1.eaf"
         )
     sounds, transcripts = read_given_files(options, "sounds"), read_given_files(options, "transcripts")
     for some, what, ending in ((sounds, "sound", "wav"), (transcripts, "transcript", "srt")):
@@ -196,7 +194,7 @@ def read_given_files(options: Namespace, what: str) -> dict[str, Path]:
     given = getattr(options, what, [])
     out = {path.stem: path for path in given}
     if len(out) < len(given):
-        raise ValueError(f"two {what} have one name, so takes cannot be told apart: rename one")
+        raise ValueError(f"two {what} have the same name: rename one")
     return out
 
 
