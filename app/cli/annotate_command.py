@@ -84,9 +84,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Say what an annotation is read as; with `learn` or `perform`, work it into the project and save
-    that.
-    """
+    """Print how an annotation is read. With `learn` or `perform`, change the project and save it."""
     path: Path = options.project
     if not options.learn and options.perform is None:
         return _annotated(options, None)

@@ -28,7 +28,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs="?",
         const=PLAYED,
         metavar="SECONDS",
-        help="also play the character for this many seconds without requests and each action once, and report "
+        help="also play the character for this many seconds without requests, then each action, and report "
         f"visible faults ({PLAYED:.0f} s without a number)",
     )
 

@@ -1,5 +1,5 @@
-"""Labelling a folder without a window: import, propose, place what is sure, and write down what was decided
-and why.
+"""Label a folder without a window: import, propose, place what is certain, and report each decision with its
+reason.
 """
 
 from __future__ import annotations
@@ -260,8 +260,8 @@ def _several(names: Sequence[str]) -> str:
 
 
 def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[LabelledExample]]:
-    """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that
-    a run is the same everywhere.
+    """Return the name patterns and the examples to learn from. Both are empty unless requested, so that a run
+    gives the same result everywhere.
     """
     from app.project.pattern_files import read_patterns
     from metagraph.suggest.words.names import merge_patterns

@@ -1,6 +1,4 @@
-"""What was labelled and why, as one HTML file that needs nothing beside it: what needs a person first, then
-all the rest by stance.
-"""
+"""Write what was labelled and why into one HTML file: clips that need a look first, then the rest by stance."""
 
 from __future__ import annotations
 

@@ -159,9 +159,7 @@ def _end_by_signals(server: Server) -> None:
 
 
 def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> None:
-    """Say where one can be reached: to programs with a line of JSON on standard output, to people in
-    words.
-    """
+    """Print the addresses: for programs as a line of JSON on standard output, for people in words."""
     if as_json and not options.mcp:
         import msgspec
 

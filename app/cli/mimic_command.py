@@ -74,9 +74,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Tell what is seen in keypoints; with `out` write the character mimicking it, with `keep` keep it in the
-    project.
-    """
+    """Print the stances in keypoints; write the performance to `out`, and save it as `keep`, if given."""
     from app.cli.render_command import read_size
 
     if options.out is not None and options.out.suffix not in OUT:

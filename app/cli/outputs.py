@@ -1,5 +1,5 @@
-"""What every command of the command line keeps to when it writes: which options name outputs and which name
-inputs, `--overwrite`, and projects that are changed in place.
+"""Rules of writing for all commands: which options name outputs and which name inputs, `--overwrite`, and
+projects that are changed in place.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def claim_outputs(options: Namespace) -> Outputs:
 
 
 class ProjectOutput:
-    """A project file that a command makes or changes: nobody else may have it open meanwhile.
+    """A project file that a command makes or changes. No other program may have it open at that time.
 
     Enter it before the project is read. Raises FileError where a window or another command has it. versions:
     how many earlier ones are kept, as the settings say when None.

@@ -73,8 +73,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
-    """Return the figure that draws a project, and print a note if it is not the character's mesh. `sticks` draws a
-    stick figure in place of the default body. Raises FileError.
+    """Return the figure that draws a project, and print a note if it is not the character's mesh. `sticks`
+    draws a stick figure in place of the default body. Raises FileError.
     """
     from preview.character_file import figure_from_file as drawn
     from preview.default_body.footing import footing_of
@@ -116,9 +116,9 @@ def render_pictures(
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Give one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, returns what
-    is filmed then; by default it sees all. into: an array that all come in, for who is done with one before
-    asking for the next.
+    """Yield one picture `[H, W, 4]` for each time. camera: a fixed camera, or a function from seconds to a
+    camera; by default it sees everything. into: an array in which all pictures come, for callers that finish
+    with one before they ask for the next.
     """
     from app.stage.cutting import Filmed
     from app.stage.stools import stools
@@ -262,9 +262,8 @@ Direction = tuple["tuple[Cut, ...]", "tuple[Caption, ...]"]  # where the camera 
 
 @dataclass(frozen=True)
 class Shot:
-    """How a performance is filmed: for how many seconds, in how many pixels, at how many frames a second of a
-    video or with how many pictures of a contact sheet. start: the second it begins at. direction: its cuts
-    and captions.
+    """How a performance is filmed: seconds, size in pixels, frames a second of a video or number of pictures
+    of a contact sheet. start: second of the performance. direction: cuts and captions.
     """
 
     seconds: float
@@ -314,9 +313,7 @@ def _talking(project: Project, options: Namespace, folder: Path) -> ShownPlaybac
 
 
 def _outs(out: Path, shown: ShownPlayback) -> list[Path]:
-    """Return a file for each who is shown: all of a conversation have one each, in the character's own
-    space.
-    """
+    """Return one file for each character that is shown, in the character's own space."""
     count = len(shown.everyone)
     return [out] if count == 1 else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(count)]
 
@@ -420,8 +417,8 @@ def bake_to(
 
 
 def _doing(shown: ShownPlayback, seconds: float) -> str:
-    """Return what is played, as its node calls it; of who moves with a clip instead of the plan what the plan
-    has left to say.
+    """Return the name of what plays, as its node has it. For a character that a clip moves instead of the
+    plan, return what the plan still says.
     """
     layers: tuple[Layer, ...] = ("arms", "head", "body")
     if shown.motion is not None:

@@ -162,7 +162,9 @@ def _keep(output: ProjectOutput, project: Project, read: Read) -> str:
 
 
 def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
-    """Return a conversation with only the given speakers (names, or numbers from 1), in that order. Raises ValueError."""
+    """Return a conversation with only the given speakers (names, or numbers from 1), in that order. Raises
+    ValueError.
+    """
     from metagraph.graph.conversation.model import side_name, with_sides
 
     names = [side_name(conversation, n) for n in range(len(conversation.sides))]

@@ -8,8 +8,8 @@ EPOCH = b"19700101000000"
 
 
 def find_pdf_maker():
-    """Return what makes a PDF, a page as large as the drawing, of an SVG file's text; the same text gives the
-    same bytes.
+    """Return a function that turns the text of an SVG file into a PDF page of the same size. The same text
+    gives the same bytes.
     """
     from PySide6.QtCore import QBuffer, QByteArray, QIODevice, QMarginsF, QRectF, QSizeF
     from PySide6.QtGui import QPageSize, QPainter, QPdfWriter

@@ -1,5 +1,5 @@
-"""`metagraph study freeze`, `withdraw`, `delete` and `gaze`: what a study is made of, who is in it no more,
-and where people looked.
+"""`metagraph study freeze`, `withdraw`, `delete` and `gaze`: record a study's files, withdraw or delete
+participants, and read where people looked.
 """
 
 from __future__ import annotations

@@ -37,9 +37,7 @@ def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
 
 
 def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
-    """Return takes under the names of their files; of files with several takes, or projects, under the takes'
-    own.
-    """
+    """Return takes by the names of their files, or by their own names if a file has several."""
     from app.cli.command_output import open_for_command
     from metagraph.errors import FileError
     from metagraph.formats.clips import read_clips
@@ -125,9 +123,9 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
 def read_side_speech(
     path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
 ) -> SpokenTake:
-    """Return what one of those in a file moves with, `segments_heard_by`, with its words; and how it is
-    said. sound: of the recording, None where there is none; where it has a channel for each of them, of its
-    own. transcript: where its words are, None where they are in the file itself. Raises FileError.
+    """Return the segments that one speaker of a file moves with (`segments_heard_by`) with its words, and how
+    they are said. sound: of the recording, None where there is none; where it has a channel for each of them,
+    of its own. transcript: where its words are, None where they are in the file itself. Raises FileError.
     """
     from metagraph.graph.conversation.model import segments_heard_by
     from metagraph.speech.prosody import prosody
@@ -145,8 +143,8 @@ def read_side_speech(
 
 
 def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
-    """Return the words of one of those in a transcript: who is called so, else whose number it is; those of
-    the only one. Raises FileError.
+    """Return the words of one speaker in a transcript, found by name, else by number; or those of the only
+    speaker. Raises FileError.
     """
     from metagraph.errors import FileError
     from metagraph.formats.transcripts.reader import read_transcript

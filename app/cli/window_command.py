@@ -1,6 +1,4 @@
-"""`metagraph window`: the window, on a project if one is named; where there is no screen, the same job
-without it.
-"""
+"""`metagraph window`: the window, on a project if one is given. Without a screen, the demo runs instead."""
 
 from __future__ import annotations
 
