@@ -113,24 +113,25 @@ def group_thousands(count: int) -> str:
 
 def format_number(value: float, form: str) -> str:
     """Return a number in a format of `format`, as the chosen language writes it: "2.25"."""
-    return _localize(format(value, form))
+    return localize_number(format(value, form))
 
 
 class _Int(int):
     """An integer that is formatted as the chosen language writes it."""
 
     def __format__(self, form: str) -> str:
-        return _localize(format(int(self), form))
+        return localize_number(format(int(self), form))
 
 
 class _Float(float):
     """A number that is formatted as the chosen language writes it."""
 
     def __format__(self, form: str) -> str:
-        return _localize(format(float(self), form))
+        return localize_number(format(float(self), form))
 
 
-def _localize(number: str) -> str:
+def localize_number(number: str) -> str:
+    """Return a number in English form, such as "1,234.5", as the chosen language writes it."""
     return number if _chosen is None else number.translate(_chosen.separators)
 
 

@@ -19,9 +19,10 @@ def warn_of_journals(path: Path) -> None:
             print(f"note: {error}", file=sys.stderr)
             continue
         if left is not None:
-            lost = f" ({_edits(len(left.lost))} of them {_are(left.lost)} damaged)" if left.lost else ""
+            lost = f" ({len(left.lost):,} of them {_are(left.lost)} damaged)" if left.lost else ""
             print(
-                f"note: {journal.name} has {_edits(left.edits)} that were not saved before a crash{lost}. "
+                f"note: {journal.name} has {_edits(left.edits)} from before a crash that "
+                f"{_were(left.edits)} not saved{lost}. "
                 f"Open {path.name} in the window to recover them",
                 file=sys.stderr,
             )
@@ -29,6 +30,10 @@ def warn_of_journals(path: Path) -> None:
 
 def _edits(count: int) -> str:
     return "1 edit" if count == 1 else f"{count:,} edits"
+
+
+def _were(count: int) -> str:
+    return "was" if count == 1 else "were"
 
 
 def _are(things: Sized) -> str:

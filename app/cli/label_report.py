@@ -1,4 +1,4 @@
-"""Write what was labelled and why into one HTML file: clips that need a look first, then the rest by stance."""
+"""Write what was labelled and why into one HTML file: clips that need a look first, then the rest."""
 
 from __future__ import annotations
 

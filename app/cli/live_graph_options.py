@@ -138,7 +138,6 @@ def keep_motion(session: LiveSession, options: Namespace) -> None:
     path = options.project.resolve().parent / f"{stem}{SUFFIX}"
     write_kept(path, motions)
     print(
-        f"what its motion can be made again of is kept in '{path}': metagraph motion-graph synthesize "
-        f"... --again",
+        f"saved '{path}'; make the motion again with: metagraph motion-graph synthesize ... --again",
         file=sys.stderr,
     )

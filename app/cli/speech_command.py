@@ -102,9 +102,9 @@ def _read(options: Namespace, words: list[Path], out: Path | None, output: Proje
         parts = _performed(options.project, ident)
         for row, part in zip(rows, parts, strict=True):
             lines += [f"  {row['name']}: {t.words()}" for t in part.told if t.count]
-            lines += [f"  {row['name']}, {share.words()}" for share in part.looks]
+            lines += [f"  {row['name']}: {share.words()}" for share in part.looks]
         shares = join_shares([share for part in parts for share in part.looks])
-        lines += [f"  whoever is {share.words()}" for share in shares]
+        lines += [f"  all speakers: {share.words()}" for share in shares]
         name = open_for_command(options.project).conversations[ident].name
         lines.append(f"saved in {options.project} as '{name}' ({ident})")
         if name != read.conversation.name:

@@ -70,7 +70,7 @@ class MaskDialog(QDialog):
         layout = QVBoxLayout(self)
         words = QLabel(
             tr(
-                "The action moves only the ticked joints, as far as their weights say. All other joints "
+                "The action moves only the ticked joints, by their weights. All other joints "
                 "follow the stance. Click a joint to give it and its children the strength below, or to "
                 "clear them. Drag to set all joints in a rectangle; Alt+drag or right-drag clears them. "
                 "The wheel, + and - change a weight."

@@ -232,13 +232,25 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
     if known is not None or (retarget == "yes" and not strangers.joint_map.missing):
         brought = bring_over(bringing, strangers, known or strangers.joint_map)
         count, first = len(strangers.clips), Path(strangers.clips[0][0]).name
-        how = "as before" if known is not None else f"from a skeleton of {len(strangers.skeleton)} joints"
-        whose = f"{count} clips ({first} …) were" if count > 1 else f"{first}: its clip was"
+        whose = (
+            phrase("{count} clips ({first} …)", count=count, first=first)
+            if count > 1
+            else phrase("the clip of {first}", first=first)
+        )
+        note = (
+            phrase("retargeted {whose} with the joint map of the project", whose=whose)
+            if known is not None
+            else phrase(
+                "retargeted {whose} from a skeleton of {joints} joints",
+                whose=whose,
+                joints=len(strangers.skeleton),
+            )
+        )
         return replace(
             result,
             loaded=(*result.loaded, *brought.loaded),
             failures=(*result.failures, *brought.failures),
-            notes=(*result.notes, f"{whose} retargeted {how}") if brought.loaded else result.notes,
+            notes=(*result.notes, note) if brought.loaded else result.notes,
             joint_maps={**result.joint_maps, **brought.joint_maps},
             retargeted=result.retargeted + brought.retargeted,
         )
@@ -247,7 +259,12 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
     failures = strangers.failures
     if retarget == "yes":
         failures = tuple(
-            f"{text[: text.index(_ALONE)]}It cannot be retargeted: {strangers.joint_map.missing[0]}. {_ALONE}"
+            phrase(
+                "{file}It cannot be retargeted: {missing}. {remedy}",
+                file=text[: text.index(_ALONE)],
+                missing=strangers.joint_map.missing[0],
+                remedy=_ALONE,
+            )
             for text in failures
         )
     return replace(
@@ -347,7 +364,10 @@ def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
     out = []
     for note, names in files.items():
         first = next(iter(names))
-        out.append(f"{first if len(names) == 1 else f'{len(names)} files ({first} ...)'}: {note}")
+        if len(names) == 1:
+            out.append(phrase("{file}: {note}", file=first, note=note))
+        else:
+            out.append(phrase("{count} files ({first} …): {note}", count=len(names), first=first, note=note))
     return tuple(out)
 
 
@@ -357,11 +377,24 @@ def _other_bones(groups: Sequence[tuple[float, list[str]]]) -> tuple[str, ...]:
     names = [name for _, some in odd for name in some]
     if not names:
         return ()
-    whose = f"'{names[0]}' has" if len(names) == 1 else f"{len(names)} clips ('{names[0]}' ...) have"
-    most = max(share for share, _ in odd)
+    most = 100 * max(share for share, _ in odd)
+    if len(names) == 1:
+        return (
+            phrase(
+                "'{name}' keeps its bones, which are up to {most:.0f} % longer or shorter than those of the "
+                "project's character. Retarget it if hands or feet miss their places.",
+                name=names[0],
+                most=most,
+            ),
+        )
     return (
-        f"{whose} bones up to {most:.0%} longer or shorter than the project's character, and keep "
-        "them. Retarget them if hands or feet miss their places.",
+        phrase(
+            "{count} clips ('{name}' …) keep their bones, which are up to {most:.0f} % longer or shorter "
+            "than those of the project's character. Retarget them if hands or feet miss their places.",
+            count=len(names),
+            name=names[0],
+            most=most,
+        ),
     )
 
 

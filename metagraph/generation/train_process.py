@@ -17,12 +17,13 @@ import msgspec
 from msgspec import Struct
 
 from metagraph.common.programs import python_command, start
+from metagraph.common.wording import phrase
 from metagraph.generation.train_plan import STOP, folder_of
 
-TORCH = (
+TORCH = phrase(
     "Training needs torch, which is not installed: 200 MB to download, 750 MB on disk. Install it with\n"
     "    pip install 'metagraph-studio[train]' --extra-index-url https://download.pytorch.org/whl/cpu\n"
-    "(without that index Linux gets several gigabytes for graphics cards). Using a model needs none of it."
+    "(Without that index, Linux gets several gigabytes for graphics cards.) You can use models without torch."
 )
 PATIENCE = 30.0  # seconds that a process may take to write its model once it is asked to stop
 

@@ -485,15 +485,15 @@ class _Findings:
             far, share = 100 * abs(float(self.seen.lowest[worst])), len(frames) / len(self.seen.times)
             words = (
                 phrase(
-                    "the character is {length:.0f} cm under the floor for {share:.0%} of the time",
+                    "the character is {length:.0f} cm under the floor for {share:.0f} % of the time",
                     length=far,
-                    share=share,
+                    share=100 * share,
                 )
                 if code == "play-under-floor"
                 else phrase(
-                    "the character floats {length:.0f} cm above the floor for {share:.0%} of the time",
+                    "the character floats {length:.0f} cm above the floor for {share:.0f} % of the time",
                     length=far,
-                    share=share,
+                    share=100 * share,
                 )
             )
             remedy = phrase("Set the height of the clip in the program it is from, or skip the clip.")
@@ -512,10 +512,9 @@ class _Findings:
             return
         frame = int(np.argmax(self.seen.inside))
         words = phrase(
-            "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0%} of all that was "
-            "played",
+            "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0f} % of the time",
             length=100 * float(self.seen.inside[frame]),
-            share=float(over.mean()),
+            share=100 * float(over.mean()),
         )
         remedy = phrase(
             "Turn on keeping hands out of the body under Life, or skip the gesture in this stance."

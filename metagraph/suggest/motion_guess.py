@@ -273,7 +273,9 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
             0.75,
             _unusual("body", 100 * traits.height * unusual["body"])
             if "body" in unusual
-            else phrase("rests, and hips and legs do {share:.0%} of the movement", share=lower / all_of),
+            else phrase(
+                "rests, and hips and legs do {share:.0f} % of the movement", share=100 * lower / all_of
+            ),
         )
     if len(unusual) == 1 and found.value not in unusual:
         ((layer, away),) = unusual.items()

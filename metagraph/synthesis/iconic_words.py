@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.graph.conversation.model import Word
 from metagraph.graph.vocabulary import Vocabulary, split_tokens
 from metagraph.suggest.tracks import RATE
@@ -218,18 +219,27 @@ def unsaid(wishes: Sequence[WordWish], new: SpokenTake, start: float, seconds: f
 
 
 def describe_words(shown: Sequence[WordShown], never: Sequence[str] = ()) -> str:
-    """Return what became of words, in words; "" where none was wished. never: `unsaid`."""
+    """Return how well words are met, or "" if no words were given. never: the words of `unsaid`."""
     parts = []
     if shown:
         met = sum(w.met for w in shown)
-        parts.append(f"{met} of {len(shown)} words from where a take says them")
-    missed = [f"'{w.text}' at {w.at:.1f} s" for w in shown if w.known and not w.met]
+        parts.append(
+            phrase(
+                "{met} of {count} words have the motion of a take that says them", met=met, count=len(shown)
+            )
+        )
+    missed = [f"'{w.text}' ({w.at:.1f} s)" for w in shown if w.known and not w.met]
     absent = list(dict.fromkeys(f"'{w.text}'" for w in shown if not w.known))
     if missed:
-        parts.append(f"missed: {', '.join(missed[:5])}{' and more' if len(missed) > 5 else ''}")
+        parts.append(phrase("missed: {words}", words=_first_of(missed)))
     if absent:
-        parts.append(f"no take says {', '.join(absent[:5])}")
+        parts.append(phrase("no take says {words}", words=_first_of(absent)))
     if never:
-        more = f" and {len(never) - 5} more" if len(never) > 5 else ""
-        parts.append(f"not said now: {', '.join(repr(w) for w in never[:5])}{more}")
-    return "; ".join(parts)
+        parts.append(phrase("not in this speech: {words}", words=_first_of([f"'{w}'" for w in never])))
+    return join_phrases(parts, "; ") if parts else ""
+
+
+def _first_of(words: Sequence[str]) -> str:
+    """Return up to five words, and how many more there are."""
+    first, more = ", ".join(words[:5]), len(words) - 5
+    return phrase("{words} and {more} more", words=first, more=more) if more > 0 else first

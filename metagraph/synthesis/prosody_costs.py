@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.graph.conversation.model import Segment, Word
 from metagraph.speech.prosody import OWN, Prosody
 from metagraph.suggest.tracks import RATE
@@ -23,6 +24,7 @@ from metagraph.synthesis.states import States, SynthesisError
 Array = NDArray[Any]
 Measure = Literal["loudness", "rate"]
 MEASURES: tuple[Measure, ...] = ("loudness", "rate")
+_MEASURES: dict[Measure, str] = {"loudness": phrase("loudness"), "rate": phrase("rate")}
 
 FEW = 3  # segments of a kind: of fewer no mean is made
 FARTHEST = 3.0  # spreads: farther apart is not worse
@@ -131,9 +133,15 @@ class ProsodyMatch:
     known: float
 
     def words(self) -> str:
-        """Return it in words."""
-        together = "" if self.correlation is None else f", correlation {self.correlation:.2f}"
-        return f"{self.measure} {self.off:.2f} spreads off{together}"
+        """Return a phrase such as "loudness differs by 0.42 standard deviations, correlation 0.71"."""
+        values = {"measure": _MEASURES[self.measure], "off": self.off}
+        if self.correlation is None:
+            return phrase("{measure} differs by {off:.2f} standard deviations", **values)
+        return phrase(
+            "{measure} differs by {off:.2f} standard deviations, correlation {correlation:.2f}",
+            correlation=self.correlation,
+            **values,
+        )
 
 
 def prosody_match(measure: Measure, of_state: Array, of_frame: Array, way: Array) -> ProsodyMatch | None:

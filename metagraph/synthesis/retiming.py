@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE, clip_poses, track_seconds
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
@@ -63,10 +64,14 @@ class Retiming:
         return np.interp(count, self.moments, count)
 
     def words(self) -> str:
-        """Return it in words."""
-        return (
-            f"{self.changed:.1f} s at another speed: {self.events} starts, ends and stresses "
-            f"{1000 * self.off:.0f} ms off (root mean square) instead of {1000 * self.was:.0f}"
+        """Return in words how much was retimed, and what that gains."""
+        return phrase(
+            "{changed:.1f} s at another speed: {events} starts, ends and stresses are {off:.0f} ms off (root "
+            "mean square), not {was:.0f} ms",
+            changed=self.changed,
+            events=self.events,
+            off=1000 * self.off,
+            was=1000 * self.was,
         )
 
 

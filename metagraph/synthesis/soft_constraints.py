@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import TOLERANCE, HeardStates, WantedSegment
@@ -41,6 +42,12 @@ from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]
+_COSTS = {
+    "loudness": phrase("loudness"),
+    "rate": phrase("rate"),
+    "words": phrase("words"),
+    "timing": phrase("timing"),
+}
 
 
 @dataclass(frozen=True)
@@ -153,10 +160,10 @@ def _unknown(measure: Measure, whose: str) -> str:
 
 @dataclass(frozen=True)
 class SoftReport:
-    """What became of a wish. paid: what each kind of cost came to, metres. matches: how it is said. words:
-    those that wanted motion. unsaid: those that were asked for and are not said. retiming: in words, "" where
-    speed is as in the takes; off, was: seconds events are off (root mean square), after and before it, None
-    where there was none.
+    """How well preferences are met. paid: the sum of each kind of cost, metres. matches: loudness and rate.
+    words: words with motion. unsaid: given words that the speech does not have. retiming: in words, or "".
+    off, was: seconds by which events are off (root mean square), after and before retiming; None
+    without it.
     """
 
     paid: dict[str, float]
@@ -168,15 +175,19 @@ class SoftReport:
     was: float | None = None
 
     def told(self) -> str:
-        """Return it in words, "" where nothing was asked for."""
+        """Return it in words, or "" if there were no preferences."""
         parts = [m.words() for m in self.matches]
         if words := describe_words(self.words, self.unsaid):
             parts.append(words)
         if self.paid:
-            parts.append(f"paid {', '.join(f'{cost:.3g} m for {name}' for name, cost in self.paid.items())}")
+            costs = [
+                phrase("{cost:.3g} m for {name}", cost=cost, name=_COSTS.get(name, name))
+                for name, cost in self.paid.items()
+            ]
+            parts.append(phrase("added cost: {costs}", costs=join_phrases(costs, ", ")))
         if self.retiming:
             parts.append(self.retiming)
-        return "; ".join(parts)
+        return join_phrases(parts, "; ") if parts else ""
 
     def data(self) -> dict[str, Any]:
         """Return it as a program reads it."""
@@ -186,7 +197,7 @@ class SoftReport:
 def soft_report(
     soft: SoftConstraints, states: States, path: Path, retiming: Retiming | None = None
 ) -> SoftReport:
-    """Return what became of a wish by a path, as it is shown."""
+    """Return how well a path meets preferences, as it is shown."""
     way = path.states if retiming is None else path.states[retiming.frames]
     paid = soft.charged.paid(path.states) if soft.charged is not None else {}
     matches = [prosody_match(measure, a, b, way) for measure, a, b in soft.known]

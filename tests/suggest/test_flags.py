@@ -50,9 +50,9 @@ def test_sources_that_disagree_are_told() -> None:
 @pytest.mark.parametrize(
     ("field", "word"),
     [
-        ("kind", "its kind is 30% sure"),
-        ("layer", "its layer is 30% sure"),
-        ("stance", "its stance is 30% sure"),
+        ("kind", "its kind is 30 % certain"),
+        ("layer", "its layer is 30 % certain"),
+        ("stance", "its stance is 30 % certain"),
     ],
 )
 def test_a_doubt_names_what_is_least_sure(field: str, word: str) -> None:

@@ -91,7 +91,7 @@ def test_words_beyond_the_window_and_words_no_take_says_want_nothing() -> None:
     assert [p.frames for p in begins] == [(0, 3 + AROUND)]
     assert unsaid([*wishes, word_wish("ball, cube")], new, 0.0, 2.0) == ("ball",)
     assert unsaid(wishes, new, 4.0, 2.0) == ("round",)
-    assert describe_words((), ("ball",)) == "not said now: 'ball'"
+    assert describe_words((), ("ball",)) == "not in this speech: 'ball'"
     assert describe_words((), [str(n) for n in range(7)]).endswith("'4' and 2 more")
     close = words(("big", 1.0, 1.2), ("round", 1.3, 1.5), ("round", 1.5, 1.7))
     beside = word_places(wishes, graph.states, [new], close, 0.0, 2.0)

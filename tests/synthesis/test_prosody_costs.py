@@ -74,7 +74,7 @@ def test_how_well_a_path_goes_with_speech_is_told_in_spreads() -> None:
     assert same is not None and same.off == 0 and same.correlation == pytest.approx(1) and same.known == 1
     other = prosody_match("rate", of_state, of_frame, np.array([2, 1, 0, 3, 0]))
     assert other is not None and other.correlation == pytest.approx(-1) and other.known == 0.75
-    assert other.words() == "rate 1.33 spreads off, correlation -1.00"
+    assert other.words() == "rate differs by 1.33 standard deviations, correlation -1.00"
     assert prosody_match("rate", of_state, of_frame, np.full(5, 3)) is None
 
 

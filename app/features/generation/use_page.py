@@ -35,7 +35,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
-from app.translation import tr, tr_error, tr_noop, tr_plural
+from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
@@ -197,7 +197,7 @@ class UsePage(GenerationPage):
         self.model.blockSignals(True)
         self.model.clear()
         for name, path in found.items():
-            self.model.addItem(model_title(name), path)
+            self.model.addItem(tr_phrase(model_title(name)), path)
         self.model.choose(now)
         self.model.blockSignals(False)
         self._about()

@@ -198,7 +198,7 @@ class ReviewQueue(QWidget):
             placed, kind = clip not in open_, p.kind.value
             item.setText(0, f"{KIND_MARKS[kind]}  {names[clip]}")
             item.setToolTip(0, entry.name)
-            item.setText(1, "✓" if placed else f"{p.confidence:.0%}")
+            item.setText(1, "✓" if placed else f"{100 * p.confidence:.0f} %")
             odd = not placed and is_doubtful(p)
             item.setForeground(0, QColor(look.dim) if placed else look.kind(kind))
             item.setForeground(1, QColor(look.warning if odd else look.dim))

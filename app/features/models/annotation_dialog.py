@@ -39,7 +39,7 @@ from app.project.annotation_reading import (
 )
 from app.project.document import Document
 from app.stage.session import StageSession
-from app.translation import group_thousands, lazy_texts, tr, tr_error, tr_noop, tr_plural
+from app.translation import group_thousands, lazy_texts, tr, tr_context, tr_error, tr_noop, tr_plural
 from app.widgets.act_strip import ActStrip, format_clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
@@ -206,7 +206,7 @@ class AnnotateDialog(QDialog):
             lambda _: ROLE_ENTRIES,
         )
         self.labels = self._table(
-            tables, tr("Meaning of the labels"), (tr("Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
+            tables, tr("Meaning of the labels"), (tr_context("annotation", "Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
             lambda row: meaning_entries(self.reading.labels[row].meaning),
         )  # fmt: skip
         self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))

@@ -52,11 +52,12 @@ def describe_model_fit(found: ModelComparison) -> str:
         found.expected[worst],
     )
     return tr(
-        "Differs from what was seen: {name} was {seen:.0%} of the actions, but the model makes {made:.0%}.",
+        "Differs from what was seen: {name} was {seen:.0f} % of the actions, but the model makes "
+        "{made:.0f} %.",
         name=name,
-        seen=seen,
-        made=made,
-    ).replace("%", " %")
+        seen=100 * seen,
+        made=100 * made,
+    )
 
 
 class ComparePlot(QWidget):

@@ -148,4 +148,4 @@ class CooccurrenceDialog(QDialog):
 
 
 def _share(value: float) -> str:
-    return f"{value:.0%}".replace("%", " %")
+    return f"{100 * value:.0f} %"

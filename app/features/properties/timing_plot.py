@@ -27,6 +27,7 @@ from app.stage.compatibility_state import Compatibility, compare_proposed_timing
 from app.stage.session import StageSession
 from app.translation import lazy_texts, tr, tr_phrase
 from app.widgets.restyling import set_sheet
+from app.widgets.still_plot import make_number_axes
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, handle_times, move_handle
@@ -61,7 +62,7 @@ class TimingPlot(QWidget):
         self.document, self.session = document, session
         self.action: Action | None = None
         self._setting = False
-        self.plot = pg.PlotWidget(self)
+        self.plot = pg.PlotWidget(self, axisItems=make_number_axes())
         self.plot.setMenuEnabled(False)
         self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the fields beside it have keys
         self.plot.setMouseEnabled(False, False)

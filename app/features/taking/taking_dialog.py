@@ -70,7 +70,7 @@ class TakingDialog(QDialog):
         self.rest.setProperty("dim", True)
         body.addWidget(self.rest)
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
-        self.take = self.buttons.addButton(tr("Take"), QDialogButtonBox.ButtonRole.AcceptRole)
+        self.take = self.buttons.addButton(tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.take)
         self.buttons.accepted.connect(self._take)
         self.buttons.rejected.connect(self.reject)

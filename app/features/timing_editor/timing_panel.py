@@ -135,7 +135,10 @@ class TimingPanel(QWidget):
         for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
         joints = joints_offered(self.document.project)
-        offered = [(tr("Moving parts"), ""), *((words, name) for name, words in joints)]
+        offered = [
+            (tr("Moving parts"), ""),
+            *((tr(words) if words != name else name, name) for name, words in joints),
+        ]
         self.joint.show_entries(offered, self.subject.shows.joint)
         self.speed.show_value(common_value([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
         if first is None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import Action, Project
@@ -36,16 +37,17 @@ class StanceDistance:
     names: tuple[str, str]
 
     def words(self, seconds: float) -> str:
-        """Say what a moment is like: "12 cm from 'hands at sides', shows"."""
+        """Return how far the pose at a moment is from its stance, such as "12 cm from 'on hips'"."""
         if not len(self.times):
             return ""
         at = int(np.argmin(np.abs(self.times - seconds)))
         name = self.names[0 if at < self.pivot else 1]
         if not np.isfinite(self.metres[at]):
             return ""
-        return (
-            f"{self.metres[at] * 100:.0f} cm from '{name}', {'shows' if self.shows[at] else 'does not show'}"
-        )
+        far = 100 * float(self.metres[at])
+        if self.shows[at]:
+            return phrase("{far:.0f} cm from '{name}', a visible jump", far=far, name=name)
+        return phrase("{far:.0f} cm from '{name}', no visible jump", far=far, name=name)
 
 
 def distance_of(

@@ -1,5 +1,5 @@
-"""Motion for speech that no path goes with exactly: constraints are given up one by one, and what is then
-missed is told with its time.
+"""Find motion for speech that no path fits exactly: constraints are dropped one by one, and what the motion
+misses is reported with its time.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.graph.conversation.model import SOUNDS, Segment, Sound
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import EDGE, STRESS, TOLERANCE, HeardStates, WantedSegment, list_wanted
@@ -29,6 +30,19 @@ Array = NDArray[Any]
 WIDER = 2.0  # times the tolerance: what is tried first
 PARTS = (1.0, 0.5, 0.25)  # of the speed that may be changed: less is tried where more would lose something
 FAR = 1.0  # seconds: an event farther off than that is none
+_EVENTS = {"start": phrase("start"), "end": phrase("end"), "stress": phrase("stress")}
+_KINDS: dict[Sound, str] = {
+    "clause": phrase("clause"),
+    "response": phrase("response"),
+    "hesitation": phrase("hesitation"),
+    "idle": phrase("silence"),
+}
+_ALL: dict[Sound, str] = {
+    "clause": phrase("clauses"),
+    "response": phrase("responses"),
+    "hesitation": phrase("hesitations"),
+}
+_MET = phrase("all starts, ends and stresses are met")
 
 
 @dataclass(frozen=True)
@@ -63,9 +77,13 @@ class Miss:
     off: float | None
 
     def words(self) -> str:
-        """Return it in words."""
-        off = f"{self.off:.2f} s off" if self.off is not None else "nowhere near"
-        return f"{self.what} of the {self.kind} at {self.at:.1f} s: {off}"
+        """Return a phrase such as "start of the clause at 2.5 s: 0.50 s off"."""
+        event = phrase(
+            "{what} of the {kind} at {at:.1f} s", what=_EVENTS[self.what], kind=_KINDS[self.kind], at=self.at
+        )
+        if self.off is None:
+            return phrase("{event}: not met", event=event)
+        return phrase("{event}: {off:.2f} s off", event=event, off=self.off)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,12 +100,15 @@ class RelaxedAnswer:
     retiming: Retiming | None = None
 
     def words(self) -> str:
-        """Return what was given up and missed, "" where nothing was."""
+        """Return what was dropped and missed, or "" if all constraints are met."""
         if not self.given_up:
             return ""
-        missed = ", ".join(m.words() for m in self.misses[:3]) or "no start, end or stress is missed"
-        more = f" and {len(self.misses) - 3} more" if len(self.misses) > 3 else ""
-        return f"given up: {', '.join(self.given_up)}; {missed}{more}"
+        missed = join_phrases([m.words() for m in self.misses[:3]], ", ") if self.misses else _MET
+        values = {"dropped": join_phrases(self.given_up, ", "), "missed": missed}
+        more = len(self.misses) - 3
+        if more > 0:
+            return phrase("dropped: {dropped}; {missed} and {more} more", more=more, **values)
+        return phrase("dropped: {dropped}; {missed}", **values)
 
 
 def list_relaxations(asked: Constraints) -> Iterator[Constraints]:
@@ -126,19 +147,19 @@ def _taken_back(kept: Constraints, asked: Constraints) -> Iterator[Constraints]:
 
 
 def describe_given_up(asked: Constraints, kept: Constraints) -> tuple[str, ...]:
-    """Return which constraints were not kept, in words."""
-    out = [f"{kind}s" for kind in asked.use if kind not in kept.use and kind != "idle"]
-    out += ["silence"] if "idle" in asked.use and "idle" not in kept.use else []
+    """Return the names of the dropped constraints."""
+    out = [_ALL[kind] for kind in asked.use if kind not in kept.use and kind != "idle"]
+    out += [phrase("silence")] if "idle" in asked.use and "idle" not in kept.use else []
     if asked.peaks and not kept.peaks:
-        out.append("stresses")
+        out.append(phrase("stresses"))
     if asked.edges and not kept.edges:
-        out.append("where segments begin and end")
+        out.append(phrase("starts and ends of segments"))
     if asked.tolerance != kept.tolerance:
-        out.append(f"exactness, {kept.tolerance:g} s instead")
+        out.append(phrase("exact timing ({tolerance:g} s allowed)", tolerance=kept.tolerance))
     if asked.rules != kept.rules:
-        out.append("how often it jumps")
+        out.append(phrase("the limit on jumps"))
     if asked.words and not kept.words:
-        out.append("that all words are met")
+        out.append(phrase("required words"))
     return tuple(out)
 
 

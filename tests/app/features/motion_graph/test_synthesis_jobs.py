@@ -202,8 +202,11 @@ def test_words_and_sounds_of_the_sides_are_compared(tmp_path: Path) -> None:
         4.0, tuple(cut_segments(segments, 8.0, 4.0)), soft=soft, side=ann, whole=tuple(segments), start=8.0
     )
     found = synthesise(graph, takes, wish, "new", folder=tmp_path)
-    assert "loudness 0.00 spreads off" in found.beside and "rate 0.00 spreads off" in found.beside
-    assert "words from where a take says them" in found.words()
+    assert (
+        "loudness differs by 0.00 standard deviations" in found.beside
+        and "rate differs by 0.00 standard deviations" in found.beside
+    )
+    assert "words have the motion of a take" in found.words()
     plain = synthesise(graph, takes, replace(wish, soft=SoftWish()), "new", folder=tmp_path / "nowhere")
     assert plain.beside == ""
     with pytest.raises(FileError, match="the sound file does not exist"):
