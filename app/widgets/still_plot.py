@@ -15,7 +15,7 @@ from app.translation import localize_number
 AXES = ("left", "bottom")
 
 
-class NumberAxis(pg.AxisItem):  # type: ignore[misc]
+class NumberAxis(pg.AxisItem):
     """An axis whose numbers are written as the chosen language writes them."""
 
     def tickStrings(self, values: Sequence[float], scale: float, spacing: float) -> list[str]:

@@ -44,7 +44,7 @@ def see(
         camera.mimic.count = count  # ids are not used twice
     size = {len(point) for point in message.points}
     if len(size) > 1:
-        raise ValueError("points: all have two numbers, or all have three")
+        raise ValueError("points: give two numbers for every point, or three for every point")
     # Pictures and pose estimators count y downwards and z away from the camera.
     points = [(x, -y, *(-z for z in rest)) for x, y, *rest in message.points]
     asks = camera.mimic.feed(now, points, message.confidence, goals(plan, now, prefix))

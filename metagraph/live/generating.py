@@ -87,9 +87,9 @@ class Generating:
         """Take in what a client hears; return the reply."""
         ident, motion = message.id or None, self.motion
         if motion is None or motion.ended:
-            why = "nothing is generated: ask to `generate` first"
+            why = "no motion is being generated; send `generate` first"
         elif motion.client != client:
-            why = "another client asked to `generate`: it says what is heard"
+            why = "another client started the generated motion; only that client may send its speech"
         else:
             why = motion.hear(message, now)
         return Reply(id=ident, state="refused" if why else "done", why=why)

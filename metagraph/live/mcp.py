@@ -24,8 +24,9 @@ from metagraph.speech.text_gestures import gesture_requests, gesture_words_for, 
 VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
 BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  # JSON-RPC's codes
 _LOOKS = {
-    "status": "What is playing at this moment, and how much waits.",
-    "describe": "All that may be asked of this character: stances, actions and tags by layer, lines, points.",
+    "status": "What is playing now, and how many requests wait.",
+    "describe": "Everything this character can be asked to do: stances, actions and tags by layer, "
+    "lines, points.",
 }
 
 
@@ -150,7 +151,7 @@ class McpLine(StdioLine):
         elif method == "tools/call":
             return self._tool(ident, parameters.get("name"), parameters.get("arguments") or {})
         else:
-            self._fail(ident, NO_METHOD, f"'{method[:80]}' is not understood here")
+            self._fail(ident, NO_METHOD, f"there is no method '{method[:80]}'")
         return False
 
     def _tool(self, ident: Any, name: Any, given: Any) -> bool:

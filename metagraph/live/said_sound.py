@@ -102,9 +102,9 @@ class SaidSounds:
         try:
             data = binascii.a2b_base64(ask.audio or "", strict_mode=True)
         except binascii.Error:
-            raise RequestError("audio: should be base64 of 16-bit numbers") from None
+            raise RequestError("audio: give base64 of 16-bit numbers") from None
         if not data or len(data) % 2:
-            raise RequestError("audio: should be base64 of 16-bit numbers, an even count of bytes")
+            raise RequestError("audio: give base64 of 16-bit numbers, an even number of bytes")
         line = self._lines.get(key)
         if line is None or not goes_on or line.rate != ask.rate:
             line = self._lines[key] = SaidSound(ask.rate)
