@@ -82,7 +82,7 @@ class Animal:
     above: str | None = None
 
     def called(self, joint: str) -> str | None:
-        """Return what a joint of the figure is called, None where it is missing."""
+        """Return what a joint of the figure is called, None if it is missing."""
         side, _, part = joint.partition("_")
         if side not in ("left", "right"):
             return self.names.get(joint)

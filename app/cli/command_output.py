@@ -88,8 +88,8 @@ def say(options: Namespace, words: str, data: Any) -> None:
 
 
 def may_delete(options: Namespace, folder: Path) -> bool:
-    """Return whether a folder may be deleted: `--yes` says so, or somebody who is asked. Raises ValueError
-    where nobody can be asked.
+    """Return whether a folder may be deleted: `--yes` says so, or somebody who is asked. Raises ValueError if
+    nobody can be asked.
     """
     if options.yes:
         return True

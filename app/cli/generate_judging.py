@@ -139,7 +139,7 @@ def require_alike(models: dict[str, Model]) -> None:
 def find_floor(
     folder: Path | None, given: list[Path], takes: tuple[Take, ...], rig: PoseRig
 ) -> list[Any] | None:
-    """Return other true motion to the same speech, poses of each take; None where there is none. Raises
+    """Return other true motion to the same speech, poses of each take; None if there is none. Raises
     ValueError.
     """
     from metagraph.generation.take_files import find_takes, read_take_batch

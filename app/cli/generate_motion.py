@@ -185,7 +185,7 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
 
 
 def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:
-    """Return who speaks when: `[T, 4]`, of the words where there are any, else of the sound."""
+    """Return who speaks when: `[T, 4]`, of the words if there are any, else of the sound."""
     from metagraph.generation.features import conversation_activity
     from metagraph.generation.sampler import hear_activity
 

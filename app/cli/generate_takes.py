@@ -54,9 +54,7 @@ def make_progress_printer(options: Namespace, what: str) -> Any:
 
 
 def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) -> TakeBatch:
-    """Read the requested takes, and print notes on them. Raises ValueError where none
-    can be used.
-    """
+    """Read the requested takes, and print notes on them. Raises ValueError if none can be used."""
     from app.cli.language_options import read_speaking
     from metagraph.errors import FileError
     from metagraph.generation.take_files import find_takes, read_take_batch

@@ -167,7 +167,7 @@ def train(options: Namespace) -> int:
 
 
 def _begin(options: Namespace) -> None:
-    """Read the takes and write the training's folder. Raises ValueError where that would lose something."""
+    """Read the takes and write the training's folder. Raises ValueError if that would lose something."""
     from app.cli.generate_takes import read_all
     from metagraph.generation.takes import split_takes
     from metagraph.generation.train_plan import PLAN, folder_of, plan_of, settings_for, write_training

@@ -13,7 +13,7 @@ SIZE = 192  # pixels
 
 
 def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[str, Any]:
-    """Return clip or stance -> `[H, W, 4]` uint8; none where nothing can be drawn here."""
+    """Return clip or stance -> `[H, W, 4]` uint8; none if nothing can be drawn here."""
     from app.cli.render_command import load_figure
     from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError

@@ -182,8 +182,8 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
 
 
 def _keep(session: LiveSession, options: Namespace) -> None:
-    """Add the session to the project as it is saved now; where that cannot be, to a project beside it.
-    Raises FileError, which says where the session is.
+    """Add the session to the project as it is saved now; if that cannot be, to a project beside it. Raises
+    FileError, which says where the session is.
     """
     from metagraph.errors import FileError
     from metagraph.formats.store import open_project

@@ -86,8 +86,8 @@ def claim_outputs(options: Namespace) -> Outputs:
 class ProjectOutput:
     """A project file that a command makes or changes. No other program may have it open at that time.
 
-    Enter it before the project is read. Raises FileError where a window or another command has it. versions:
-    how many earlier ones are kept, as the settings say when None.
+    Enter it before the project is read. Raises FileError if a window or another command has it. versions: how
+    many earlier ones are kept, as the settings say when None.
     """
 
     def __init__(self, path: Path, versions: int | None = None) -> None:

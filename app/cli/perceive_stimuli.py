@@ -32,7 +32,7 @@ Sounds = dict[tuple[str, str], np.ndarray | None]
 @dataclass(frozen=True)
 class StimulusSource:
     """What a condition shows of an item. seen: figures and what they play, or the video there is. start:
-    seconds into it. sound: of a moment on, so long, mono at RATE; None where nothing is heard.
+    seconds into it. sound: of a moment on, so long, mono at RATE; None if nothing is heard.
     """
 
     start: float
@@ -85,7 +85,7 @@ class Stimuli:
         return {(c, i.id): levels.get(f"{c}\n{i.id}") for c in self.plan.conditions for i in items}
 
     def camera(self, item: Stretch) -> Any:
-        """Return the camera that sees an item in all conditions; None where nothing is drawn."""
+        """Return the camera that sees an item in all conditions; None if nothing is drawn."""
         from preview.camera import frame_whole_figure
 
         boxes, several = [], False

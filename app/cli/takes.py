@@ -124,8 +124,8 @@ def read_side_speech(
     path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
 ) -> SpokenTake:
     """Return the segments that one speaker of a file moves with (`segments_heard_by`) with its words, and how
-    they are said. sound: of the recording, None where there is none; where it has a channel for each of them,
-    of its own. transcript: where its words are, None where they are in the file itself. Raises FileError.
+    they are said. sound: of the recording, None if there is none; where it has a channel for each of them, of
+    its own. transcript: where its words are, None if they are in the file itself. Raises FileError.
     """
     from metagraph.graph.conversation.model import segments_heard_by
     from metagraph.speech.prosody import prosody
@@ -158,7 +158,7 @@ def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
 
 
 def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
-    """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
+    """Return takes, the speech of each, and their names. Raises ValueError if files do not go together."""
     takes = read_take_files(options.takes)
     files = {path.stem: path for path in options.speech}
     if len(files) < len(options.speech):
@@ -186,8 +186,8 @@ def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[s
 
 
 def read_given_files(options: Namespace, what: str) -> dict[str, Path]:
-    """Return the sounds or transcripts that were given, under the names of their files; none where there is
-    no such option. Raises ValueError where two have one name.
+    """Return the sounds or transcripts that were given, under the names of their files; none if there is no
+    such option. Raises ValueError if two have one name.
     """
     given = getattr(options, what, [])
     out = {path.stem: path for path in given}
@@ -197,6 +197,6 @@ def read_given_files(options: Namespace, what: str) -> dict[str, Path]:
 
 
 def pair_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
-    """Return takes, and what was heard during each. Raises ValueError where files do not go together."""
+    """Return takes, and what was heard during each. Raises ValueError if files do not go together."""
     clips, spoken, _ = pair_takes(options)
     return clips, [one.segments for one in spoken]

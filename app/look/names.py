@@ -126,7 +126,7 @@ _KEPT: dict[tuple[Layer, str, Kind], _Kept] = {}
 
 
 def node_names(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[str, str]:
-    """Return `row_names` of a node, made anew only where what is called there is."""
+    """Return `row_names` of a node, made again only where what is called there is."""
     graph, key = project.graphs[layer], (layer, stance, kind)
     kept = _KEPT.get(key)
     if kept is not None and kept.graph is graph:

@@ -1,4 +1,4 @@
-"""Draw the picture of the character: one painter for two widgets, an OpenGL widget and, where there is no
+"""Draw the picture of the character: one painter for two widgets, an OpenGL widget and, if there is no
 OpenGL, an image.
 """
 
@@ -155,7 +155,7 @@ class ImageView(CameraMouse, QWidget):
     """Draws the same picture through an offscreen context, for platforms without OpenGL widgets.
 
     `coarse` is how many times wider and higher the picture's pixels are than the widget's; it is more than 1
-    where nobody looks. `beside` is another view of the same scenes, which is painted first and lives longer.
+    if nobody looks. `beside` is another view of the same scenes, which is painted first and lives longer.
     """
 
     coarse = 1

@@ -24,7 +24,7 @@ NUMBERS = 8.0  # points
 class JointFigure(QWidget):
     """clicked: the joint that was clicked. circled: the joints within a drag's rectangle, and whether they
     are to move: by the left button, or, with Alt or the right one, not. turned: the joint under the pointer,
-    "" where there is none, and by how many notches the wheel was turned there.
+    "" if there is none, and by how many notches the wheel was turned there.
     """
 
     clicked = Signal(str)

@@ -33,7 +33,7 @@ class OneStep(_Base):
         self._rest.timeout.connect(self.tell_value)
 
     def tell_value(self) -> None:
-        """Tell what the value is now, if that was held back."""
+        """Report what the value is now, if that was held back."""
         self._rest.stop()
         self._held = False
         before, self._before = self._before, None

@@ -16,9 +16,7 @@ _LENGTH = struct.Struct("<q")
 
 
 class ChildChannel:
-    """One end. Raises OSError where the other has ended. Sends and receives may be on threads of their
-    own.
-    """
+    """One end. Raises OSError if the other has ended. Sends and receives may be on threads of their own."""
 
     def __init__(self, incoming: IO[bytes], outgoing: IO[bytes]) -> None:
         self._in, self._out = incoming, outgoing
@@ -57,7 +55,7 @@ class Child(ChildChannel):
         super().__init__(self.process.stdout, self.process.stdin)
 
     def close(self, patience: float) -> None:
-        """Tell it that nothing more comes, and wait until it has ended, as `end` does."""
+        """Report it that nothing more comes, and wait until it has ended, as `end` does."""
         self._shut(self._out)
         self.end(patience)
 

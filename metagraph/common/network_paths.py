@@ -114,7 +114,7 @@ def is_allowed() -> bool:
 
 
 def find_refusal(name: str, folder: Path | None = None) -> str | None:
-    """Return why a name that a file in a folder gives is not opened now; None where it may be."""
+    """Return why a name that a file in a folder gives is not opened now; None if it may be."""
     return None if _allowed[0] else explain_refusal(name, folder)
 
 

@@ -54,7 +54,7 @@ _BEGIN = (
 def start(command: Sequence[str], **options: Any) -> subprocess.Popen[Any]:
     """Start a program; options as for `subprocess.Popen`. command: its first word is the whole path of a
     program. env: variables besides those of `environment`. cwd: another folder than the empty one, of
-    Metagraph's own. Raises OSError where it cannot be started, ValueError for a program without its folder.
+    Metagraph's own. Raises OSError if it cannot be started, ValueError for a program without its folder.
     """
     import subprocess
 
@@ -151,9 +151,7 @@ def _system_places() -> Iterator[Path]:
 
 
 def system_program(name: str) -> str | None:
-    """Return the path of one of the system's programs; None where it has none, or one that others can
-    change.
-    """
+    """Return the path of one of the system's programs; None if it has none, or one that others can change."""
     for place in _system_places():
         for ending in (".exe", ".cmd") if sys.platform == "win32" else ("",):
             path = place / (name + ending)

@@ -19,8 +19,8 @@ _PLACES = {
 
 
 def user_folder(kind: Literal["caches", "data"]) -> Path | None:
-    """Return the user's folder for caches or for what programs remember; None where nobody's home is known.
-    It may not be there yet.
+    """Return the user's folder for caches or for what programs remember; None if nobody's home is known. It
+    may not be there yet.
     """
     try:
         home = Path.home()

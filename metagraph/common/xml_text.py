@@ -32,8 +32,8 @@ def quote_xml(text: str) -> str:
 
 
 def replaced_note(values: Iterable[Any]) -> Phrase | None:
-    """Return what to say where texts lose characters in XML; None where none does. values: texts, and
-    mappings and lists of them.
+    """Return what to say where texts lose characters in XML; None if none does. values: texts, and mappings
+    and lists of them.
     """
     lost = sum(_CANNOT.search(text) is not None for text in _texts(values))
     if not lost:

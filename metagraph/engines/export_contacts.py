@@ -50,7 +50,7 @@ def read_contacts(contacts: Sequence[c.ExportedContact]) -> tuple[ContactSpan, .
 
 
 def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
-    """Return what runtimes need for contacts and the guard, None where neither does anything."""
+    """Return what runtimes need for contacts and the guard, None if neither does anything."""
     rig = rigs_of(project).contacts if has_contacts(project) else None
     if rig is None:
         return None
@@ -68,9 +68,7 @@ def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
 
 
 def read_contact_rig(rig: c.ExportedContactRig, skeleton: Skeleton) -> ContactRig:
-    """Return an exported contact rig as the player takes it. Raises DataError where it does not fit the
-    joints.
-    """
+    """Return an exported contact rig as the player takes it. Raises DataError if it does not fit the joints."""
     count = len(rig.joints)
     places = [
         *(p for arm in rig.arms for p in arm),

@@ -17,7 +17,7 @@ from metagraph.playback.posing.weight import Weight, arm_track_rows, foot_rows_o
 
 
 def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
-    """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None where none
+    """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None if none
     does.
     """
     weight = rigs_of(project).weight
@@ -69,9 +69,7 @@ def _plants(project: Project) -> bool:
 def read_weight(
     rig: c.ExportedWeightRig | None, clips: Sequence[c.ExportedClip], skeleton: Skeleton
 ) -> Weight:
-    """Return an exported weight rig as the player takes it. Raises DataError where it does not fit the
-    joints.
-    """
+    """Return an exported weight rig as the player takes it. Raises DataError if it does not fit the joints."""
     rows: Mapping[str, list[list[int]]] = {clip.id: clip.arms for clip in clips}
     feet: Mapping[str, list[list[int]]] = {clip.id: clip.feet for clip in clips}
     if rig is None:

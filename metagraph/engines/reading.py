@@ -50,7 +50,7 @@ from metagraph.playback.posing.rigs import ResolvedProject
 def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
     """Read an export back into a project with the same graph, ids and constants. motions: load the clips from
     its GLB. resolved: take gestures' phases, the base pose and the rig as the export has them, as a runtime
-    does, instead of finding them anew.
+    does, instead of finding them again.
 
     Raises FileError naming the field that is wrong as a path into the JSON.
     """
@@ -174,9 +174,8 @@ def _clips(
 
 
 def glb_beside(path: Path, document: c.Export) -> Path:
-    """Return the GLB of an export's JSON. Raises FileError where it is not the one that the JSON was written
-    with: an export that was interrupted, or files copied one by one, leave two that do not belong
-    together.
+    """Return the GLB of an export's JSON. Raises FileError if it is not the one that the JSON was written
+    with: an export that was interrupted, or files copied one by one, leave two that do not belong together.
     """
     glb = path.parent / document.glb
     if document.glb_sha256 is not None and is_file(glb) and digest(glb) != document.glb_sha256:
@@ -205,7 +204,7 @@ def _base(document: c.Export, skeleton: Skeleton) -> ClipEntry:
 
 
 def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
-    """Return the body of an export's rig. Raises DataError where it does not fit the joints."""
+    """Return the body of an export's rig. Raises DataError if it does not fit the joints."""
     faces = {len(rig.face.joints)} | {len(row) for row in (*rig.face.turns, *rig.face.shifts)}
     joints = [
         *rig.chain,

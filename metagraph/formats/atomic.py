@@ -33,8 +33,8 @@ _SWEPT: set[str] = set()  # folders this process has looked through
 def write_atomically(path: Path, content: bytes, like: Access | None = None) -> None:
     """Write a file whole or not at all; a link is kept, its target written. Raises FileError.
 
-    like: who may read it where there is none yet (`new_file.access_of` another file); what is replaced keeps
-    its own mode. When it returns, the file survives a power cut, as far as the system keeps its word. What
+    like: who may read it if there is none yet (`new_file.access_of` another file); what is replaced keeps its
+    own mode. When it returns, the file survives a power cut, as far as the system keeps its word. What
     processes that are gone have left half-written in that folder is swept, once a process.
     """
     try:

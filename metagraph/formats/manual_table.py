@@ -44,7 +44,7 @@ class TableRow:
 
 @dataclass(frozen=True)
 class Filled:
-    """What came of a table. links: how many were drawn; changed: how many were there, and are set anew.
+    """What came of a table. links: how many were drawn; changed: how many were there, and are set again.
     problems: rows that were left out, in words.
     """
 

@@ -2,8 +2,8 @@
 tenth of the time, whatever the files' format.
 
 Kept under what a file holds, its name, what was left as it is, and the programs that read it: when any of
-these is another, it is read anew. What cannot be read back, whatever is wrong with it, is read anew as well,
-so losing it costs time alone. METAGRAPH_MOTION_CACHE names another folder; empty, nothing is kept.
+these is another, it is read again. What cannot be read back, whatever is wrong with it, is read again as
+well, so losing it costs time alone. METAGRAPH_MOTION_CACHE names another folder; empty, nothing is kept.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def _cache(folder: Path | None) -> DiskCache:
 
 
 def motion_cache_folder() -> Path | None:
-    """Return the folder it is kept in, None where nothing is."""
+    """Return the folder it is kept in, None if nothing is."""
     told = os.environ.get("METAGRAPH_MOTION_CACHE")
     return cache_folder("motion") if told is None else Path(told) if told else None
 

@@ -20,7 +20,7 @@ PRIVATE = Access(0o600, -1)  # for what lies in the user's own folders
 
 
 def access_of(path: Path | None) -> Access | None:
-    """Return who may read and write a file; None where there is none, or its folder is not to be reached."""
+    """Return who may read and write a file; None if there is none, or its folder is not to be reached."""
     if path is None:
         return None
     try:

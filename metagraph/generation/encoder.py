@@ -197,5 +197,5 @@ def mask_after(window: Array, last: int) -> Array:
 
 
 def _share(lookahead: int, most: int) -> float:
-    """Return how much of what could be known ahead is known, 0..1; 1 where there is nothing to know."""
+    """Return how much of what could be known ahead is known, 0..1; 1 if there is nothing to know."""
     return lookahead / most if most else 1.0

@@ -50,7 +50,7 @@ class Generator(ABC):
         yield self.step(heard, seed, take, frame)
 
     def rest(self) -> Array | None:
-        """Return the poses `[delay, X]` that are left when no more are made, None where none are."""
+        """Return the poses `[delay, X]` that are left when no more are made, None if none are."""
         return None
 
     def _hears(self, control: Control, lookahead: int | None) -> None:
@@ -181,7 +181,7 @@ def generator(
     lookahead: int | None = None,
     guidance: float = chunks.GUIDANCE,
 ) -> Generator:
-    """Return a model that begins anew. first: the pose `[X]`, standardised, that it goes on from. lookahead:
+    """Return a model that begins again. first: the pose `[X]`, standardised, that it goes on from. lookahead:
     frames ahead that are known, None for all it can use.
     """
     if isinstance(sizes, FlowSizes):

@@ -18,7 +18,7 @@ _PIECE, _MARGIN = 30.0, 1.0  # seconds that are filtered at once, and what is th
 
 
 def integrated_loudness(samples: Array, rate: int) -> float:
-    """Return the integrated loudness of one channel `[N]`, LUFS; -inf where nothing is louder than the gate.
+    """Return the integrated loudness of one channel `[N]`, LUFS; -inf if nothing is louder than the gate.
     Shorter than a block, the whole is one.
     """
     samples = np.asarray(samples, np.float64)

@@ -55,7 +55,7 @@ class Chance:
 
 def project_rig(project: Project) -> PoseRig:
     """Return the joints of a project's figure that models move, relative to its base pose. Raises PoseError
-    where there are none.
+    if there are none.
     """
     if project.skeleton is None:
         raise PoseError("the project has no clips, so there is nobody to move: import some first")

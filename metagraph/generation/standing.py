@@ -76,7 +76,7 @@ def find_begun_trainings(folder: Path) -> list[Standing]:
 
 
 def standing_of(training: Path) -> Standing | None:
-    """Return how far the training in a folder got, None where there is none that can be gone on with."""
+    """Return how far the training in a folder got, None if there is none that can be gone on with."""
     try:
         plan = read_training_plan(training)
     except FileError:
@@ -104,7 +104,7 @@ def read_checkpoint_note(array: np.ndarray) -> CheckpointNote:
 
 def hold(training: Path) -> IO[bytes] | None:
     """Take a training's folder for this process until what is returned is closed, or the process ends however
-    it ends; None where another process has it. Raises OSError where nothing can be written.
+    it ends; None if another process has it. Raises OSError if nothing can be written.
     """
     return try_hold(training / LOCK)
 

@@ -1,4 +1,4 @@
-"""Folders of takes: clips, each with the sound beside it, and its words where there are any.
+"""Folders of takes: clips, each with the sound beside it, and its words if there are any.
 
 `talk.bvh` is said with `talk.wav`: its first channel is the take's own voice, the second the partner's. Two
 clips of one conversation are `talk_1.bvh` and `talk_2.bvh` (also a and b, left and right), the sides of

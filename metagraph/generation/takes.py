@@ -249,7 +249,7 @@ def _marks(conversation: Conversation, side: int) -> TakeMarks:
 
 def mirror_take(rig: PoseRig, clip: Clip, take: Take) -> Take:
     """Return a take's twin: left and right of its clip exchanged, what is heard as it was. Raises TakeError
-    where the skeleton is not the same on both sides.
+    if the skeleton is not the same on both sides.
     """
     try:
         poses = encode_clip(rig, mirror(clip, pairs_of(clip.skeleton)), FPS)

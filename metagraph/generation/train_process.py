@@ -57,14 +57,14 @@ class TrainingEvent(Struct, frozen=True, kw_only=True):
 
 
 def find_missing_tools() -> str | None:
-    """Return what to do before anything can be trained, in words; None where torch is installed."""
+    """Return what to do before anything can be trained, in words; None if torch is installed."""
     return TORCH if importlib.util.find_spec("torch") is None else None
 
 
 class TrainingProcess:
     """A training that runs. out: the model's file; its folder has a plan (`train_plan.write_training`).
     resume: go on from the last checkpoint. export: write the model of the last checkpoint, and end. heard: is
-    given each event, on a thread of its own. Raises TrainingFailedError where torch is missing.
+    given each event, on a thread of its own. Raises TrainingFailedError if torch is missing.
     """
 
     def __init__(

@@ -31,8 +31,8 @@ def offered_requests(
 
     `project`, its name; `words`; `modes`; `joints` (name, parent, part); `layers`: for each its `start`, its
     `stances` (id, name), its `actions` but loops of stances (id, name, kind, stance, seconds; `to`, `limb`
-    and `tags` where there are any) and `tags` with the number of actions; `lines` (id, text), by id; `points`
-    by name, metres.
+    and `tags` if there are any) and `tags` with the number of actions; `lines` (id, text), by id; `points` by
+    name, metres.
     """
     skeleton, parts = project.skeleton, anatomy.project_parts(project) if project.skeleton is not None else ()
     return {

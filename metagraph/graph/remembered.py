@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 class Remembered(Generic[T]):
-    """What was found of the parts of projects, for as long as a project with the very same parts lives.
+    """What was found of the parts of projects, for as long as a project with the same parts lives.
 
     parts: of a project, those that what is found depends on; compared by identity. most: how many results are
     remembered, the latest. What is found must not refer to the project or its clips.

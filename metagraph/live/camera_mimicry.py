@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class ClientCamera:
-    """One client's person. wish: how they are mimicked; a change of it begins anew."""
+    """One client's person. wish: how they are mimicked; a change of it begins again."""
 
     mimic: Mimic
     wish: tuple[bool, bool, tuple[Layer, ...]]

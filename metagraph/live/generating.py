@@ -23,8 +23,8 @@ KEPT = 100  # pieces of motion of a session that can be made again
 
 class Generating:
     """What of a session is generated. models: names to files, those that clients may choose from. graphs:
-    names to motion graphs, likewise, None while they are being made. kept: of motion that graphs made, and
-    that is over.
+    names to motion graphs, in the same way, None while they are being made. kept: of motion that graphs made,
+    and that is over.
     """
 
     def __init__(

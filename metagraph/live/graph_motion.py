@@ -206,8 +206,8 @@ class GraphMotion(LaidMotion):
             begins = now + (clause.after or 0.0) if clause.at is None else clause.at
             if begins + clause.duration < now or begins > now + FARTHEST:
                 return (
-                    f"comes: the session is at {now:.1f} s; {begins:.1f} s is over, or more than {FARTHEST:g} s "
-                    "ahead"
+                    f"comes: the session is at {now:.1f} s; {begins:.1f} s is over, or more than "
+                    f"{FARTHEST:g} s ahead"
                 )
         self._tell_comes(message.comes, now)
         if len(voices[0]):

@@ -119,7 +119,7 @@ class HeardVoice:
         return found
 
     def _stressed(self, at: float, low: float = -np.inf) -> list[SpeechNews]:
-        """Return the highest moment since the last trough as a stress, where it stands out, and begin anew.
+        """Return the highest moment since the last trough as a stress, where it stands out, and begin again.
         low: what the next has to rise from; after a pause it need not.
         """
         top, when, rises = self._top, self._at, self._top - self._low

@@ -61,8 +61,8 @@ def read_kept(path: Path) -> tuple[KeptMotion, ...]:
 
 
 def remake_motion(graph: LiveGraph, kept: KeptMotion, name: str) -> Clip:
-    """Return the motion of a session again, as a clip. Raises ValueError where the takes are others than
-    those it was made of.
+    """Return the motion of a session again, as a clip. Raises ValueError if the takes are others than those
+    it was made of.
     """
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.extending.path import replay_path

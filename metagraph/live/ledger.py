@@ -22,7 +22,7 @@ _NAMED = re.compile(r"'c(\d+)/([^']*)'")
 
 def plan_key(client: int, ident: str) -> str:
     """Return what a client's id is called in the plan: apart from other clients', and free of what has a
-    meaning there, but for a number behind a "/": "answer/2" was made for what "answer" says.
+    meaning there, except for a number behind a "/": "answer/2" was made for what "answer" says.
     """
     made = _MADE.fullmatch(ident)
     if made:

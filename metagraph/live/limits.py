@@ -270,7 +270,7 @@ def beyond(ask: Any, now: float) -> str:
 @dataclass(frozen=True)
 class Timed:
     """An ask as it is understood now. missed: seconds since it should have come. why: it comes too late, ""
-    where it does not.
+    if it does not.
     """
 
     ask: Any

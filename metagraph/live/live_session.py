@@ -565,7 +565,7 @@ class LiveSession:
         return (told and speech.start == before.start) or (not told and speech.start == before.end)
 
     def _end_replaced(self, open_: Open) -> None:
-        """Tell that what waited under an id has ended, if something else has taken its place; so have the
+        """Report that what waited under an id has ended, if something else has taken its place; so have the
         gestures that were made for what was said.
         """
         if self._goes_on_from(open_):
@@ -581,7 +581,7 @@ class LiveSession:
             self._end_waiting(key, ask, "replaced", "asked again under the same id")
 
     def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
-        """Tell that something has ended which was promised and has not begun."""
+        """Report that something has ended which was promised and has not begun."""
         fixed = self.now + self.project.settings.lookahead
         self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
 

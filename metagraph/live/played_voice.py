@@ -25,7 +25,7 @@ SHORTEST = 0.04  # seconds a clause lasts at least
 
 class PlayedVoice:
     """samples `[N]` float32: RATE a second. segments: what is said in them. announce: seconds before a
-    segment begins at which it is told; None where it is only heard. graph: the name of what moves with it.
+    segment begins at which it is told; None if it is only heard. graph: the name of what moves with it.
     """
 
     def __init__(

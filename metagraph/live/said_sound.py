@@ -1,4 +1,4 @@
-"""The sound of a line as it comes in, and the mouth shapes it tells, where nothing better is told."""
+"""The sound of a line as it comes in, and the mouth shapes it tells, if nothing better is told."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ class SaidSound:
 
 
 def join_asks(before: Say, ask: Say) -> Say | None:
-    """Return an ask with what another one of the same tick said before it under its id; None where it is in
-    the place of that.
+    """Return an ask with what another one of the same tick said before it under its id; None if it is in the
+    place of that.
     """
     if before.line is not None or ask.line is not None or ask.at is not None:
         return None

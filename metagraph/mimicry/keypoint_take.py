@@ -42,7 +42,7 @@ class KeypointTakeError(ValueError):
 
 def clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name: str) -> Clip:
     """Return a clip of the skeleton at `FPS` frames a second that moves as a person's keypoints do. Raises
-    KeypointTakeError where they are flat, too few, or the skeleton lacks arms, legs or a head.
+    KeypointTakeError if they are flat, too few, or the skeleton lacks arms, legs or a head.
     """
     if keypoints.dims < 3:
         raise KeypointTakeError(

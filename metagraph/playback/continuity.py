@@ -94,7 +94,7 @@ class ContinuityLaw:
         return out
 
     def blended(self, plan: Plan, times: Array, shown: Pose) -> AddedMoves:
-        """Return what blends do beyond what the clips do; nothing where nothing blends.
+        """Return what blends do beyond what the clips do; nothing if nothing blends.
 
         times `[N]`: a sixtieth of a second apart. shown: what the layers of `plan` compose then.
         """
@@ -230,7 +230,7 @@ def _seams(project: Project, plan: Plan) -> Iterator[tuple[float, float]]:
 
 
 def _rounds(project: Project, plan: Plan, of: LayerPlan) -> Iterator[tuple[Rest, list[float]]]:
-    """Yield each rest of a layer, and when its loop begins anew."""
+    """Yield each rest of a layer, and when its loop begins again."""
     ends = [*(rest.fade_start + rest.fade for rest in of.rests[1:]), plan.end]
     for rest, end in zip(of.rests, ends, strict=False):
         first, last = project.span(rest.action)

@@ -209,9 +209,7 @@ def _turn(project: Project, state: State, start: float, link: Link | None) -> Pl
 
 
 def _drawn(manual: Manual, state: State, seed: int, visit: int) -> Link | None:
-    """Draw the finished link by which a state will be left at its `visit`-th turn, None where there is
-    none.
-    """
+    """Draw the finished link by which a state will be left at its `visit`-th turn, None if there is none."""
     finished = {x.id: x for x in manual.leaving(state.id) if x.condition.when == "finished"}
     weights = {i: x.condition.weight for i, x in finished.items() if x.condition.weight > 0}
     return finished[pick(seed, f"{state.id} {visit}", "link", weights)] if weights else None
@@ -231,8 +229,8 @@ def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
 
 
 def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
-    """Return the fewest links from a state whose last waits for a trigger, None where there is no way. Of
-    equals the first drawn.
+    """Return the fewest links from a state whose last waits for a trigger, None if there is no way. Of equals
+    the first drawn.
     """
     before: dict[str, tuple[str, Link] | None] = {state: None}
     queue = [state]

@@ -170,7 +170,7 @@ def _chunks(seconds: float) -> int:
 
 
 def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool]) -> PlayedPoses | None:
-    """Return what is seen of a plan; None where it was cancelled."""
+    """Return what is seen of a plan; None if it was cancelled."""
     skeleton = project.skeleton
     assert skeleton is not None
     roles = anatomy.project_roles(project)

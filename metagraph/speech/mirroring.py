@@ -83,7 +83,7 @@ def _seen(
 
 def stance_shapes(project: Project) -> dict[str, Array]:
     """Return where `SEEN` is in each stance of the body `[6, 3]`, x to the left, from the hips, in units of
-    the hips' height; none where that cannot be told.
+    the hips' height; none if that cannot be told.
     """
     roles = anatomy.project_roles(project)
     if project.skeleton is None or not {"hips", *SEEN} <= roles.keys():

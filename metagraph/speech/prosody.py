@@ -33,11 +33,11 @@ class Prosody:
 def prosody(
     segments: Sequence[Segment], words: Sequence[Word] = (), samples: Array | None = None, rate: int = 0
 ) -> Prosody:
-    """Return how the segments of a recording are said. words: of the same speaker, with their times.
-    samples, rate: the sound `[N]`, None where there is none; then loudness is not known.
+    """Return how the segments of a recording are said. words: of the same speaker, with their times. samples,
+    rate: the sound `[N]`, None if there is none; then loudness is not known.
 
     The rate is told by the letters of the words that lie in a segment, from the first one's start to the last
-    one's end; where no words have times by the segments' own texts; where there are no texts by the syllables
+    one's end; where no words have times by the segments' own texts; if there are no texts by the syllables
     that are heard. Letters, as they are counted alike in every language that writes them; in Chinese they are
     syllables.
     """

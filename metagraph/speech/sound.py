@@ -228,7 +228,7 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
 
 
 def sound_kind(path: str | Path) -> str:
-    """Return what a file is by its first bytes, in words ("an MP3 file"), "" where they do not tell."""
+    """Return what a file is by its first bytes, in words ("an MP3 file"), "" if they do not tell."""
     try:
         with open_file(path, SOUND_FILE) as file:
             head = file.read(64)

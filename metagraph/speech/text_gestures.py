@@ -85,7 +85,7 @@ def read_gesture_words(path: str | Path) -> GestureWords:
 
 @cache
 def words_for_gesture(language: str = "en") -> GestureWords:
-    """Return the lexicon that comes along for a language, English where there is none."""
+    """Return the lexicon that comes along for a language, English if there is none."""
     file = _files().get(language)
     return msgspec.json.decode((file or _files()["en"]).read_bytes(), type=_Words).read()
 

@@ -49,7 +49,7 @@ def yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
 
 def yin_differences(frames: Array, longest: int) -> Array:
     """Return the cumulative mean normalised difference `[K, longest]` (the paper's equation 8) of frames `[K,
-    N]` float64 to themselves 1 to `longest` samples later: 0 where all repeats, about 1 where nothing does.
+    N]` float64 to themselves 1 to `longest` samples later: 0 where all repeats, about 1 if nothing does.
     """
     size = _fast(frames.shape[1] + longest)
     spectrum = np.fft.rfft(frames, size)

@@ -74,7 +74,7 @@ def _least_certain_stance(p: Proposal) -> float:
 
 
 def chance_wrong(p: Proposal) -> float:
-    """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong where
+    """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong if
     nobody can be sure of its stance, or of the one that a transition ends in: a clip that begins 40 cm from
     its stance belongs elsewhere, whatever its name says.
     """

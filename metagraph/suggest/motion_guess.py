@@ -45,7 +45,7 @@ Likely = Sequence[tuple[float, Shape]]
 
 @dataclass(frozen=True)
 class MotionGuess:
-    """What a clip seems to be; None where the motion says nothing.
+    """What a clip seems to be; None if the motion says nothing.
 
     `stance` and `end_stance` are `Shape`s; only transitions have an end stance. `runner_up` is the next
     nearest stance. `stroke` is in seconds. `chances` has the probability of each kind, adding up to 1.

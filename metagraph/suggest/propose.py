@@ -414,7 +414,7 @@ def _loop_elsewhere(
     traits: Mapping[str, Traits],
 ) -> str | None:
     """Return the clip of another layer that rests in a stance: the one whose pose there is nearest, if it is
-    near, else, where nobody knows what the stance looks like, one whose stance has the same name.
+    near, else, if nobody knows what the stance looks like, one whose stance has the same name.
     """
     name, found = plain_stance_name(place.name), list[tuple[float, str]]()
     for clip, p in resting.items():

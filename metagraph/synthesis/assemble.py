@@ -59,8 +59,8 @@ def assemble(
     origin, facing +z; from there the root goes on by what each frame goes on in its take. blend: frames on
     either side of a transition in which one motion fades into the other, by a cosine, rotations along the
     shortest way (slerp). hold_feet: where it goes from piece to piece, feet that stood in the takes stay
-    where they were put down. onward: all of the blend comes after the transition, as live, where nobody knew
-    of it before. retiming: how it is played faster and slower; feet are held by what is then shown. Raises
+    where they were put down. onward: all of the blend comes after the transition, as live, if nobody knew of
+    it before. retiming: how it is played faster and slower; feet are held by what is then shown. Raises
     SynthesisError when the takes are others.
     """
     takes = [c for c in clips if c.frames >= 2]

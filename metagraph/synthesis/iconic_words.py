@@ -46,7 +46,7 @@ class WordWish:
 
 def word_wish(text: str) -> WordWish:
     """Return what is wished by "big", "big = huge, tall" (motion for "big", of takes that say any of them) or
-    "big, huge" (for both, of either). Raises ValueError where a side names no word.
+    "big, huge" (for both, of either). Raises ValueError if a side names no word.
     """
     left, equals, right = text.partition("=")
     said, alike = (tuple(w.strip() for w in part.split(",") if split_tokens(w)) for part in (left, right))
@@ -109,7 +109,7 @@ def word_places(
     the same moment the first of them has it.
 
     At a frame so far from the middle of a word, a state may come that is as far from the middle of such a
-    word in its take, give or take the tolerance, seconds. Raises SynthesisError where there are not as many
+    word in its take, give or take the tolerance, seconds. Raises SynthesisError if there are not as many
     takes, or neither side's words have times.
     """
     if len(takes) != len(states.starts) - 1:
@@ -183,7 +183,7 @@ def only_states_of_words(places: Sequence[WordPlace]) -> dict[int, Array]:
 @dataclass(frozen=True)
 class WordShown:
     """What became of a word. text, at: as said, seconds. known: whether any take says it. met: whether motion
-    is from where one does. take, there: from which, and from which second of it; None where it is not met.
+    is from where one does. take, there: from which, and from which second of it; None if it is not met.
     """
 
     text: str

@@ -34,7 +34,7 @@ UNKNOWN = 1.0  # spreads that what nobody knows is held to be off; two of one sp
 @dataclass(frozen=True, eq=False)
 class SpokenTake:
     """What is known of the speech a take was recorded with, or new motion is for. segments: as
-    `segments_heard_by` has them. words: its own, with times. prosody: of the segments, None where it was not
+    `segments_heard_by` has them. words: its own, with times. prosody: of the segments, None if it was not
     looked for.
     """
 
@@ -79,7 +79,7 @@ def standardise_prosody(recordings: Sequence[SpokenTake], measure: Measure) -> l
 
 def of_states(states: States, takes: Sequence[SpokenTake], measure: Measure) -> Array:
     """Return `[F]` how the segment a state is in is said, in spreads of its speaker; NaN outside of one's own
-    speech. Raises SynthesisError where there are not as many takes.
+    speech. Raises SynthesisError if there are not as many takes.
     """
     if len(takes) != len(states.starts) - 1:
         raise SynthesisError(f"{len(states.starts) - 1} takes have states, but {len(takes)} have speech")
@@ -124,7 +124,7 @@ def prosody_cost(
 @dataclass(frozen=True)
 class ProsodyMatch:
     """How well a path is said as what is heard, over frames where both are known. off: the mean difference,
-    in spreads. correlation: of both, -1..1; None where there is none. known: share of the spoken frames.
+    in spreads. correlation: of both, -1..1; None if there is none. known: share of the spoken frames.
     """
 
     measure: Measure
@@ -145,7 +145,7 @@ class ProsodyMatch:
 
 
 def prosody_match(measure: Measure, of_state: Array, of_frame: Array, way: Array) -> ProsodyMatch | None:
-    """Return how well the states `[T]` of a path go with speech, None where nothing can be compared."""
+    """Return how well the states `[T]` of a path go with speech, None if nothing can be compared."""
     shown = of_state[np.asarray(way)]
     both = np.isfinite(shown) & np.isfinite(of_frame[: len(shown)])
     if not both.any():

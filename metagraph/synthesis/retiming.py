@@ -76,7 +76,7 @@ class Retiming:
 
 
 def check_share(most: float) -> float:
-    """Return a share by which speed may change. Raises SynthesisError where it is none."""
+    """Return a share by which speed may change. Raises SynthesisError if it is none."""
     if not 0 <= most <= HIGHEST:
         raise SynthesisError(f"speed may change by 0 to {HIGHEST:.0%}, not by {most:.0%}")
     return most
@@ -126,8 +126,8 @@ def retime(
     most: float = MOST,
     reach: float | None = None,
 ) -> Retiming | None:
-    """Return how a path is retimed so that its events come nearer to where they are wanted, None where
-    nothing can be or need be moved.
+    """Return how a path is retimed so that its events come nearer to where they are wanted, None if nothing
+    can be or need be moved.
 
     way `[T]`: its states; jumps: frames that come by a transition. free `[F]`: `retimable`. most: share by
     which speed may change at most. reach: frames within which an event of the path is the one that is wanted,
@@ -196,8 +196,8 @@ def _pairs(
 
 def _changeable(steady: Array, a: int, b: int) -> Array:
     """Return `[b - a]` how much speed may change between the frames a and b, 0..1: all that it may in each
-    stretch that is not steady, but for its ends, where it rises and falls by a cosine. Stretches too short to
-    rise and fall in have none.
+    stretch that is not steady, except for its ends, where it rises and falls by a cosine. Stretches too short
+    to rise and fall in have none.
     """
     out = np.zeros(b - a)
     for first, after in _stretches(~steady[a:b]):
@@ -240,7 +240,7 @@ def timing_cost(
 ) -> FrameCost | None:
     """Return what frames cost in which an event comes early or late, so that there is less to retime: none
     where it is in time, as much as `price` of the graph's threshold (limit, metres) where it is off by as
-    much as it may be, its square between. None where no event is wanted.
+    much as it may be, its square between. None if no event is wanted.
     """
     frames, order = len(wanted), list(wanted.places.items())
     inside = np.flatnonzero(wanted.window >= 0)

@@ -104,7 +104,7 @@ class SoftConstraints:
         self, path: Path, heard: HeardStates, want: WantedSegment, reach: float | None, part: float = 1.0
     ) -> Retiming | None:
         """Return how a path is retimed, as `retiming.retime` does, by some part of what speed may change;
-        None where it is not.
+        None if it is not.
         """
         if self.free is None:
             return None
@@ -121,7 +121,7 @@ class SoftMaterial:
         self, wish: SoftWish, states: States, clips: Sequence[Clip], takes: Sequence[SpokenTake], limit: float
     ) -> None:
         """clips, takes: what the states are of, and what was said; limit: the graph's threshold, metres.
-        Raises SynthesisError where what is to be compared is not known of any take.
+        Raises SynthesisError if what is to be compared is not known of any take.
         """
         self.wish, self.states, self.limit = wish, states, limit
         # Takes of one frame have no states.
@@ -135,7 +135,7 @@ class SoftMaterial:
     def constraints(
         self, new: SpokenTake, start: float, seconds: float, tolerance: float = TOLERANCE
     ) -> SoftConstraints:
-        """Return the wish for new speech, from a second of it on. Raises SynthesisError where what is to be
+        """Return the wish for new speech, from a second of it on. Raises SynthesisError if what is to be
         compared is not known of it.
         """
         wish, kinds, known = self.wish, [], []

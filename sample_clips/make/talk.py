@@ -125,7 +125,7 @@ def speak(
     voices: Sequence[SpeakingVoice] = VOICES,
 ) -> Talk:
     """Return turns as they sound, of as many who talk as there are voices. crosstalk: dB of the others in
-    each microphone. Raises MissingError where eSpeak NG is not there.
+    each microphone. Raises MissingError if eSpeak NG is not there.
     """
     pieces: list[tuple[int, float, Array, list[tuple[str, float, float]], list[Said]]] = []
     at = 0.0

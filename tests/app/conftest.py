@@ -306,7 +306,7 @@ def drive(
 
     def styled(app: QApplication, look: WindowTheme) -> None:
         """The application outlives each window here: the same style again would only polish every widget
-        anew.
+        again.
         """
         if app.styleSheet() != style_sheet(look):
             apply_theme(app, look)

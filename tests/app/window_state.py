@@ -1,5 +1,5 @@
-"""What of a window can be told apart: the values of its widgets, of its actions, and of every object of ours
-behind them.
+"""What of a window can be distinguished: the values of its widgets, of its actions, and of every object of
+ours behind them.
 """
 
 from __future__ import annotations

@@ -84,7 +84,7 @@ def turns(language: str, seed: int) -> tuple[maker.Turn, ...]:
 
 
 def takes(model: Model, folder: Path) -> tuple[list[Take], list[Take]]:
-    """Return takes of all languages, and the same speech performed anew."""
+    """Return takes of all languages, and the same speech performed again."""
     opened_as = open_for_command(ROOT / "sample_clips" / "sample.metagraph.yaml")
     project = getattr(opened_as, "project", opened_as)
     found, again = [], []

@@ -212,7 +212,7 @@ def test_nothing_that_is_added_jumps_in_ten_minutes(sample: Project) -> None:
 def test_contacts_of_an_action_that_repeats_go_over_the_seam_with_its_pose(
     sample: Project, name: str, start: float, end: float
 ) -> None:
-    """Contacts began anew with the clip's time at each seam, and threw a hand 41 cm in a sixtieth."""
+    """Contacts began again with the clip's time at each seam, and threw a hand 41 cm in a sixtieth."""
     action = next(a for a in sample.graphs["arms"].actions.values() if a.name.endswith(name) and a.contacts)
     timing = {"start": start, "end": end, "repeat": 6.0, "earliest_exit": None, "stroke": None}
     project = edits.update_actions(sample, [action.id], timing=timing)

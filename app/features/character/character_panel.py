@@ -142,7 +142,7 @@ class PreviewPanel(QWidget):
         self.view.setAccessibleDescription(words)
 
     def _follow(self) -> None:
-        """Draw again, and show anew, what changes."""
+        """Draw again, and show again, what changes."""
         session, performance = self.session, self.performance
         session.transport.moved.connect(lambda _: self.view.update())
         session.transport.playing_changed.connect(self._show_state)

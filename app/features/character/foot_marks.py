@@ -136,7 +136,7 @@ class FootLine(QWidget):
         self.hide()
 
     def show_feet(self, seen: FeetSeen | None) -> None:
-        """Show what is known of the feet round now; None where nothing is."""
+        """Show what is known of the feet round now; None if nothing is."""
         if seen is not None and len(seen.times) > 1:  # until it is known again, what was stands
             self._known = seen
             self.setAccessibleDescription(describe_slide(seen))

@@ -64,7 +64,7 @@ class Ghosts(QWidget):
         ]
 
     def _of_action(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[Actor]:
-        """Return the moments of an action that are to be seen through, but for those that are now."""
+        """Return the moments of an action that are to be seen through, except for those that are now."""
         skin, out = self.panel.session.onion.skin, []
         for moment, opacity in skin.moments if skin is not None else ():
             at = shown.seconds_of(skin.action, moment) if skin is not None else None

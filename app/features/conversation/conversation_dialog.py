@@ -58,7 +58,7 @@ MOST = 6  # notes that are shown; more of them do not help
 
 
 class ImportDialog(QDialog):
-    """imported: the id of the conversation that was added. It is read on a thread, anew whenever files or
+    """imported: the id of the conversation that was added. It is read on a thread, again whenever files or
     lists change.
     """
 

@@ -283,7 +283,7 @@ class Editing(QObject):
 
 
 def find_highest_pitch(heard: SideSound, start: float, end: float) -> float | None:
-    """Return when in a stretch a pitch is highest; None where there is none."""
+    """Return when in a stretch a pitch is highest; None if there is none."""
     if heard.pitch is None:
         return None
     rate = heard.pitch.rate

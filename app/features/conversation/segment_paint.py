@@ -315,7 +315,7 @@ def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
 
 
 def peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
-    """Return how high a peak's dot stands: on the pitch, or below all of it where there is none."""
+    """Return how high a peak's dot stands: on the pitch, or below all of it if there is none."""
     if heard is not None and heard.pitch is not None:
         values, at = heard.pitch.lows[0], round(seconds * heard.pitch.rate)
         near = values[max(0, at - 5) : at + 6]

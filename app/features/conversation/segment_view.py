@@ -207,7 +207,7 @@ class SegmentView(QWidget):
         painter.end()
 
     def _picture(self, of: Conversation) -> QPixmap:
-        """Return everything but the playhead, made anew only when something else than the playhead has
+        """Return everything but the playhead, made again only when something else than the playhead has
         changed.
         """
         ratio, chosen, s = self.devicePixelRatioF(), self.editing.chosen, self.session

@@ -199,7 +199,7 @@ class SidesDialog(SettingDialog):
         return bool(name)
 
     def _mover(self, side: int) -> str | None:
-        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where
+        """Return the path of the project that moves a side, None for the one at hand. Raises EditError if
         there is none.
         """
         text = self.movers[side].text().strip()
@@ -218,8 +218,8 @@ class SidesDialog(SettingDialog):
         return None if own is not None and own.exists() and whole.samefile(own) else text
 
     def _body(self, side: int) -> str | None:
-        """Return the path of the character a side is drawn with, None for its project's. Raises EditError
-        where there is no file.
+        """Return the path of the character a side is drawn with, None for its project's. Raises EditError if
+        there is no file.
         """
         text = self.bodies[side].text().strip()
         if text and text != self.conversation.sides[side].character:

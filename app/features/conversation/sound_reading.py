@@ -69,12 +69,12 @@ class Sounds(QObject):
         self._follow()  # the conversation may be on stage before its panel is opened
 
     def of(self, conversation: Conversation, side: int) -> SideSound | None:
-        """Return a side's sound as far as it is read; None where the side has none."""
+        """Return a side's sound as far as it is read; None if the side has none."""
         key = self._key(conversation, side)
         return self.heard.get(key) if key is not None else None
 
     def forget(self) -> None:
-        """Read everything anew when it is wanted next: files may be there now that were missing."""
+        """Read everything again when it is wanted next: files may be there now that were missing."""
         if self._job is not None:
             self._job.cancel()
         self._job = None

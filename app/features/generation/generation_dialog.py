@@ -69,7 +69,7 @@ class GenerationDialog(QDialog):
         self.said.setText(words)
 
     def _say_begun(self) -> None:
-        """Tell of a training that was cut short: it may have been forgotten."""
+        """Report a training that was cut short: it may have been forgotten."""
         cut = self.learn.begun.cut_short()
         if cut:
             for page in (self.use, self.learn):

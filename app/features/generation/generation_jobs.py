@@ -58,9 +58,7 @@ class TakeRow:
 
 @dataclass(frozen=True, eq=False)
 class TakeListing:
-    """What came of looking through folders. batch: takes that can be learned from, None where there are
-    none.
-    """
+    """What came of looking through folders. batch: takes that can be learned from, None if there are none."""
 
     rows: tuple[TakeRow, ...] = ()
     batch: TakeBatch | None = None

@@ -31,7 +31,7 @@ LOOKS = 200  # milliseconds between two looks at what was said
 
 class Process(Protocol):
     """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. wait: the
-    model's file once it has ended; raises RuntimeError, in words, where there is none, TimeoutError.
+    model's file once it has ended; raises RuntimeError, in words, if there is none, TimeoutError.
     """
 
     @property
@@ -113,7 +113,7 @@ def describe_progress(standing: Standing) -> str:
 
 
 class TrainingRun(QObject):
-    """moved: something happened, an Event. ended: the model's file, None where there is none, and words."""
+    """moved: something happened, an Event. ended: the model's file, None if there is none, and words."""
 
     moved = Signal(object)
     ended = Signal(object, str)
@@ -175,8 +175,8 @@ def describe_event(event: TrainingEvent) -> str:
 
 
 def describe_goal(event: TrainingEvent) -> tuple[str, float]:
-    """Return what an event tells of how near the training is to its goal, in words and as a number; "" where
-    it says nothing of it.
+    """Return what an event tells of how near the training is to its goal, in words and as a number; "" if it
+    says nothing of it.
     """
     for name, words in GOALS.items():
         if name in event.numbers:

@@ -59,7 +59,7 @@ class Beat:
             self._timer.start() if on else self._timer.stop()
 
     def drawn(self, seconds: float) -> None:
-        """Tell how long drawing has taken."""
+        """Report how long drawing has taken."""
         self._rest = min(RATE, int(seconds / SLOW))
 
     def stop(self) -> None:

@@ -265,7 +265,7 @@ class ReviewDialog(QDialog):
 
     @property
     def _proposed(self) -> Proposal | None:
-        """What the current clip is taken for; None where there is none, or it was left aside."""
+        """What the current clip is taken for; None if there is none, or it was left aside."""
         return self.review.found.proposals.get(self.current or "")
 
     def _tell(self, name: Field, value: Any) -> None:

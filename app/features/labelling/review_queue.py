@@ -141,7 +141,7 @@ class ReviewQueue(QWidget):
         self.parted.setVisible(True)
 
     def part(self, stances: Sequence[str], made: Sequence[str], unbridged: Sequence[str] = ()) -> None:
-        """Tell of stances, by name, that no clip leads to or from, or else what was made of blends; and why
+        """Report stances, by name, that no clip leads to or from, or else what was made of blends; and why
         others cannot be joined by blending.
         """
         names = ", ".join(stances[:4]) + (" …" if len(stances) > 4 else "")

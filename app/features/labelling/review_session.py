@@ -1,4 +1,4 @@
-"""A review at work on a document: proposals made and made anew, corrections kept and learned from, clips
+"""A review at work on a document: proposals made and made again, corrections kept and learned from, clips
 placed and taken back, stances joined that no clip leads to.
 """
 
@@ -238,7 +238,7 @@ class Reviewing(QObject):
         return tuple(describe_bridges(after, made))
 
     def _learn(self, clips: list[str]) -> None:
-        """Remember what was corrected of clips that are now placed, and look at the rest anew."""
+        """Remember what was corrected of clips that are now placed, and look at the rest again."""
         entries = self.document.project.clips
         names = [entries[c].name for c in self.clips if c in entries]
         corrected = [

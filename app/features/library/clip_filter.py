@@ -76,7 +76,7 @@ _ALLOWED = {"layer": LAYERS, "kind": KINDS, "color": COLORS, "stars": range(STAR
 
 
 def filter_from_text(text: str) -> Filter | None:
-    """Return a filter from a line of JSON; None where it is none."""
+    """Return a filter from a line of JSON; None if it is none."""
     try:
         data = json.loads(text)
     except ValueError:

@@ -89,7 +89,7 @@ class ClipList(QListView):
             self.scrollTo(self.currentIndex())
 
     def relayout(self, *_: object) -> None:
-        """Lay everything out anew, now."""
+        """Lay everything out again, now."""
         columns = self.style_of == "columns"
         width = self.header.length() if columns else self.viewport().width()
         self.layout_of = ClipLayout(self.rows.sections, width, cell_of(self.style_of, self.side, width))

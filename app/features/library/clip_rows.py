@@ -123,7 +123,7 @@ class ClipRows(QAbstractListModel):
         self.layoutChanged.emit()
 
     def row_of(self, clip: str) -> int | None:
-        """Return the row of a clip; None where it is not shown."""
+        """Return the row of a clip; None if it is not shown."""
         return self._row.get(clip)
 
     def listed(self) -> list[str]:

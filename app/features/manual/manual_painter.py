@@ -380,7 +380,7 @@ def facts(project: Project, state: State) -> str:
 
 
 def _small(painter: QPainter, look: ManualLook, state: State, rect: QRectF) -> None:
-    """Write a name where there is no room for more: in two lines, or in one what it ends with, which tells it
+    """Write a name if there is no room for more: in two lines, or in one what it ends with, which tells it
     from its like.
     """
     font = _font(look.font.toString(), 10.0, False)

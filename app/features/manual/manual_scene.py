@@ -181,8 +181,8 @@ class ManualScene:
         return ManualHit("link", self.straight[nearest].id) if away[nearest] <= near else NOTHING
 
     def inside(self, band: QRectF) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Return the states and links a rubber band takes: nodes it touches, or where there are none the
-        arrows it holds.
+        """Return the states and links a rubber band takes: nodes it touches, or if there are none the arrows
+        it holds.
         """
         states = tuple(i for i, rect in self.nodes.items() if i != ANY and rect.intersects(band))
         if states or not len(self.lines):

@@ -206,7 +206,8 @@ class AnnotateDialog(QDialog):
             lambda _: ROLE_ENTRIES,
         )
         self.labels = self._table(
-            tables, tr("Meaning of the labels"), (tr_context("annotation", "Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
+            tables, tr("Meaning of the labels"),
+            (tr_context("annotation", "Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
             lambda row: meaning_entries(self.reading.labels[row].meaning),
         )  # fmt: skip
         self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))

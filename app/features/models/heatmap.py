@@ -248,9 +248,7 @@ class HeatMap(QWidget):
         painter.end()
 
     def _name(self, state: State) -> str:
-        """What tells a state from others of its kind: the limb, or the kind itself where there are no
-        sides.
-        """
+        """What tells a state from others of its kind: the limb, or the kind itself if there are no sides."""
         return tr(state[0] if self.layer == "arms" else state[1])
 
     def _row_words(self, state: State, high: float) -> str:

@@ -224,7 +224,7 @@ class MotionGraphDialog(QDialog):
     # --- what counts as a jump
 
     def _changed(self) -> None:
-        """Something was chosen: compare frames anew, soon."""
+        """Something was chosen: compare frames again, soon."""
         self.graph = None
         self.takes = takes_of(self.document.project, self.picked.chosen())
         if self._counted != (self.takes.clips, self.level.value()):

@@ -31,7 +31,7 @@ LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
 
 @dataclass(frozen=True, eq=False)
 class ChosenTakes:
-    """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none where
+    """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none if
     nobody knows. sides: of the conversation each was recorded along with.
     """
 
@@ -71,7 +71,7 @@ def find_recorded_side(project: Project, clip: str) -> tuple[str, int] | None:
 
 
 def describe_unusable_clips(project: Project) -> str:
-    """Return which clips cannot be takes, and why, in words; "" where all can."""
+    """Return which clips cannot be takes, and why, in words; "" if all can."""
     moving = [e for e in project.clips.values() if e.motion is not None]
     alike = [e for e in moving if e.motion is not None and e.motion.skeleton == project.skeleton]
     still = sum(e.frames <= 1 for e in alike)

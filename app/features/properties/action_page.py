@@ -218,7 +218,7 @@ class ActionPage(Halves):
         self._show_trouble()
 
     def set_misfits(self, misfits: dict[str, str]) -> None:
-        """Tell what is wrong with actions; action id -> words."""
+        """Report what is wrong with actions; action id -> words."""
         self.misfits = misfits
         self._show_trouble()
 

@@ -121,7 +121,7 @@ class PropertiesPanel(QScrollArea):
     # --- showing
 
     def _moved_on(self) -> None:
-        """Another layer or stance is looked at: that shows where nothing is selected."""
+        """Another layer or stance is looked at: that shows if nothing is selected."""
         chosen = self.session.selection
         if not chosen.selected_actions() and not chosen.clips:
             self.show_selection()

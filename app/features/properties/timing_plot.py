@@ -348,7 +348,7 @@ class TimingPlot(QWidget):
         self.changed.emit(fields)
 
     def _snapped(self, name: str, seconds: float) -> float:
-        """Let the ends come to rest where nothing shows, unless Alt is held."""
+        """Let the ends come to rest if nothing shows, unless Alt is held."""
         seen = self.strip.seen
         if seen is None or QApplication.keyboardModifiers() & Qt.KeyboardModifier.AltModifier:
             return seconds

@@ -80,7 +80,7 @@ class Recorder(QObject):
         self._second.start()
 
     def stop(self) -> None:
-        """Tell what is left, and follow no more."""
+        """Report what is left, and follow no more."""
         self._tell_edit()
         self._tell_operators()
         self._second.stop()
@@ -95,7 +95,7 @@ class Recorder(QObject):
         self._write(kind, fields)
 
     def boundary(self) -> None:
-        """Tell what is still held back: a phase begins or ends."""
+        """Report what is still held back: a phase begins or ends."""
         self._tell_edit()
         self._tell_operators()
 
@@ -116,7 +116,7 @@ class Recorder(QObject):
         self._undone = stack.command(self._index) if self._index < self._count else None
 
     def _moved(self, index: int) -> None:
-        """Tell an edit, an undo or a redo from how the stack of steps has moved."""
+        """Report an edit, an undo or a redo from how the stack of steps has moved."""
         stack = self._stack
         last, count = self._index, stack.count()
         if index > last and self._undone is not None and stack.command(last) is self._undone:

@@ -178,7 +178,7 @@ class Lanes(LaneSpan):
     _by_keys = False
 
     def _picture(self) -> QPixmap:
-        """Return everything but the playhead, made anew only when something else than the playhead has
+        """Return everything but the playhead, made again only when something else than the playhead has
         changed.
         """
         s, p, ratio = self.session, self.performance, self.devicePixelRatioF()

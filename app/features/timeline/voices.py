@@ -29,7 +29,7 @@ Key = tuple[str | None, int | None, str | None]  # a line's sound, channel and T
 
 @dataclass(frozen=True)
 class LineVoice:
-    """wave: None where there is no sound, or it cannot be read. loudest: of its samples, 0..1."""
+    """wave: None if there is no sound, or it cannot be read. loudest: of its samples, 0..1."""
 
     wave: Envelope | None = None
     loudest: float = 1.0

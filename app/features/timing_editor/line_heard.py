@@ -33,7 +33,7 @@ class Said:
 
 
 def find_line_heard(shown: ShownPlayback, action: Action) -> Said | None:
-    """Return what is said where an action first plays with something said; None where nothing is."""
+    """Return what is said where an action first plays with something said; None if nothing is."""
     if shown.clip is not None:
         return None
     for cue in shown.plan.layers[action.layer].cues:
@@ -46,7 +46,7 @@ def find_line_heard(shown: ShownPlayback, action: Action) -> Said | None:
 
 
 def lay_line(project: Project, ident: str, action: Action, stroke: float) -> Said | None:
-    """Return a line of the project laid on an action so that its first stress falls on the stroke; None where
+    """Return a line of the project laid on an action so that its first stress falls on the stroke; None if
     the line is gone.
     """
     if ident not in project.lines:
@@ -58,7 +58,7 @@ def lay_line(project: Project, ident: str, action: Action, stroke: float) -> Sai
 
 
 def find_requested_line(project: Project, action: Action) -> Said | None:
-    """Return the line that an action is asked for with, performed or not; None where there is none."""
+    """Return the line that an action is asked for with, performed or not; None if there is none."""
     found = asked_line(project, action) if action.clip in project.clips else None
     if found is None:
         return None

@@ -321,7 +321,7 @@ def _in_sight(axis: Axis, seconds: float) -> bool:
 def paint_wave(
     painter: QPainter, look: TimingLook, rect: QRectF, axis: Axis, low: Array, high: Array
 ) -> None:
-    """Paint a sound. low, high `[W]`: its least and greatest in columns of pixels, -1..1; low greater where
+    """Paint a sound. low, high `[W]`: its least and greatest in columns of pixels, -1..1; low greater if
     there is none.
     """
     half = rect.height() / 2

@@ -44,8 +44,8 @@ def row_size(row: str) -> tuple[float, float, float]:
 
 @dataclass(frozen=True)
 class TrackRows:
-    """ident: of the action. rows: by name, across the whole width. title: where its name stands, empty where
-    it is the only one. dope: where its joints stand.
+    """ident: of the action. rows: by name, across the whole width. title: where its name stands, empty if it
+    is the only one. dope: where its joints stand.
     """
 
     ident: str

@@ -67,8 +67,8 @@ class Shows:
 
 
 class Subject(QObject):
-    """changed: what is to be drawn, but for the playhead. before: the state that is compared with, None while
-    nothing is. marked: the state the present one would be compared with.
+    """changed: what is to be drawn, except for the playhead. before: the state that is compared with, None
+    while nothing is. marked: the state the present one would be compared with.
     """
 
     changed = Signal()
@@ -204,7 +204,7 @@ class Subject(QObject):
         return self.thumbnails.strip(action.clip) if wanted and action is not None else []
 
     def sheet(self, ident: str) -> DopeSheet:
-        """Return what moves when in an action's clip; nothing where that is not wanted."""
+        """Return what moves when in an action's clip; nothing if that is not wanted."""
         project = self.document.project
         action = project.action(ident)
         entry = project.clips.get(action.clip) if action is not None else None

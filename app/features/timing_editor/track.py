@@ -97,7 +97,7 @@ class Facts:
 
 class TimingTrack:
     """ident: of the action. The slow parts - speeds, distances - rest on its clip and its stances, not on its
-    times, so that a drag makes nothing of them anew.
+    times, so that a drag makes nothing of them again.
     """
 
     def __init__(self, ident: str) -> None:
@@ -107,8 +107,8 @@ class TimingTrack:
         self._facts: Once[Facts | None] = Once()
 
     def facts(self, project: Project, joint: str, curves: Callable[[Action], Curves | None]) -> Facts | None:
-        """Return what is shown of its action; None where that or its clip is gone. joint: whose curve is
-        drawn, "" for what the action moves. curves: gives what is known of its jumps.
+        """Return what is shown of its action; None if that or its clip is gone. joint: whose curve is drawn,
+        "" for what the action moves. curves: gives what is known of its jumps.
         """
         action = project.action(self.ident)
         entry = project.clips.get(action.clip) if action is not None else None

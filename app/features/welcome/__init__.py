@@ -20,7 +20,7 @@ def contribute(shell: Shell) -> Contribution:
     pages: list[WelcomePage] = []
 
     def begin() -> None:
-        """Lay the page over the graph, or over the large panel where there is none; once there are places."""
+        """Lay the page over the graph, or over the large panel if there is none; once there are places."""
         places = shell.services[PanelPlaces]
 
         def rooms() -> list[QWidget]:

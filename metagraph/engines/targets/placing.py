@@ -68,7 +68,7 @@ class ForeignFilesError(ExportError):
 
 
 def read_record(folder: Path) -> ExportRecord | None:
-    """Return what was exported into a folder; None where nothing was, or where it cannot be told."""
+    """Return what was exported into a folder; None if nothing was, or where it cannot be told."""
     try:
         return msgspec.json.decode(read_file(folder / RECORD, TEXT_FILE), type=ExportRecord)
     except (FileError, msgspec.DecodeError, UnicodeDecodeError):

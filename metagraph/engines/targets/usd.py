@@ -74,7 +74,7 @@ def _places(where: str, rows: list[dict[str, Any]], scope: Prim) -> dict[str, st
 
 
 def _relationship(name: str, to: list[str | None]) -> list[str]:
-    """Return a relationship to prims, nothing where one is missing."""
+    """Return a relationship to prims, nothing if one is missing."""
     if None in to or not to:
         return []
     ends = ", ".join(f"<{place}>" for place in to)

@@ -403,7 +403,7 @@ class Cpp(Braces):
         return ("lang::at(", self.plain(node.of), ", ", self.plain(node.place), ")")
 
     def replaced(self, node: x.Replaced) -> Document:
-        """The record made anew, with all its fields."""
+        """The record made again, with all its fields."""
         changes = dict(node.changes)
         of: Document = "this" if isinstance(node.of, x.This) else self.strong(node.of, ALONE)
         given: list[Document] = [

@@ -132,7 +132,7 @@ def weights_data(graph: MetaGraph) -> Data:
 
 
 def to_data(project: Project) -> Data:
-    """Return the whole project; inverse of `from_data` but for the motion of clips and what lies below a
+    """Return the whole project; inverse of `from_data` except for the motion of clips and what lies below a
     microsecond.
 
     Raises DataError when a number is not finite.
@@ -207,7 +207,7 @@ def struct_data(value: Any) -> Any:
 
 def _conversation_data(conversation: Conversation) -> Data:
     """Return a conversation; what most edits leave as it was, thousands of words of each side, is not worked
-    out anew.
+    out again.
     """
     short = tuple(msgspec.structs.replace(side, words=(), segments=()) for side in conversation.sides)
     out: Data = _rounded(msgspec.to_builtins(msgspec.structs.replace(conversation, sides=short)))

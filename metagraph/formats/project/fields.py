@@ -27,7 +27,7 @@ class DataError(ValueError):
 
 
 def round_number(value: float) -> float | int:
-    """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises
+    """Return a number rounded to six decimals, or to six digits if nothing else would be left. Raises
     ValueError.
     """
     if not abs(value) <= LARGEST:
@@ -69,7 +69,7 @@ def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
 
 @cache
 def _defaults(cls: Any, skip: tuple[str, ...]) -> tuple[tuple[str, Any], ...]:
-    """Return a dataclass's fields and their defaults, MISSING where there is none."""
+    """Return a dataclass's fields and their defaults, MISSING if there is none."""
     return tuple((f.name, f.default) for f in fields(cls) if f.name not in skip)
 
 
@@ -130,7 +130,7 @@ def refuse_unknown_fields(data: Data, allowed: Collection[str], where: str) -> N
 
 
 def too_large(data: Any, where: str) -> str | None:
-    """Return the place of a number in plain data that no project may hold, None where there is none."""
+    """Return the place of a number in plain data that no project may hold, None if there is none."""
     if isinstance(data, dict | list):
         inside = data.items() if isinstance(data, dict) else enumerate(data)
         for key, value in inside:
@@ -239,7 +239,7 @@ def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) 
 
 
 def joint_weights_data(weights: Iterable[tuple[str, float]]) -> Data:
-    """Return how far joints move, by name; nothing where all move wholly."""
+    """Return how far joints move, by name; nothing if all move entirely."""
     found = {name: round_number(weight) for name, weight in weights}
     return {"joint_weights": found} if found else {}
 
@@ -264,7 +264,7 @@ def joint_weights_from(data: Data, where: str) -> tuple[tuple[str, float], ...]:
 
 
 def read_texts(data: Data, key: str) -> tuple[str, ...]:
-    """Return a list of texts at the top of the data, empty where it is missing."""
+    """Return a list of texts at the top of the data, empty if it is missing."""
     values = get(data, key, list, "", [])
     for n, value in enumerate(values):
         if not isinstance(value, str):

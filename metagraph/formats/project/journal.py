@@ -235,8 +235,8 @@ class Journal:
         return self._file.path
 
     def begin(self, base: Project | None = None, unsaved: int = 0, done: Sequence[Done] = ()) -> None:
-        """Start anew from the saved file, whose text is kept, or from `base` when there is none. Whatever was
-        there stands until the new one is whole. Raises FileError.
+        """Start again from the saved file, whose text is kept, or from `base` when there is none. Whatever
+        was there stands until the new one is whole. Raises FileError.
 
         unsaved: how many edits of `base` are in no file. done: edits after it, which are written with it.
         """
@@ -377,7 +377,7 @@ class Journal:
 
 
 def _record(before: Project, after: Project, step: str, how: How) -> Data:
-    """Return what is written of an edit, nothing where it changed nothing that is saved. Raises DataError."""
+    """Return what is written of an edit, nothing if it changed nothing that is saved. Raises DataError."""
     change = find_changes(before, after)
     if not change:
         return {}

@@ -54,5 +54,5 @@ def count_in_words(count: int, one: str, many: str | None = None) -> str:
 
 
 def describe_whole(count: int, faults: Sequence[object], whole: str) -> str:
-    """Return how many of the parts are whole, "none" where there are none."""
+    """Return how many of the parts are whole, "none" if there are none."""
     return f"{count - len(faults):,} of {count:,} {whole}" if count else "none"

@@ -38,7 +38,7 @@ RECOVER = "Open the project in the window to recover or discard them."
 
 
 def verify_project(path: Path) -> Verified:
-    """Look at all of a project. Raises FileError where there is no file that can be read."""
+    """Look at all of a project. Raises FileError if there is no file that can be read."""
     content = read_file(path, TEXT_FILE)
     folder = path.resolve().parent  # a linked project names its files from where it lies
     project, file = _file(path, content)

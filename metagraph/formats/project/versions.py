@@ -58,12 +58,12 @@ def earlier_versions(path: Path) -> tuple[Version, ...]:
 
 
 def write_project(path: Path, content: bytes, versions: int, like: Access | None = None) -> Phrase | None:
-    """Write a project file, and keep what stood there as its most recent earlier version. Raises FileError
-    where the file itself cannot be written.
+    """Write a project file, and keep what stood there as its most recent earlier version. Raises FileError if
+    the file itself cannot be written.
 
     versions: how many are kept; 0 keeps none, and leaves those that are there alone. like: who may read the
-    file where there is none yet. Returns why the version
-    could not be kept, None where all went well: what is to be saved is worth more than what was.
+    file if there is none yet. Returns why the version could not be kept, None if all went well: what is to be
+    saved is worth more than what was.
     """
     note = None
     if versions > 0:

@@ -54,7 +54,7 @@ _STOPPED = re.compile(r"(?<=[、。，！？；：])(?=[^\s、。，！？；：
 
 @dataclass(frozen=True)
 class Transcript:
-    """speakers: name -> words by start, in the file's order; "" where it names nobody. segments: name -> what
+    """speakers: name -> words by start, in the file's order; "" if it names nobody. segments: name -> what
     the file says of clauses, responses and hesitations, for those it does. notes: what was left out or
     settled, in words.
     """

@@ -60,9 +60,9 @@ class Run:
         return training_share(self.plan, self.learner.step, self.seconds, self.minutes)
 
     def go(self) -> Path | None:
-        """Learn until it is over or stopped; return the model's file, None where it was deserted: there is
-        a checkpoint then, and no model. Raises FileError where it cannot be written, TrainingError where
-        nothing is learned; the last checkpoint stays.
+        """Learn until it is over or stopped; return the model's file, None if it was deserted: there is a
+        checkpoint then, and no model. Raises FileError if it cannot be written, TrainingError if nothing is
+        learned; the last checkpoint stays.
         """
         plan, learner = self.plan, self.learner
         self.tell(
@@ -136,7 +136,7 @@ class Run:
         self.tell({"event": "checkpoint", "step": self.learner.step, "path": str(path)})
 
     def judge(self) -> None:
-        """Tell the statistics of a short sample, and some of its poses."""
+        """Report the statistics of a short sample, and some of its poses."""
         found, poses = judge_held_out(model_so_far(self.learner), self.held, SHORT)
         self.tell(self._told("statistics", statistics=found))
         self.tell(self._told("poses", landmarks=poses))

@@ -84,7 +84,7 @@ def slow(metres: Array, height: float, blend: float) -> Array:
 
 def distances_to_stance(project: Project, action: Action, times: Array) -> tuple[Array, Array]:
     """Return how far the pose at each of `times` `[F]`, seconds of an action's clip, is from the stance it
-    leaves and from the one it enters, metres `[F]`; infinite where that cannot be measured.
+    leaves and from the one it enters, metres `[F]`; infinite if that cannot be measured.
     """
     motion = motion_of(project, action)
     graph, out = project.graphs[action.layer], []

@@ -92,9 +92,8 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
     """Place twins of actions (id -> id of the mirrored clip) beside them.
 
     They keep kind, timing and likelihood; limb, tags, joints and name change sides; contacts are to be found
-    anew. A stance or end stance
-    that has a twin by name on its layer ("weight left", "weight right") is exchanged for that; a loop keeps
-    to its own stance only when it has none. Raises EditError.
+    again. A stance or end stance that has a twin by name on its layer ("weight left", "weight right") is
+    exchanged for that; a loop keeps to its own stance only when it has none. Raises EditError.
     """
     for ident, clip in pairs.items():
         action = _action(project, ident)

@@ -286,8 +286,8 @@ class _Reader:
         return {**({} if any(c.startswith("viseme") for c in shown) else out), **shown}
 
     def shown(self, poses: Mapping[str, FacePose]) -> dict[str, Shape]:
-        """Return the shapes that frames of clips show. A blink is told apart by lids; what else moves in it
-        is its own channel.
+        """Return the shapes that frames of clips show. A blink is distinguished by lids; what else moves in
+        it is its own channel.
         """
         out: dict[str, Shape] = {}
         groups = self.lid_groups(helpers=True)

@@ -7,7 +7,7 @@ from metagraph.graph.model import Project
 
 
 def state_span(project: Project, state: State) -> tuple[float, float]:
-    """Return the part of its clip a state plays, clamped to the clip; nothing where the clip is gone."""
+    """Return the part of its clip a state plays, clamped to the clip; nothing if the clip is gone."""
     entry = project.clips.get(state.clip)
     length = entry.duration if entry is not None else 0.0
     start = min(max(0.0, state.start), length)

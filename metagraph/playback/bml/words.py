@@ -125,7 +125,7 @@ class BmlWords:
         return layer, word
 
     def line(self, ident: str) -> str:
-        """Return the project's line of this id, "" where there is none."""
+        """Return the project's line of this id, "" if there is none."""
         return ident if self.project is not None and ident in self.project.lines else ""
 
     def spoken(self, line: str, text: str) -> float:

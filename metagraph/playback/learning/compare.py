@@ -78,7 +78,7 @@ def tally(observed: Sequence[Sequence[Act]], states: Sequence[State], tagged: bo
 
 @dataclass(frozen=True)
 class ModelComparison:
-    """observed: None where nothing was; the matrix alone is compared with then. generated: by the model.
+    """observed: None if nothing was; the matrix alone is compared with then. generated: by the model.
     expected [n]: how often each state comes in the long run; deviation [n]: how far the generated shares may
     be off by chance alone, one standard deviation.
     """
@@ -99,7 +99,7 @@ class ModelComparison:
 
     def apart(self) -> Array:
         """By how many standard deviations what was seen is off what the model does in the long run, `[n]`; 0
-        where nothing was seen.
+        if nothing was seen.
         """
         if self.observed is None or not self.observed.count:
             return np.zeros(len(self.expected))
@@ -139,7 +139,7 @@ def generate(
 
 
 def quantiles(lengths: Array) -> Array:
-    """Return the `LEVELS` of lengths `[5]`, NaN where there are none."""
+    """Return the `LEVELS` of lengths `[5]`, NaN if there are none."""
     return np.quantile(lengths, LEVELS) if len(lengths) else np.full(len(LEVELS), np.nan)
 
 

@@ -28,8 +28,8 @@ Array = NDArray[Any]
 class Voice:
     """One line, analysed. duration: seconds. peaks: times of its loudness peaks, a syllable each `[P]`. times
     `[K]`, weights `[K, 15]`: how much of each of `VISEMES` the mouth shows, 0..1, linear between the times.
-    strengths: how loud the peaks are `[P]`, 0..1; empty where that is not known. stresses: times of the
-    stressed syllables `[S]`, ascending, where they are known: the peaks of pitch of a conversation's clauses.
+    strengths: how loud the peaks are `[P]`, 0..1; empty if that is not known. stresses: times of the stressed
+    syllables `[S]`, ascending, where they are known: the peaks of pitch of a conversation's clauses.
     """
 
     duration: float

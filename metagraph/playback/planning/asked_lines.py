@@ -57,7 +57,7 @@ def _by_lines(project: Project, action: Action) -> Iterator[tuple[bool, AskedLin
 
 
 def _names(ask: a.AnyRequest, action: Action) -> bool | None:
-    """Return whether an ask names an action itself; None where it may not be that action at all."""
+    """Return whether an ask names an action itself; None if it may not be that action at all."""
     match ask:
         case a.Play():
             fits = ask.action in (action.id, action.name) and ask.layer in (None, action.layer)
@@ -76,7 +76,7 @@ def _names(ask: a.AnyRequest, action: Action) -> bool | None:
 def _begins(
     project: Project, action: Action, ask: a.AnyRequest, default: float | None = None
 ) -> float | None:
-    """Return when an action begins that an ask is answered with; None where it does not say when."""
+    """Return when an action begins that an ask is answered with; None if it does not say when."""
     stroke = getattr(ask, "stroke", None)
     if stroke is not None:
         return float(stroke) - lead(project, action)

@@ -48,8 +48,8 @@ class RunningPlan:
         self.plan = hear_asks(project, empty, 0.0, [], ahead, self.stances, idle)
 
     def reach(self, now: float, anew: bool = False) -> None:
-        """Plan on where less than `ahead`, but for a little, is left at `now`; anew: also what has not begun,
-        for an edited project.
+        """Plan on where less than `ahead`, except for a little, is left at `now`; again: also what has not
+        begun, for an edited project.
         """
         end = (
             self.plan.end

@@ -41,7 +41,7 @@ class SpeedCurve:
 
 def speed_of(project: Project, action: Action) -> tuple[Array, str]:
     """Return the speed over an action's clip `[F]`, metres a second, of the fastest of what it moves, and in
-    words what of; nothing and "" where there is no motion on the project's skeleton.
+    words what of; nothing and "" if there is no motion on the project's skeleton.
     """
     motion = motion_of(project, action)
     if motion is None:
@@ -52,7 +52,7 @@ def speed_of(project: Project, action: Action) -> tuple[Array, str]:
 
 
 def curves_of(project: Project, action: Action, joint: str = "") -> tuple[SpeedCurve, ...]:
-    """Return an action's curves; none where there is no motion on the project's skeleton. joint: of which, by
+    """Return an action's curves; none if there is no motion on the project's skeleton. joint: of which, by
     name; "" for what its layer moves, a curve for each hand.
     """
     motion = motion_of(project, action)

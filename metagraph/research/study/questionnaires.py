@@ -133,7 +133,7 @@ def sus_score(answers: Mapping[str, Any]) -> float:
     """Return 0..100: odd items give their place on the scale less 1, even ones 5 less it; the sum times 2.5
     (Brooke 1996).
 
-    answers: sus1..sus10, each 1..5. Raises ValueError where one is missing or no such number.
+    answers: sus1..sus10, each 1..5. Raises ValueError if one is missing or no such number.
     """
     total = 0.0
     for n, item in enumerate(SUS.items, 1):

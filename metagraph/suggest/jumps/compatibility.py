@@ -99,8 +99,8 @@ class ProposedTimes:
 @dataclass(frozen=True, eq=False)
 class Matrix:
     """Clips x stances of a layer. clips, stances: their ids, C and S. enter_cost, leave_cost `[C, S]`: at the
-    best moment, beside the threshold, infinite where nothing is known; enter_at, leave_at `[C, S]`: that
-    moment, seconds.
+    best moment, beside the threshold, infinite if nothing is known; enter_at, leave_at `[C, S]`: that moment,
+    seconds.
     """
 
     layer: Layer

@@ -123,7 +123,7 @@ class Measured:
         return self.labelled >= FEWEST_CLIPS and self.stats.count >= FEWEST_COSTS
 
     def costs(self, project: Project, action: Action, stance: str | None) -> Array | None:
-        """Return `[F]` what changing between each frame of an action's clip and a stance costs; None where
+        """Return `[F]` what changing between each frame of an action's clip and a stance costs; None if
         nothing can be compared.
         """
         entry = project.clips.get(action.clip)
@@ -244,9 +244,7 @@ def _at(cost: Array, seconds: float) -> float:
 
 
 def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -> float | None:
-    """Return the moment from first to last, nearest to now, at which no jump shows; None where there is
-    none.
-    """
+    """Return the moment from first to last, nearest to now, at which no jump shows; None if there is none."""
     times = np.arange(len(cost)) / RATE
     inside = (times >= first - 1e-6) & (times <= last + 1e-6)
     for most in (ROOM, 1.0):
@@ -266,7 +264,7 @@ def _mend(
 
 
 def _blended(name: str, cost: float, room: float) -> dict[str, Any]:
-    """Return the blend that hides a difference, nothing where it would take too long."""
+    """Return the blend that hides a difference, nothing if it would take too long."""
     needed = 1.5 * (c.STEP - 1) / RATE * cost / ROOM
     return {name: round(needed + 0.005, 2)} if needed + 0.005 <= min(room, c.BLEND[1]) else {}
 
@@ -290,7 +288,7 @@ def _fits(
 
 
 def stance_curves(project: Project, measured: Measured, action: Action) -> Curves | None:
-    """Return an action's clip beside its stances; None where nothing can be compared."""
+    """Return an action's clip beside its stances; None if nothing can be compared."""
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
     if motion is None or motion.frames < 2 or motion.skeleton != project.skeleton:

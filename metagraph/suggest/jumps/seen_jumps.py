@@ -56,7 +56,7 @@ class SeenJumps:
         return np.where(np.arange(len(self.times)) < self.pivot, self.enter, self.leave)
 
     def spans(self) -> list[tuple[float, float]]:
-        """Return where nothing shows, seconds; from the first such frame to the last."""
+        """Return if nothing shows, seconds; from the first such frame to the last."""
         good = self.curve() <= 1
         good_in, good_out = (
             good & (np.arange(len(good)) < self.pivot),
@@ -69,9 +69,7 @@ class SeenJumps:
         return out
 
     def snaps(self, handle: str) -> list[float]:
-        """Return the moments a handle comes to rest at: the proposed one, and where nothing begins to
-        show.
-        """
+        """Return the moments a handle comes to rest at: the proposed one, and if nothing begins to show."""
         if handle == "start":
             if self.loops:
                 return []
@@ -124,7 +122,7 @@ def describe_ends(costs: Mapping[str, float], far: Mapping[str, str] | None = No
 
 
 def _cost_words(what: str, cost: float, again: bool) -> str:
-    """Say what one of both costs. again: whether a jump was spoken of before."""
+    """Say what one of both costs. again: whether a jump was spoken from before."""
     if what == "Repeats":
         if cost <= 1:
             return phrase("Loops smoothly")

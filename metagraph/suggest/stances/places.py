@@ -2,7 +2,7 @@
 
 Names and motion are one inference. A pose is called by the words most of the clips have that begin or end in
 it, a word means the pose most of its clips are in; how well both agree says how far a name can be believed
-where a clip's own pose disagrees. Two words may call one pose where nothing tells the poses of their clips
+where a clip's own pose disagrees. Two words may call one pose if nothing tells the poses of their clips
 apart, and one pose is parted where words and poses part alike.
 """
 

@@ -24,9 +24,9 @@ RATE = 30.0  # moments a second
 @dataclass(frozen=True, eq=False)
 class StanceDistance:
     """times, metres, shows `[F]`: seconds of the clip, how far the farthest joint is, whether beginning or
-    ending there would show; infinite metres where nothing can be measured. pivot: from which moment on it is
-    the stance it enters that is measured to. limits: metres that its blends hide, at its beginning and its
-    end. names: of both stances.
+    ending there would show; infinite metres if nothing can be measured. pivot: from which moment on it is the
+    stance it enters that is measured to. limits: metres that its blends hide, at its beginning and its end.
+    names: of both stances.
     """
 
     times: Array

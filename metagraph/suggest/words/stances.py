@@ -329,7 +329,7 @@ class Stances:
         return variant(words) == len(words)
 
     def _designated(self, distinct: Sequence[TakenName]) -> None:
-        """Stances called alike but for a number or letter ("idle 1", "idle 2", "sit a") are different ones
+        """Stances called alike except for a number or letter ("idle 1", "idle 2", "sit a") are different ones
         where clips go on from one or pass into it, whether or not they have clips of their own.
         """
         marks: dict[Words, dict[str, bool]] = {}  # core -> designator -> whether anything goes on from it

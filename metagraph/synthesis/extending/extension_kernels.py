@@ -81,7 +81,7 @@ def _total(t: Any, x: Any, price: Any, met: Any, shown: Any, prices: Any, rules:
 
 @compiled_exactly
 def _noise(random: Any, number: Any) -> Any:
-    """Return a number 0..1 that is as good as drawn."""
+    """Return a number 0..1 that is almost drawn."""
     mixed = (random ^ np.uint64(number)) * np.uint64(0x9E3779B97F4A7C15)
     mixed ^= mixed >> np.uint64(29)
     mixed *= np.uint64(0xBF58476D1CE4E5B9)

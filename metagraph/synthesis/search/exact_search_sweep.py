@@ -120,8 +120,8 @@ class Sweep:
 
     def forwards(self) -> list[tuple[Array, Array]]:
         """Sweep up to the last frame, where cost is with what frames cost; return of each frame where
-        somebody is, and where the way there comes from. Raises SynthesisError where none comes as far, or
-        when it was cancelled.
+        somebody is, and where the way there comes from. Raises SynthesisError if none comes as far, or when
+        it was cancelled.
         """
         frames = len(self._problem.wanted)
         if not self._frame:
@@ -311,7 +311,7 @@ class Sweep:
         return codes, foresee(codes, costs, crossing, self._unknown, self._ahead)
 
     def _close(self, t: int) -> None:
-        """Forget ways on which the event was not met whose window ends; the others begin anew."""
+        """Forget ways on which the event was not met whose window ends; the others begin again."""
         from metagraph.synthesis.search.exact_search_kernels import close
 
         if is_due_at(self._problem.wanted, t):

@@ -1,6 +1,6 @@
 """Paths through a motion graph that go with speech: the paper's stochastic greedy search.
 
-It keeps the cheapest few hundred of what it came upon, and may come to an end where nothing fits.
+It keeps the cheapest few hundred of what it came upon, and may come to an end if nothing fits.
 """
 
 from __future__ import annotations

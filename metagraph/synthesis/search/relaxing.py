@@ -67,8 +67,8 @@ class Constraints:
 @dataclass(frozen=True)
 class Miss:
     """Something of speech that the motion was not made with. what: "start", "end" or "stress" of a kind of
-    segment. at: when, seconds. off: how far the nearest such event of the motion is, seconds; None where
-    there is none within FAR.
+    segment. at: when, seconds. off: how far the nearest such event of the motion is, seconds; None if there
+    is none within FAR.
     """
 
     what: str
@@ -90,7 +90,7 @@ class Miss:
 class RelaxedAnswer:
     """path: what was found. kept: the constraints it keeps to. given_up: the others, in words. misses: what
     is off by more than the tolerance that was asked for. retiming: how it is played faster and slower, None
-    where it is not.
+    if it is not.
     """
 
     path: Path
@@ -187,11 +187,10 @@ def answer_speech(
 ) -> RelaxedAnswer:
     """Return motion for speech, with as many of the constraints as there is any for: they are given up until
     there is some, and then taken back one by one. soft: what it should have beside them. Raises
-    SynthesisError where the takes cannot even go on so long, or with nothing given up, or when it was
-    cancelled.
+    SynthesisError if the takes cannot even go on so long, or with nothing given up, or when it was cancelled.
 
-    What may be retimed is looked for with WIDER the tolerance too where there is nothing within it: where
-    speed brings all of it within the tolerance that was asked for, nothing was given up.
+    What may be retimed is looked for with WIDER the tolerance too if there is nothing within it: where speed
+    brings all of it within the tolerance that was asked for, nothing was given up.
     """
     asked = Constraints() if asked is None else asked
     asked = replace(asked, words=soft.hard and bool(soft.places))
@@ -256,7 +255,7 @@ class _Task:
         )
 
     def _path(self, kept: Constraints) -> Path:
-        """Return a path that keeps to constraints. Raises SynthesisError where there is none."""
+        """Return a path that keeps to constraints. Raises SynthesisError if there is none."""
         soft, how = self.soft, self.searching
         want = self._wanted(kept)
         charged = soft.charged
@@ -269,8 +268,8 @@ class _Task:
         )
 
     def _path_or_none(self, kept: Constraints) -> Path | None:
-        """Return a path that keeps to constraints, None where there is none. Raises SynthesisError when it
-        was cancelled.
+        """Return a path that keeps to constraints, None if there is none. Raises SynthesisError when it was
+        cancelled.
         """
         try:
             return self._path(kept)

@@ -281,7 +281,10 @@ def test_loudness_rate_words_and_speed_are_asked_for_and_told(
     plain = json.loads(run(capsys, "synthesize", *given, "--json"))
     assert "beside" not in plain and read_clips(tmp_path / "out.bvh")[0].frames == 300
     text = run(capsys, "synthesize", *given, "--loudness", "0.5", "--word", "went", "--words-must")
-    assert re.search(r"loudness differs by 0\.\d\d standard deviations.*have the motion of a take that says them.*added cost", text)
+    assert re.search(
+        r"loudness differs by 0\.\d\d standard deviations.*have the motion of a take that says them.*added cost",
+        text,
+    )
     new = ["--new", str(aloud_folder / "take1.json"), "-s", "5", "-o", out, "--rate", "0.5"]
     assert "rate" in run(capsys, "synthesize", *asked(aloud_folder), *new)
     cues = [f"{n}\n00:00:{n:02},000 --> 00:00:{n:02},900\nround" for n in range(1, 17)]

@@ -19,7 +19,7 @@ from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap
 
 class KeptDrag(RowsDrag):
     """A hand is kept from earlier or until later, or at another time, once it is let go: the clip is made
-    anew then. The character shows the moment meanwhile.
+    again then. The character shows the moment meanwhile.
     """
 
     def __init__(self, host: Host, facts: Facts, name: str, playhead: float | None) -> None:

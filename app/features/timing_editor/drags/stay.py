@@ -13,7 +13,7 @@ from metagraph.motion.retime import LONGEST, SHORTEST
 
 
 class StayDrag(RowsDrag):
-    """A hold of a clip becomes longer or shorter, once it is let go: the clip is made anew then."""
+    """A hold of a clip becomes longer or shorter, once it is let go: the clip is made again then."""
 
     def __init__(self, host: Host, facts: Facts, stay: Stay) -> None:
         super().__init__(host, facts)

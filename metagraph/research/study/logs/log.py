@@ -103,7 +103,7 @@ class StudyLog:
 
     @property
     def frozen(self) -> dict[str, str] | None:
-        """Return what was worked with, name -> SHA-256, as it was told first; None where it was not."""
+        """Return what was worked with, name -> SHA-256, as it was told first; None if it was not."""
         found = next((e.get("digests") for e in self.events if e["type"] == "frozen"), None)
         return {str(k): str(v) for k, v in found.items()} if isinstance(found, dict) else None
 

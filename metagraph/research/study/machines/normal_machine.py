@@ -27,10 +27,10 @@ Pair = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class NormalState:
-    """A use of a clip. clip: its file's name, with the take where it is not the first. kind: None where
-    nothing tells. stance, ends: the stances it begins and ends in, as the machine calls them; None where
-    nothing tells. start, end: seconds of the clip. limb, joints: what it moves; joint_weights: how far those
-    that it moves in part, by name.
+    """A use of a clip. clip: its file's name, with the take where it is not the first. kind: None if nothing
+    tells. stance, ends: the stances it begins and ends in, as the machine calls them; None if nothing tells.
+    start, end: seconds of the clip. limb, joints: what it moves; joint_weights: how far those that it moves
+    in part, by name.
     """
 
     key: str
@@ -198,7 +198,7 @@ Role = tuple[Kind | None, str | None, str | None]
 
 def _roles(manual: Manual, meant: MetaGraph) -> dict[str, Role]:
     """Return state -> (kind, stance, end stance) in the meta-graph that a machine amounts to, which has them
-    in the same order but for those it leaves out.
+    in the same order except for those it leaves out.
     """
     out: dict[str, Role] = {}
     actions = iter(meant.actions.values())

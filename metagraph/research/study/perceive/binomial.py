@@ -2,7 +2,7 @@
 
 The test sums what is at most as likely as what was seen. Intervals: Clopper and Pearson (1934), "The use of
 confidence or fiducial limits illustrated in the case of the binomial", Biometrika 26. Fisher's exact test of
-two shares likewise.
+two shares in the same way.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
 
 
 def fisher(a: int, n: int, b: int, m: int) -> float | None:
-    """Return the p value of a of n being the same share as b of m; None where either has none."""
+    """Return the p value of a of n being the same share as b of m; None if either has none."""
     _checked(a, n)
     _checked(b, m)
     if not n or not m:

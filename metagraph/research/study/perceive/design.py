@@ -3,7 +3,7 @@
 Each person's pairs are a stretch of all pairs in a ring, comparisons taking turns; two sequences in a row
 show the same stretch mirrored. After all sequences each pair was shown as often as every other one, as often
 on each side. Which sequence a person gets is drawn in permuted blocks (`allocation.numbers`), the order
-within it for each person anew.
+within it for each person again.
 """
 
 from __future__ import annotations
@@ -213,7 +213,7 @@ def _ratings(plan: PerceivePlan, draw: Draw, number: int) -> list[tuple[str, str
 
 
 def _apart(shown: Sequence[tuple[str, str, str]]) -> list[tuple[str, str, str]]:
-    """Return the same in nearly the same order, an item never twice in a row where that can be."""
+    """Return the same in nearly the same order, an item never twice in a row if that can be."""
     left = list(shown)
     out: list[tuple[str, str, str]] = []
     while left:

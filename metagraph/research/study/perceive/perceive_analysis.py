@@ -30,10 +30,10 @@ Verdict = Literal["preferred", "not preferred", "no difference that matters", "n
 class ComparedPair:
     """A pair of conditions. share: of answers for the first, exact interval. p: the exact binomial's. people:
     of those who chose one more often than the other, the share who chose the first; people_p: its sign test.
-    model: None where there is none. together: the p value that is judged by, corrected for all that was asked
-    (Holm); exact: the binomial's, likewise. by_item: item -> share. halves: the shares of the first half of
-    people's sessions and of the second; halves_p: of both being the same (Fisher). unfiltered: with nobody
-    excluded.
+    model: None if there is none. together: the p value that is judged by, corrected for all that was asked
+    (Holm); exact: the binomial's, in the same way. by_item: item -> share. halves: the shares of the first
+    half of people's sessions and of the second; halves_p: of both being the same (Fisher). unfiltered: with
+    nobody excluded.
     """
 
     pair: tuple[str, str]

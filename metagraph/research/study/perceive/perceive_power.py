@@ -93,7 +93,7 @@ def simulate_power(
 
 def estimate_people(expected: Expected, items: int, each: int, chance: float, alpha: float) -> int | None:
     """Return about how many people are needed, to begin simulating from: the exact count of answers, more by
-    what people and items add to the variance of their mean. None where items alone are too few.
+    what people and items add to the variance of their mean. None if items alone are too few.
     """
     answers = binomial.count_needed_answers(expected.share, chance, alpha)
     if answers is None:

@@ -44,8 +44,8 @@ class Assumed:
 
 @dataclass(frozen=True)
 class SampleSize:
-    """People needed for each aim; None where more than MOST_PEOPLE are. show: the assumed ratio. smallest:
-    the smallest that matters. precise: an interval no wider than `within` times either way, with that chance.
+    """People needed for each aim; None if more than MOST_PEOPLE are. show: the assumed ratio. smallest: the
+    smallest that matters. precise: an interval no wider than `within` times either way, with that chance.
     equivalent: to show that a ratio of 1 is within what matters.
     """
 

@@ -67,9 +67,9 @@ class ConditionComparison:
 def compare_conditions(
     rows: Sequence[AnalysisRow], unit: Unit | None = None, pair: tuple[str, str] = PAIR
 ) -> ConditionComparison | None:
-    """Return the comparison of two conditions; None where one of them was never done. unit: as the study is
-    planned; None as most people did: one person with other tasks in each condition does not change it for
-    the others.
+    """Return the comparison of two conditions; None if one of them was never done. unit: as the study is
+    planned; None as most people did: one person with other tasks in each condition does not change it for the
+    others.
     """
     by: dict[str, dict[str, dict[str, AnalysisRow]]] = {}  # participant -> condition -> task
     for r in rows:

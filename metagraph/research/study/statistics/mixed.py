@@ -46,9 +46,9 @@ def fit_mixed(
     level: float = LEVEL,
 ) -> Mixed | None:
     """Return the model of y `[n]` by effects (name -> `[n]`, the constant among them) and groups (name ->
-    whose each row is, `[n]`). None where there are no more rows than effects, or
-    where these and the groups say all. Effects that others already say
-    are left out, the later one of them; so are groups that have a row each.
+    whose each row is, `[n]`). None if there are no more rows than effects, or where these and the groups say
+    all. Effects that others already say are left out, the later one of them; so are groups that have a row
+    each.
     """
     values = np.asarray(y, np.float64)
     kept, left_out = _independent({k: np.asarray(v, np.float64) for k, v in effects.items()}, len(values))

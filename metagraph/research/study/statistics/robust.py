@@ -1,7 +1,7 @@
 """Estimates that one odd value does not carry away, and ones that know that a time was cut short.
 
 Hodges and Lehmann (1963), "Estimates of location based on rank tests". Censored values: the likelihood of
-Tobin (1958), its interval by the profile, as wide as Student's where nothing is censored.
+Tobin (1958), its interval by the profile, as wide as Student's if nothing is censored.
 """
 
 from __future__ import annotations

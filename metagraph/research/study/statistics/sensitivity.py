@@ -200,7 +200,7 @@ def mixed_model(
 ) -> Mixed | None:
     """Return a model of log seconds of each task by condition, sitting, practice (the mean log of the clips'
     numbers within the condition) and task; people, and people within a condition, deviate, and so do sites
-    where there are several. None where the rows do not allow it.
+    where there are several. None if the rows do not allow it.
     """
     there = [r for r in rows if r.run.participant not in found.left_out and r.run.seconds > 0]
     people = {r.run.participant for r in there}
@@ -229,7 +229,7 @@ def mixed_model(
 
 def _practised(rows: Sequence[AnalysisRow]) -> list[float] | None:
     """Return for each row the mean log of its clips' numbers, those of tasks before in the condition counted
-    on; None where nobody knows how many clips there were.
+    on; None if nobody knows how many clips there were.
     """
     if any(r.clips < 1 for r in rows):
         return None

@@ -23,7 +23,7 @@ MOST_PEOPLE = 10_000  # beyond which no study is planned
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A value with its interval; low and high are None where n is too small for one."""
+    """A value with its interval; low and high are None if n is too small for one."""
 
     value: float
     low: float | None
@@ -54,7 +54,7 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class Test:
-    """A two-sided test. df: degrees of freedom. p: None where it cannot be told. n: pairs, or people of both
+    """A two-sided test. df: degrees of freedom. p: None if it cannot be told. n: pairs, or people of both
     groups.
     """
 
@@ -124,7 +124,7 @@ def welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple
 def effect_size(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> Estimate | None:
     """Return Cohen's d_z of pairs, the mean difference beside the differences' deviation, with Hedges'
     correction for small samples (Hedges 1981, its exact form), and the interval of what it estimates, from
-    the noncentral t distribution; None where the differences do not vary.
+    the noncentral t distribution; None if the differences do not vary.
     """
     d = np.array(_paired(a, b))
     n = len(d)
@@ -245,8 +245,8 @@ def order_effects(
 
 
 def ratio_cautions(found: Estimate, effect: float | None) -> list[str]:
-    """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None where it is
-    not known.
+    """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None if it is not
+    known.
     """
     n = found.n
     if n < 2:

@@ -51,7 +51,7 @@ def press(button) -> None:
 
 
 def colours(widget) -> int:
-    """How many colours a widget shows: one where nothing is painted."""
+    """How many colours a widget shows: one if nothing is painted."""
     image = widget.grab().toImage()
     return len({image.pixel(x, y) for x in range(0, image.width(), 3) for y in range(0, image.height(), 3)})
 

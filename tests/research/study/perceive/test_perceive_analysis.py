@@ -1,4 +1,4 @@
-"""What the answers show: what was planted, who counts, and how often nothing is found where nothing is."""
+"""What the answers show: what was planted, who counts, and how often nothing is found if nothing is."""
 
 from __future__ import annotations
 
