@@ -247,7 +247,7 @@ def read_child_faults(folder: Path) -> None:
 
 
 def read_crash_reports(folder: Path) -> str:
-    """Return what ended earlier runs, as the system told it, "" if none did; it is told once."""
+    """Return what ended earlier runs, as the system told it, "" if none did; it is reported once."""
     found: list[str] = []
     for path in sorted(folder.glob("crash-*.txt")):
         with contextlib.suppress(OSError, ValueError):

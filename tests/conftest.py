@@ -263,7 +263,7 @@ def numbered_ids() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def quick_codes() -> Iterator[None]:
-    """The codes of perceptual studies are sealed in few rounds: that each takes long is told of in
+    """The codes of perceptual studies are sealed in few rounds: that each takes long is reported in
     `tests/research/study/perceive/test_sealed.py`, and pages in browsers open what took as long as it does.
     """
     from metagraph.research.study.perceive import sealed

@@ -292,7 +292,7 @@ def clip_doing(animal: Animal, name: str, turns: Mapping[str, Array], way: Array
         axes = _axes(animal, joint)
         resting[joint] = rotation.multiply(_drop(joint, animal.arms), axes)
         moving[joint] = rotation.multiply(turns[joint], axes)
-        if animal.kind == ".bvh":  # where joints have no turn at rest: all is told from there
+        if animal.kind == ".bvh":  # where joints have no turn at rest: all is given from there
             moving[joint] = rotation.multiply(moving[joint], rotation.conjugate(resting[joint]))
             resting[joint] = rotation.identity_rotations()
     rows: list[tuple[str, int, Array, Array, Array]] = []

@@ -83,7 +83,7 @@ def run(options: Namespace) -> int:
             file=sys.stderr,
         )
         return 2
-    registry.target(options.target)  # a wrong name is told before anything is read
+    registry.target(options.target)  # a wrong name is reported before anything is read
     if options.vectors:
         from metagraph.engines.vectors import NAME
         from metagraph.formats.outputs import claim

@@ -276,7 +276,7 @@ def write_motion(options: Namespace) -> int:
 
 
 def write_pieces(options: Namespace) -> int:
-    """Make motion, cut it where that is safe, and write the pieces."""
+    """Make motion, cut it if that is safe, and write the pieces."""
     with ProjectOutput(options.project) if options.project is not None else nullcontext() as output:
         return _cut(options, output)
 
@@ -356,7 +356,7 @@ def print_model(options: Namespace) -> int:
     from metagraph.generation.networks import parameters
     from metagraph.generation.stored import read_model
 
-    card = read_model(options.model).card  # its weights are read as well: a damaged file is told here
+    card = read_model(options.model).card  # its weights are read as well: a damaged file is reported here
     count = parameters(card.sizes)
     data = {**msgspec.to_builtins(card), "parameters": count}
     say(options, "\n".join(_told(options.model, card, count)), data)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 
 KINDS = ("flow-vae", "moglow", "cvae", "matching")
 MINUTES = 15.0
-EVERY = 30.0  # seconds between lines where nobody looks on
+EVERY = 30.0  # seconds between lines if nobody looks on
 
 
 def add_arguments(parser: ArgumentParser) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 from app.cli.perceive_planning import add_arguments as planning_arguments
 from app.cli.perceive_planning import require_empty
 
-NOTHING = 3  # exit code where nothing can be told
+NOTHING = 3  # exit code if nothing can be told
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -90,7 +90,7 @@ def make_perceptual_study(options: Namespace) -> int:
     require_empty(options.into)
     claim(*(options.into / name for name in ("show/index.html", FILE, KEY)))
     stimuli = Stimuli(path.resolve(), plan)
-    sounds = stimuli.sounds()  # what is missing is told before anything is drawn
+    sounds = stimuli.sounds()  # what is missing is reported before anything is drawn
     videos = options.into / "show" / "videos"
     videos.mkdir(parents=True, exist_ok=True)
     secret = make_secret(options.into)

@@ -28,7 +28,7 @@ def run(options: Namespace) -> int:
 
     study = read_study(options.study)
     if options.participant is not None:
-        study.plan.known(options.participant)  # a stranger is told before a window is opened
+        study.plan.known(options.participant)  # a stranger is reported before a window is opened
     from PySide6.QtCore import QTimer
 
     from app.main import make_window, prepare_application

@@ -107,7 +107,7 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
 
 
 def names_in_tooltip(words: str, name: str) -> str:
-    """Return what a tooltip says of something called `words` in its place: that, and its name where that is
+    """Return what a tooltip says of something called `words` in its place: that, and its name if that is
     another.
     """
     return words if words == name else f"{words}\n{name}"

@@ -41,7 +41,7 @@ class WindowTheme:
     fills: Mapping[str, str]  # areas
     sounds: Mapping[
         str, str
-    ]  # areas of what is said; told apart by colour-blind people by their lightness, too
+    ]  # areas of what is said; distinguished by colour-blind people by their lightness, too
 
     def kind(self, kind: Kind | str) -> QColor:
         return QColor(self.kinds[kind])
@@ -240,7 +240,7 @@ def window_font() -> QFont:
 
 def apply_theme(app: QApplication, look: WindowTheme) -> None:
     """Give the application a theme's style."""
-    if not app.property("styled"):  # once: each of these polishes every widget anew
+    if not app.property("styled"):  # once: each of these polishes every widget again
         app.setProperty("styled", True)
         app.setStyle("Fusion")
         app.setFont(window_font())

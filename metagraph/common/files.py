@@ -153,7 +153,7 @@ def guard_reader(read: Callable[P, R]) -> Callable[P, R]:
 
 
 def unforeseen_error(path: str | Path, error: Exception) -> FileError:
-    """Return what to tell of a file on which a reader failed in a way that nobody foresaw."""
+    """Return what to report a file on which a reader failed in a way that nobody foresaw."""
     if isinstance(error, FileError):
         return error
     if isinstance(error, MemoryError):

@@ -119,7 +119,7 @@ def find_refusal(name: str, folder: Path | None = None) -> str | None:
 
 
 def close_path(name: str) -> str:
-    """Return a path that a file gives, or one that leads nowhere in its place where that is not allowed."""
+    """Return a path that a file gives, or one that leads nowhere in its place if that is not allowed."""
     return path_to_nowhere(name) if find_refusal(name) is not None else name
 
 

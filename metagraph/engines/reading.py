@@ -111,7 +111,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         base=base,
         roles=dict(document.roles),
         parts=dict(document.parts),
-        markov={  # what is told is played; `own_markov` says that it was edited
+        markov={  # what is reported is played; `own_markov` says that it was edited
             layer: model
             for layer in LAYERS
             if (model := _markov(layer, document.layers[layer].markov)) != DEFAULTS[layer]

@@ -82,7 +82,7 @@ def _is_pair(path: Path) -> bool:
 
 
 def _root_of(path: Path) -> Path | None:
-    """Return the folder of the export that a file is recorded in; None where none is."""
+    """Return the folder of the export that a file is recorded in; None if none is."""
     whole = path.absolute()
     if whole.name == RECORD:
         return path.parent

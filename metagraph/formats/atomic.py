@@ -20,7 +20,7 @@ from metagraph.formats.outputs import claim, claim_output
 from metagraph.formats.replacing import replace_file, sync_folder
 
 FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
-# Unfinished files. Those being written say by whom; the others are of before they did, or stay a moment.
+# Unfinished files. Those being written say by whom; the others are from before they did, or stay a moment.
 _UNFINISHED = re.compile(
     r"\.saving-(?P<mark>[0-9a-f]{8}-\d{1,10}-[0-9A-Za-z]*)-[0-9a-f]{12}|\.saving-[0-9a-f]{32}"
     r"|\.clock-\w{8}|\..+\.lock\.[0-9a-f]{12}|\..+\.[0-9a-f]{12}\.journal\.new"

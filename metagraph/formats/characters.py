@@ -1,4 +1,4 @@
-"""Which file a project's character is drawn from, and what of it: stand-ins are told from characters, and
+"""Which file a project's character is drawn from, and what of it: stand-ins are given from characters, and
 what is carried in the hands by the dozen is hidden at first.
 """
 

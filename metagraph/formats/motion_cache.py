@@ -74,8 +74,8 @@ class KeptFile(msgspec.Struct, array_like=True):
 
 
 def read_or_kept(path: Path, digest: str, as_is: Collection[str]) -> list[Clip]:
-    """Return what `read_clips` does, from what is kept where that is of the same content. digest: of the
-    file. Raises FileError as `read_clips` does.
+    """Return what `read_clips` does, from what is kept if that is of the same content. digest: of the file.
+    Raises FileError as `read_clips` does.
     """
     kept, key = _cache(motion_cache_folder()), _key(path, digest, as_is)
     content = kept.read(key)

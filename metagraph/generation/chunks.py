@@ -35,7 +35,7 @@ def poses_from_tokens(w: Layers, sizes: MatchingSizes, tokens: Array) -> Array:
 
 
 class Joining:
-    """From tokens to poses, so that pieces meet: each token's frames are told by its neighbours, too, and
+    """From tokens to poses, so that pieces meet: each token's frames are given by its neighbours, too, and
     come `delay` frames later than the token. count: tokens at once; arrays of one shape give the same bits.
     """
 

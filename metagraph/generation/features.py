@@ -1,5 +1,5 @@
 """What is heard, frame by frame: mels of both voices, and who speaks. Of a whole recording, or as it comes
-in; both are the same to the bit, since every frame is reckoned by itself.
+in; both are the same to the bit, since every frame is computed by itself.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Models frame by frame: what a sampler asks for the next poses. Each moment is reckoned in arrays of
-the same shape and at the same place in them, so that it does not matter in which pieces the sound came.
+"""Models frame by frame: what a sampler asks for the next poses. Each moment is computed in arrays of the
+same shape and at the same place in them, so that it does not matter in which pieces the sound came.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class FlowGenerator(Generator):
         z = self.noise.of(seed, take, frame) * self.temperature
         with np.errstate(over="ignore", invalid="ignore"):
             code = self.flow.draw(z, past, told)
-            if not isfinite(code @ code):  # a flow that ran away begins anew
+            if not isfinite(code @ code):  # a flow that ran away begins again
                 code[:] = 0
                 self.flow.reset()
         poses = _near(self.decoder.one(code)).reshape(self.made, -1)

@@ -27,7 +27,7 @@ def offered_requests(
     project: Project, words: Sequence[str] = ENGINES, most: Mapping[str, int] = EVERYTHING
 ) -> dict[str, Any]:
     """Return what may be asked for, as plain data. words: of requests that are understood. most: of actions
-    of a layer, lines and points that are told.
+    of a layer, lines and points that are reported.
 
     `project`, its name; `words`; `modes`; `joints` (name, parent, part); `layers`: for each its `start`, its
     `stances` (id, name), its `actions` but loops of stances (id, name, kind, stance, seconds; `to`, `limb`

@@ -34,7 +34,7 @@ class Remembered(Generic[T]):
             if owners[-1]() is project:
                 return value
             living = tuple(o for o in owners if (p := o()) is not None and self._same(p, parts))
-            if living:  # one of before is kept beside this one, which may be a passing copy
+            if living:  # one from before is kept beside this one, which may be a passing copy
                 self._known[key] = value, (living[0], ref(project))
                 return value
         value = find()

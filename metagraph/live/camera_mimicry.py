@@ -26,7 +26,7 @@ class ClientCamera:
 def see(
     camera: ClientCamera | None, message: Keypoints, project: Project, plan: Plan, now: float, prefix: str
 ) -> tuple[ClientCamera, list[AnyRequest], dict[Layer, str]]:
-    """Take a frame in; return the camera, what is asked for because of it, and layer -> name of the stance
+    """Take a frame in; return the camera, what is requested because of it, and layer -> name of the stance
     the person is in.
 
     prefix: of the ids that requests of this camera have in the plan. Raises ValueError for points that cannot

@@ -169,7 +169,7 @@ class GraphMotion(LaidMotion):
         self._sound = np.zeros(0, np.float32)  # its own voice, what was not heard yet
         self._last_sound = now
         self._said: dict[str, float] = {}  # speeches of its own that it knows of, and when they end
-        self._speaks: bool | None = None  # as it was told; None: loudness tells
+        self._speaks: bool | None = None  # as it was reported; None: loudness tells
         self._poses: dict[int, Array] = {}
         self._first = now
         self._until: int | None = None  # the frame from which on no more is kept of what became known

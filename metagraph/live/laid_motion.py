@@ -115,7 +115,7 @@ class LaidMotion(ABC):
         return Overlay(self.joints, offsets[None].astype(np.float32), np.array([weight]), *shown)
 
     def status(self) -> dict[str, Any]:
-        """Return what is told of it to clients."""
+        """Return what is reported about it to clients."""
         return {
             "model": self.name,
             "side": self.wish.side,

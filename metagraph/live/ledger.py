@@ -75,7 +75,7 @@ class OpenAsk:
         return (self.at if self.until is None else self.until) < now - OVER
 
     def differs(self, found: FoundAnswer | None) -> bool:
-        """Whether a plan now does something else than was answered. Times are told to the millisecond."""
+        """Whether a plan now does something else than was answered. Times are reported to the millisecond."""
         if found is None:
             return True
         at, until = found.at, found.until

@@ -80,7 +80,7 @@ class LimitLane:
 
 @dataclass
 class RequestWords:
-    """The words a project knows, by which most asks that cannot be met are told at once."""
+    """The words a project knows, by which most asks that cannot be met are reported at once."""
 
     project: Project
 

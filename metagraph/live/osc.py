@@ -19,7 +19,7 @@ ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
 SENDERS = 32  # known at once
 AT_ONCE = ("hello", "status", "describe", "withdraw")  # whatever the time tag of their bundle says
-# Addresses that take no number, so that a number tells of a button: 0 when it is let go.
+# Addresses that take no number, so that a number reports a button: 0 when it is let go.
 BUTTONS = ("gesture", "fidget", "change", "nod", "shake", "action", "stance", "blink", "text", "withdraw")
 LET_GO = "a value of 0 means a released button; send another number"
 LARGEST = 60_000  # bytes of one datagram that is sent

@@ -1,4 +1,4 @@
-"""The sound of a line as it comes in, and the mouth shapes it tells, if nothing better is told."""
+"""The sound of a line as it comes in, and the mouth shapes it tells, if nothing better is reported."""
 
 from __future__ import annotations
 

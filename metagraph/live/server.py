@@ -75,7 +75,7 @@ def is_loopback(host: str) -> bool:
 
 class Server:
     """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from
-    and write them to. project: whose tools are told, where the Model Context Protocol is spoken.
+    and write them to. project: whose tools are reported, where the Model Context Protocol is spoken.
     """
 
     def __init__(

@@ -31,9 +31,9 @@ from metagraph.mimicry.tuning import Tuning
 Array = NDArray[Any]
 
 TURNS = np.radians(np.arange(-60, 61, 10))  # headings that are tried in a picture
-ALIKE = 0.5  # distance below which two stances are not told apart in a picture
+ALIKE = 0.5  # distance below which two stances are not distinguished in a picture
 AWAY = 0.15  # width of the shoulders in a picture, torso lengths, below which somebody turns the back
-LEAST_TRUST = 0.1  # of a running mean in a point, below which it is as good as not seen
+LEAST_TRUST = 0.1  # of a running mean in a point, below which it is almost not seen
 SIDEWAYS = np.array([1.0, 1.0, 0.3])  # how much speed counts along each axis; depth jitters
 
 

@@ -90,7 +90,7 @@ class Mimic:
 
     @property
     def seen(self) -> dict[Layer, str]:
-        """Layer -> id of the stance the person is in, where that is known."""
+        """Layer -> id of the stance the person is in, if that is known."""
         return {layer: judge.stance for layer, judge in self.judges.items() if judge.stance is not None}
 
     def distances(self, layer: Layer) -> dict[str, float]:
@@ -109,7 +109,7 @@ class Mimic:
         confidence: ArrayLike | None = None,
         goals: Mapping[Layer, str] | None = None,
     ) -> list[AnyRequest]:
-        """Take a frame in; return what is asked for because of it, mostly nothing.
+        """Take a frame in; return what is requested because of it, mostly nothing.
 
         seconds: of the frame; one that is not later than the last is passed over. points: `[K, 2]` or `[K,
         3]` of a layout of K points (17, 18, 25 or 33), x right, y up, z towards the camera. confidence: `[K]`

@@ -75,7 +75,7 @@ def _steps(
     into: Performance,
     progress: Callable[[int, int], object] | None,
 ) -> Iterator[list[AnyRequest]]:
-    """Yield what is asked for at each frame at which something is, planning along."""
+    """Yield what is requested at each frame at which something is, planning along."""
     named = [
         ask if ask.id else msgspec.structs.replace(ask, id=f"asked{n}") for n, ask in enumerate(into.asks)
     ]

@@ -184,7 +184,7 @@ def straighten(vectors: Array, up: Array) -> Array:
 def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) -> MeasuredFrame | None:
     """Return how a person stands whose POINTS are `points [17, 3]`; None if the shoulders do not say.
 
-    Without hips, as at a desk, the torso is taken to be upright, and its length is told from the shoulders'
+    Without hips, as at a desk, the torso is taken to be upright, and its length is given from the shoulders'
     width, of which `usual_width` torso lengths are usual, and the ears' height above them; the more of both,
     since turning away hides the first.
     """

@@ -176,7 +176,7 @@ class _Shape:
 
 def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
     """Return role -> joint for a figure in a rest pose that stands: two legs, two arms, a head; {} for
-    anything else. Sides are told by where the toes point, without toes as if it faced +Z.
+    anything else. Sides are given by where the toes point, without toes as if it faced +Z.
     """
     shape = _Shape(skeleton)
     pairs = shape.pairs()

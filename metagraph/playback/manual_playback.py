@@ -267,7 +267,7 @@ def play_state_alone(project: Project, ident: str) -> ManualPlan:
 def link_alone(project: Project, ident: str) -> ManualPlan:
     """Return a plan of one link: its source's last second, the blend, its target's first. Raises KeyError.
 
-    Of a link from several states the start is the source, or where that is not one of them, or the target,
+    Of a link from several states the start is the source, or if that is not one of them, or the target,
     another of them.
     """
     link = project.link(ident)

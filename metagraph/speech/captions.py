@@ -49,7 +49,7 @@ def read_caption_words(grid: TextGrid) -> tuple[Word, ...]:
 
 
 def describe_line(line: Line, folder: Path) -> tuple[Word, ...]:
-    """Return the words of a line whose times are told in its TextGrid; none where they are not. folder: what
+    """Return the words of a line whose times are given in its TextGrid; none where they are not. folder: what
     its path begins at.
     """
     if line.phones is None:

@@ -1,7 +1,7 @@
 """Listeners take up the posture of who speaks, as in a mirror, a moment later (LaFrance and Broadbent 1976;
 Yang et al. name it as future work).
 
-Which of one's own stances is most like the other's is told by where head, hands, chest and feet are, seen
+Which of one's own stances is most like the other's is given by where head, hands, chest and feet are, seen
 from the hips, so two characters of other studios with other names mirror each other too.
 """
 

@@ -36,10 +36,10 @@ def prosody(
     """Return how the segments of a recording are said. words: of the same speaker, with their times. samples,
     rate: the sound `[N]`, None if there is none; then loudness is not known.
 
-    The rate is told by the letters of the words that lie in a segment, from the first one's start to the last
-    one's end; where no words have times by the segments' own texts; if there are no texts by the syllables
-    that are heard. Letters, as they are counted alike in every language that writes them; in Chinese they are
-    syllables.
+    The rate is given by the letters of the words that lie in a segment, from the first one's start to the
+    last one's end; where no words have times by the segments' own texts; if there are no texts by the
+    syllables that are heard. Letters, as they are counted alike in every language that writes them; in
+    Chinese they are syllables.
     """
     own = [s.kind in OWN for s in segments]
     loud = np.full(len(segments), np.nan)

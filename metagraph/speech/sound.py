@@ -249,8 +249,8 @@ def sound_kind(path: str | Path) -> str:
 
 
 def sound_ending(path: str | Path) -> str:
-    """Return the ending of a file that reads as a sound, such as ".wav": its own where that is of a sound,
-    else that of its kind. Raises FileError for what is none.
+    """Return the ending of a file that reads as a sound, such as ".wav": its own if that is of a sound, else
+    that of its kind. Raises FileError for what is none.
     """
     path = Path(path)
     read_head(path)

@@ -24,8 +24,8 @@ from metagraph.speech.sound import analyse_sound, read_sound, syllables
 # semitones of range; ours.
 FULL = (10.0, 0.5, 8.0)
 MOST = 0.8  # a voice alone makes nobody more or less aroused than this
-LEAST = 3  # lines of a speaker below which nothing is told: the median would be of next to nothing
-SHORTEST = 0.6  # seconds of sound below which nothing is told
+LEAST = 3  # lines of a speaker below which nothing is reported: the median would be of next to nothing
+SHORTEST = 0.6  # seconds of sound below which nothing is reported
 
 
 @dataclass(frozen=True, slots=True)

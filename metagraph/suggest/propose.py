@@ -230,7 +230,7 @@ def _placed(
 
 
 def _away_from(shapes: Mapping[Layer, Sequence[Shape]], each: ClipEvidence) -> float:
-    """Return how far a clip that does not rest begins from the nearest stance of its layer, heights; 0 where
+    """Return how far a clip that does not rest begins from the nearest stance of its layer, heights; 0 if
     that is not known.
     """
     kind = each.agreed("kind", len(KINDS))

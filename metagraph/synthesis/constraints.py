@@ -122,7 +122,7 @@ def list_wanted(
     kinds = np.ones(frames, np.uint8) if "idle" in use else np.full(frames, ALL, np.uint8)
     bounds: list[int] = []
     stresses: list[int] = []
-    anywhere = np.zeros(frames, bool)  # where nobody knows a clause's stress
+    anywhere = np.zeros(frames, bool)  # if nobody knows a clause's stress
     for s in _checked(segments):
         a, b = max(0, round(s.start * RATE)), min(frames, round(s.end * RATE))
         kinds[a:b] = 1 << SOUNDS.index(s.kind) if s.kind in use else ALL

@@ -2,7 +2,7 @@
 (Yang et al., section 5).
 
 Around every segment of speech a window is searched for a movement of the hand or the head. Whether anything
-moves there at all is told by a threshold of the whole take (equation 1), where the movement begins and ends
+moves there at all is given by a threshold of the whole take (equation 1), where the movement begins and ends
 by one of the window (equation 2).
 """
 

@@ -43,15 +43,15 @@ class SpokenTake:
     prosody: Prosody | None = None
 
     def values(self, measure: Measure) -> Array:
-        """Return how its segments are said `[n]`, NaN where that is not known."""
+        """Return how its segments are said `[n]`, NaN if that is not known."""
         if self.prosody is None:
             return np.full(len(self.segments), np.nan)
         return np.asarray(getattr(self.prosody, measure), float)
 
 
 def standardise_prosody(recordings: Sequence[SpokenTake], measure: Measure) -> list[Array]:
-    """Return of each recording how far each segment is from its speaker's usual, in spreads; NaN where that
-    is not known.
+    """Return of each recording how far each segment is from its speaker's usual, in spreads; NaN if that is
+    not known.
 
     Clauses and responses each by themselves. The mean is the recording's own where it has FEW of them, else
     that of all; the spread (root mean square about the means) is that of all, which are taken to be of one

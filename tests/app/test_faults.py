@@ -50,7 +50,7 @@ def zero():
     return 1 / 0
 
 
-# --- what is told
+# --- what is reported
 
 
 def test_a_fault_is_told_once_and_counted(told):

@@ -35,7 +35,7 @@ SECONDS = 60.0  # what takes longer than this goes round for ever
 @dataclass(frozen=True)
 class Language:
     """A runtime and what of it is changed. folder: where it is. ends: of its sources' names. left_out: parts
-    of paths of what vectors cannot see. silent: what a line holds that tells of errors alone.
+    of paths of what vectors cannot see. silent: what a line holds that reports errors alone.
     """
 
     folder: str

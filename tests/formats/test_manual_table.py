@@ -1,4 +1,4 @@
-"""Links from a spreadsheet: what its cells may say, and what is told of those that cannot be read."""
+"""Links from a spreadsheet: what its cells may say, and what is reported about those that cannot be read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a training got is told from its folder, whatever became of it."""
+"""How far a training got is read from its folder, whatever became of it."""
 
 from __future__ import annotations
 

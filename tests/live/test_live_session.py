@@ -62,7 +62,7 @@ def one(session: LiveSession, request: dict[str, Any] | str, client: int = 1) ->
 def heard(
     session: LiveSession, request: dict[str, Any], client: int = 1
 ) -> tuple[dict[str, Any], list[tuple[int, Event]]]:
-    """Return the reply to a request, and what is told at the same tick."""
+    """Return the reply to a request, and what is reported at the same tick."""
     session.receive(client, json.dumps(request))
     out = session.tick(session.now + TICK)
     return msgspec.to_builtins(out.replies[0]), out.events
@@ -73,7 +73,7 @@ def listen(session: LiveSession, client: int = 1, events: Any = True) -> None:
 
 
 def events(session: LiveSession, until: float) -> list[tuple[int, Event]]:
-    """Go on until a time; return all that was told."""
+    """Go on until a time; return all that was reported."""
     out = []
     while session.now < until:
         out += session.tick(session.now + TICK).events

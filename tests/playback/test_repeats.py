@@ -160,7 +160,7 @@ def test_the_same_shows_one_cycle_later(project: Project, wave: str) -> None:
     plan = planned(project, asked(wave, duration=4.0))
     times = np.linspace(2.0, 2.0 + CYCLE, 20)
     later = hand(project, plan, times + CYCLE)
-    assert later == pytest.approx(hand(project, plan, times), abs=0.02)  # but for what the stance does
+    assert later == pytest.approx(hand(project, plan, times), abs=0.02)  # except for what the stance does
 
 
 def test_plain_numbers_say_the_same_as_arrays(project: Project, wave: str) -> None:

@@ -1,4 +1,4 @@
-"""Lines of dialogue become voices; what is broken is told and spoils nothing else."""
+"""Lines of dialogue become voices; what is broken is reported and spoils nothing else."""
 
 from __future__ import annotations
 

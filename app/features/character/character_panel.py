@@ -432,7 +432,7 @@ class PreviewPanel(QWidget):
             )
         if after.skeleton is None:
             self._tell_mesh()
-        # What plays follows when it is planned anew; the marks of a mask are the project's own.
+        # What plays follows when it is planned again; the marks of a mask are the project's own.
         if before.skeleton is not after.skeleton or mask_marks(self.performance, self.session) != self._marks:
             self.view.update()
 

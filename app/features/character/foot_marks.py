@@ -18,7 +18,7 @@ from app.look.theme import WindowTheme, theme
 from app.translation import lazy_texts, tr, tr_noop
 from metagraph.playback.posing.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
 
-SPAN = 1.5  # seconds before and after now that the line tells of
+SPAN = 1.5  # seconds before and after now that the line reports
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
 HIGH = 42  # pixels of the line
 SIDES = lazy_texts(lambda: (tr("Left foot"), tr("Right foot")))

@@ -32,7 +32,7 @@ ROUND = 8.0  # seconds of a turn of the turntable
 TURN = 33  # milliseconds between its steps
 DARKEST = 0.35  # of its colour, a joint that hardly moves
 LOOKS = 24  # poses of a clip that are looked at to see whether it stays in the picture
-CUT = 0.03  # of the picture: what a box round a figure may reach beyond it before it is framed anew
+CUT = 0.03  # of the picture: what a box round a figure may reach beyond it before it is framed again
 HANDS = 0.16  # metres round the hands that are in the picture
 
 

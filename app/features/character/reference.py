@@ -28,7 +28,7 @@ FILES = tr_noop("Videos and pictures (*.mp4 *.mov *.mkv *.webm *.avi *.m4v *.png
 
 
 class _Reader(QObject):
-    """Reads pictures of a file on a thread; of what is asked for meanwhile only the last. came: a picture.
+    """Reads pictures of a file on a thread; of what is requested meanwhile only the last. came: a picture.
     failed: why there is none, in words.
     """
 

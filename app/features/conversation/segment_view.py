@@ -372,7 +372,7 @@ class SegmentView(QWidget):
         return menu
 
     def _seconds(self) -> float:
-        """Return the time keys are about: under the pointer where that is on a segment, else the playhead."""
+        """Return the time keys are about: under the pointer if that is on a segment, else the playhead."""
         hit = self._hit(self.pointer)
         return (
             self.scale().seconds(self.pointer.x())

@@ -111,7 +111,7 @@ class Sounds(QObject):
         if self._job is not None:
             self._job.cancel()
             self._job = None
-        # What a job before has only begun is begun anew: its thread may still be at it.
+        # What a job before has only begun is begun again: its thread may still be at it.
         self.heard = {
             k: h if (h := self.heard.get(k)) is not None and not h.told else SideSound() for k in keys
         }

@@ -1,4 +1,4 @@
-"""Shows what is told of an import or of opening a project."""
+"""Shows what is reported about an import, or about opening a project."""
 
 from __future__ import annotations
 

@@ -71,8 +71,8 @@ class TakeListing:
 def list_takes(
     folders: Sequence[Path], project: Project, progress: Progress, cancelled: Cancelled
 ) -> TakeListing:
-    """Look through folders, and read what can be learned from; what cannot is told, and spoils nothing else.
-    Raises CancelledError.
+    """Look through folders, and read what can be learned from; what cannot is reported, and spoils nothing
+    else. Raises CancelledError.
     """
     from metagraph.generation.take_files import find_takes, read_take_batch
 

@@ -14,7 +14,7 @@ from app.stage.session import StageSession
 from app.translation import lazy_texts, tr
 from app.widgets.still_plot import empty_plot, still_plot
 
-# Statistics of which 1 is right, as people read them; others are told in words.
+# Statistics of which 1 is right, as people read them; others are reported in words.
 RATIOS = lazy_texts(
     lambda: {
         "speed": tr("speed"),

@@ -27,9 +27,9 @@ CHIP_MIN, SHORT, CHIP_MAX = 108, 150, 230
 BESIDES = 80  # pixels of a chip beside its words
 BOLD = 1.12  # how much wider the card's name is than the chip's
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
-TIGHT = -1  # and: as many in a line as can be told apart
+TIGHT = -1  # and: as many in a line as can be distinguished
 TIGHTEST = 84.0
-CHOOSER = 196.0  # pixels from a chooser to the right edge of its node: "another stance?" is told whole
+CHOOSER = 196.0  # pixels from a chooser to the right edge of its node: "another stance?" is reported whole
 LEAST_NODES = 300.0  # pixels of height for a card and its nodes below each other
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]

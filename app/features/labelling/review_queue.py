@@ -117,7 +117,7 @@ class ReviewQueue(QWidget):
         return self.limit.value() / 100
 
     def fill(self, clips: Sequence[str], aside: Sequence[str] = ()) -> None:
-        """List other clips, and at the end those that were left aside."""
+        """List other clips, and at the end those that were skipped."""
         self.list.blockSignals(True)
         self.list.clear()
         self.clips, self.aside, self._items = tuple(clips), tuple(aside), {}

@@ -25,12 +25,12 @@ from metagraph.suggest.proposal import Proposal, Proposals
 from metagraph.suggest.propose import propose, waiting
 from metagraph.suggest.review import Field, Review, ReviewPace
 
-REST = 400  # milliseconds of quiet after a correction before the rest is proposed anew
+REST = 400  # milliseconds of quiet after a correction before the rest is proposed again
 
 
 class Reviewing(QObject):
-    """clips: all of the review, in the order they are gone through. aside: those left aside. parted: the
-    stances that bridges can join, after many clips were placed at once. found: the first proposals are there.
+    """clips: all of the review, in the order they are gone through. aside: those skipped. parted: the stances
+    that bridges can join, after many clips were placed at once. found: the first proposals are there.
     changed: proposals or what is placed. failed: words.
     """
 
@@ -96,7 +96,7 @@ class Reviewing(QObject):
             )
 
     def _again(self, found: Proposals) -> None:
-        mine = self.review.found  # what has a proposal is not left aside any more, whatever is learned
+        mine = self.review.found  # what has a proposal is not skipped any more, whatever is learned
         aside = {c: why for c, why in found.aside.items() if c not in mine.proposals}
         found = replace(found, aside=aside, spare={**mine.spare, **found.spare})
         self.review = self.review.anew(found).settled(self.document.project)
@@ -112,7 +112,7 @@ class Reviewing(QObject):
         return [c for c in self.clips if c in there]
 
     def sure_ones(self, least: float) -> list[str]:
-        """Return the clips that wait, are at least so sure, and are not disputed."""
+        """Return the clips that wait, are at least that certain, and are not disputed."""
         proposals = self.review.found.proposals
         return [c for c in self.waiting() if proposals[c].confidence >= least and not proposals[c].conflicts]
 
@@ -123,7 +123,7 @@ class Reviewing(QObject):
         return next((c for c in (*self.clips[at + 1 :], *self.clips[: at + 1]) if c in waiting), None)
 
     def open_after(self, clip: str | None) -> str | None:
-        """Return the next clip that waits or is left aside, from the beginning again after the last."""
+        """Return the next clip that waits or is skipped, from the beginning again after the last."""
         every, there = (*self.clips, *self.aside), set(waiting(self.document.project))
         at = every.index(clip) if clip in every else -1
         return next((c for c in (*every[at + 1 :], *every[: at + 1]) if c in there), None)
@@ -171,7 +171,7 @@ class Reviewing(QObject):
         )
 
     def take_up(self, clip: str, kind: Kind) -> None:
-        """Make a clip that was left aside one of the review, as a kind."""
+        """Make a clip that was skipped one of the review, as a kind."""
         self.review = Review(take_up_skipped(self.review.found, clip), self.review.said).tell(
             clip, "kind", kind
         )

@@ -73,7 +73,7 @@ def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> 
 
 
 def describe_skipped(aside: Sequence[str]) -> str:
-    """Return what is said when nothing is left but clips that were left aside."""
+    """Return what is said when nothing is left but clips that were skipped."""
     return tr_plural(
         "<b>All clips are placed</b> except {count:,} skipped clip.",
         "<b>All clips are placed</b> except {count:,} skipped clips.",

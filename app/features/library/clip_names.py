@@ -8,7 +8,7 @@ from app.look.plural import strip_stance
 from app.project.document import Document
 from metagraph.graph.model import LAYERS, ClipEntry
 
-NEAR = 48  # cards before and behind one, from which its name is told apart
+NEAR = 48  # cards before and behind one, from which its name is distinguished
 
 
 class ClipNames:

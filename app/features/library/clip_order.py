@@ -62,7 +62,7 @@ def _color(facts: ClipFacts, entry: ClipEntry) -> int:
 
 
 def _by(first: Key) -> Key:
-    """Return an order by something, and by name where that is the same."""
+    """Return an order by something, and by name if that is the same."""
     return lambda facts, entry: (first(facts, entry), natural_key(entry.name))
 
 

@@ -105,7 +105,7 @@ class ClipRows(QAbstractListModel):
             self.arrange()
 
     def arrange(self) -> None:
-        """Work out what is shown, and tell of it where it is another."""
+        """Work out what is shown, and report it where it is another."""
         entries, sections = arrange_clips(self.facts, self.listing)
         sections = [replace(s, closed=s.title in self.closed) for s in sections]
         if sections == self.sections and [e.id for e in entries] == [e.id for e in self.entries]:
@@ -206,7 +206,7 @@ class ClipRows(QAbstractListModel):
 
 
 def find_changed_rows(before: Project, after: Project, entries: Sequence[ClipEntry]) -> list[tuple[int, int]]:
-    """Return the first and last rows of clips that look otherwise, or are found otherwise, than before."""
+    """Return the first and last rows of clips that look differently, or are found otherwise, than before."""
     if before is after or not entries:
         return []
     names = [[(s.id, s.name) for g in p.graphs.values() for s in g.stances.values()] for p in (before, after)]

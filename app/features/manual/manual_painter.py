@@ -345,8 +345,8 @@ def _whole(painter: QPainter, look: ManualLook, state: State, rect: QRectF) -> N
 
 @lru_cache(maxsize=8192)
 def name_lines(name: str, font: str, width: int) -> tuple[str, ...]:
-    """Return a name in the one or two lines it needs, broken where its words meet, and shortened where that
-    is not enough.
+    """Return a name in the one or two lines it needs, broken where its words meet, and shortened if that is
+    not enough.
     """
     made = QFont()
     made.fromString(font)

@@ -94,7 +94,7 @@ class SoftWishes(QWidget):
         return out
 
     def wish(self) -> SoftWish:
-        """Return what is asked for now. Raises ValueError if a word is none."""
+        """Return what is requested now. Raises ValueError if a word is none."""
         from metagraph.synthesis.iconic_words import word_wish
         from metagraph.synthesis.soft_constraints import SoftWish
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
-# Makes an edit by its name, see `Document.edit`; False where it cannot be made, which is told.
+# Makes an edit by its name, see `Document.edit`; False where it cannot be made, which is reported.
 Edit = Callable[..., bool]
 ANY = 16_777_215  # Qt's largest height of a widget
 

@@ -205,7 +205,7 @@ class TimingPlot(QWidget):
         if fresh:
             speeds, words = speed_of(project, action)
             self.curve.setData(np.arange(len(speeds)) / entry.fps, speeds)
-            # In one go: each change of a range lets all lines and words find their places anew.
+            # In one go: each change of a range lets all lines and words find their places again.
             across = -0.02 * entry.duration, max(entry.duration, 0.1) * 1.02
             top = max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0)
             self.plot.plotItem.vb.setRange(xRange=across, yRange=(0, top), padding=0)

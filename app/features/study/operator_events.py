@@ -44,7 +44,7 @@ class OperatorEvents:
         self._since = now
         self._keys: dict[
             int, tuple[int, bool]
-        ] = {}  # held down -> the event's own time, whether it was told as a press
+        ] = {}  # held down -> the event's own time, whether it was reported as a press
         self._buttons: set[int] = set()
         self._anchor: Point | None = None  # where the last pointing ended
         self._at: Point = (-1e9, -1e9)  # nowhere yet
@@ -56,7 +56,7 @@ class OperatorEvents:
 
     def key(self, key: int, down: bool, stamp: int, asked: bool = False) -> bool:
         """Report a key; return whether it was new. stamp: the event's own time. asked: it is only asked
-        whether the key is a shortcut; if it is none it is told as a press next.
+        whether the key is a shortcut; if it is none it is reported as a press next.
         """
         if not down:
             self._keys.pop(key, None)
@@ -101,7 +101,7 @@ class OperatorEvents:
 
     def move(self, at: Point, held: bool, now: float) -> bool:
         """Report where the pointer is; return whether it moved. held: a button is down."""
-        if self._buttons and not held:  # released where nobody told, at the end of a drag
+        if self._buttons and not held:  # released if nobody told, at the end of a drag
             for button in tuple(self._buttons):
                 self.release(button, self._at, self._last)
         if at == self._at:

@@ -24,8 +24,8 @@ from metagraph.graph.model import Project
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-IDLE = 10.0  # seconds without input that are told
-MOST = 50  # ids of what is selected that are told
+IDLE = 10.0  # seconds without input that are reported
+MOST = 50  # ids of what is selected that are reported
 MERGING = 300  # milliseconds after which a run of merged edits, as a drag makes them, is taken to be over
 
 
@@ -137,7 +137,7 @@ class Recorder(QObject):
         self._write(kind, {"words": command.english, **self._change(self.shell.document.project)})
 
     def _change(self, now: Project) -> dict[str, Any]:
-        """Return what makes the project that was told last what it is now, so that the work can be seen
+        """Return what makes the project that was reported last what it is now, so that the work can be seen
         again.
         """
         before, self._told = self._told, now

@@ -137,7 +137,7 @@ class TakingDialog(QDialog):
     def _take(self) -> None:
         taking = self.taking
         if taking is None or self._of is not self.document.project:
-            return  # it was edited a moment ago, and is being worked out anew
+            return  # it was edited a moment ago, and is being worked out again
         self.document.changed.disconnect(self._work_out)
         self.document.edit(tr("Import from {name}", name=self.name), lambda _: taking.project)
         self.accept()

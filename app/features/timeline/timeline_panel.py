@@ -1,4 +1,4 @@
-"""The performance panel: which performance is on stage and with what chance, and the lanes of what was asked
+"""The performance panel: which performance is on stage and with which seed, and the lanes of what was asked
 and what plays.
 """
 

@@ -20,7 +20,7 @@ from metagraph.playback.planning.asked_lines import asked_line
 
 Array = NDArray[Any]
 
-SYLLABLE = 0.06  # seconds about a peak that is drawn where there is no sound
+SYLLABLE = 0.06  # seconds about a peak that is drawn if there is no sound
 BEFORE = 0.15  # seconds of an action to which a line that has ended still belongs
 
 

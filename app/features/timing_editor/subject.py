@@ -164,7 +164,7 @@ class Subject(QObject):
         self._hear()
         self.changed.emit()
 
-    # --- what is reckoned
+    # --- what is computed
 
     def facts(self) -> dict[str, Facts]:
         """Return what is shown of each action that is still there, in the order they were selected."""
@@ -346,7 +346,7 @@ class Subject(QObject):
         transport.set_playing(True)
 
     def _skin(self) -> None:
-        """Show start, stroke and end of the first action beside the character, where that is wanted."""
+        """Show start, stroke and end of the first action beside the character, if that is wanted."""
         facts = next(iter(self.facts().values()), None) if self.shows.onion else None
         if facts is None:
             self.session.onion.show(None)

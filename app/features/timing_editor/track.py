@@ -1,4 +1,4 @@
-"""What the editor shows of one action: all that is reckoned, made again only when what it rests on has
+"""What the editor shows of one action: all that is computed, made again only when what it rests on has
 changed.
 """
 

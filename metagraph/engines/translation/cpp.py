@@ -38,7 +38,7 @@ NATIVE = {  # records that are not translated: their headers
 
 
 class Cpp(Braces):
-    """One module, `name.hpp`. Records are told by `Ref`, which may be nothing."""
+    """One module, `name.hpp`. Records are given by `Ref`, which may be nothing."""
 
     STEP = "    "
     WIDTH = 120

@@ -51,7 +51,7 @@ class Calls(Typed):
         if full in PLAIN:
             plain = [
                 a for a, n in zip(node.args, node.arg_names, strict=True) if n is None
-            ]  # strict=True is told by zip
+            ]  # strict=True is given by zip
             given = self.expressions(plain)
             if "key" in node.arg_names:
                 given = (self._keys(node, given[0]), given[1])
@@ -241,8 +241,8 @@ class Calls(Typed):
         return x.New(kind, self._placed(node, names, wanted, defaults))
 
     def fitted(self, value: x.Expression, wanted: x.Type) -> x.Expression:
-        """Return a value as a certain type: what is empty gets its items' type, a whole number becomes
-        one with a fraction where that is written down.
+        """Return a value as a certain type: what is empty gets its items' type, a whole number becomes one
+        with a fraction if that is written down.
         """
         if isinstance(value, x.Gathered | x.Mapped) and wanted.bare.kind in ("list", "map", "set"):
             return replace(value, type=wanted.bare)

@@ -40,8 +40,8 @@ class Verified:
 
 
 def fault_of(error: FileError, name: str | None = None, remedy: str | None = None) -> VerificationFault:
-    """Return a file's error as a fault. name: what the file is called where that is more than its name;
-    remedy: what to do where that is known better.
+    """Return a file's error as a fault. name: what the file is called if that is more than its name; remedy:
+    what to do if that is known better.
     """
     name = name or error.path.name
     place = f"{name}, {error.where}" if error.where else name

@@ -115,7 +115,7 @@ class Run:
         }
 
     def keep(self) -> None:
-        """Write a checkpoint where there is something new. One that cannot be written is told, and tried
+        """Write a checkpoint where there is something new. One that cannot be written is reported, and tried
         again the next time: what was learned is still in memory, and the one before is as it was.
         """
         if self._kept == self.learner.step:

@@ -318,7 +318,7 @@ class _Clips:
 
 
 def _content(entry: ClipEntry) -> tuple[object, ...]:
-    """Return by what two clips are the same: content, or place where that is not known, and how they play."""
+    """Return by what two clips are the same: content, or place if that is not known, and how they play."""
     return (entry.digest or entry.path, entry.take, entry.as_is, entry.retime, entry.in_place)
 
 

@@ -1,4 +1,4 @@
-"""What was seen beside what a model makes of it: how often, what after what, how long; with what chance alone
+"""What was seen beside what a model makes of it: how often, what after what, how long; with which seed alone
 explains.
 
 A model of n draws visits its states not quite as often as its matrix says. How far off is to be expected

@@ -40,7 +40,7 @@ _WEIGHT: Mapping[Kind, int] = {"transition": 2, "gesture": 1, "fidget": 0, "stan
 @dataclass(frozen=True, slots=True)
 class Act:
     """Something one layer was seen, or is made, to do. start, end: seconds. stroke: its most telling moment,
-    where that is known.
+    if that is known.
     """
 
     start: float

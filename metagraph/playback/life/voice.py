@@ -68,14 +68,14 @@ def voice_from_text(text: str, duration: float | None = None) -> Voice:
 
 @lru_cache(maxsize=256)
 def voice_from_timing(timing: LineTiming, duration: float) -> Voice:
-    """Return the voice of a line whose words and shapes are told with their times."""
+    """Return the voice of a line whose words and shapes are given with their times."""
     said = timed_sounds(ALPHABET, timing)
     return make_voice(said.pieces, duration, np.array(said.peaks), np.array(said.strengths))
 
 
 def voice_for_speech(voices: Mapping[str, Voice], speech: Speech) -> Voice:
-    """Return the voice of something said: as its words and shapes were told, as its line's was read from the
-    sound, else one guessed from its text.
+    """Return the voice of something said: as its words and shapes were reported, as its line's was read from
+    the sound, else one guessed from its text.
     """
     if speech.timing is not None:
         return voice_from_timing(

@@ -24,7 +24,7 @@ class AskedLine:
 
 def asked_line(project: Project, action: Action) -> AskedLine | None:
     """Return the line that an action is asked for with: beside it in a kept performance, else by the line's
-    own asks; where several are, the one that names the action itself, then the first. None where none is.
+    own asks; where several are, the one that names the action itself, then the first. None if none is.
     """
     found = [*_in_performances(project, action), *_by_lines(project, action)]
     return max(found, key=lambda f: f[0])[1] if found else None

@@ -78,7 +78,7 @@ def share_layer(of: LayerPlan) -> LayerPlan:
 
 def find_plan_head(project: Project, plan: Plan, now: float, again: Collection[str]) -> PlanHead | None:
     """Return the head of a plan at `now`; None if there is none, or where all has to be looked at. again: ids
-    of what is asked for again or withdrawn.
+    of what is requested again or withdrawn.
     """
     cut = now - max(RECENT, project.settings.memory)
     if cut <= 0:

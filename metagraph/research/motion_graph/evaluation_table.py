@@ -1,4 +1,4 @@
-"""An evaluation of searches as a table to read, and as values to reckon with."""
+"""An evaluation of searches as a table to read, and as values to compute with."""
 
 from __future__ import annotations
 

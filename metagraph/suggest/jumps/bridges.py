@@ -1,10 +1,10 @@
 """Ways between stances that no clip leads to or from: blends from pose to pose, told as what they are.
 
 A set of takes often lacks a transition. Without it a stance is never reached and all its gestures never play.
-A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; where
-that is too short, the loop of the stance it leaves, and takes long to blend out of it. It takes so long that
-no joint goes faster on average than it usually goes in the clips: at its fastest, half as fast again. No
-bridge is made where the body would slide or turn on the spot, or if there is no time for the distance.
+A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; if that
+is too short, the loop of the stance it leaves, and takes long to blend out of it. It takes so long that no
+joint goes faster on average than it usually goes in the clips: at its fastest, half as fast again. No bridge
+is made where the body would slide or turn on the spot, or if there is no time for the distance.
 """
 
 from __future__ import annotations

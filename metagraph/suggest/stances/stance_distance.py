@@ -54,7 +54,7 @@ def distance_of(
     project: Project, action: Action, seen: SeenJumps | None, both: tuple[Array, Array, Array] | None = None
 ) -> StanceDistance:
     """Return an action's distances. seen: what is known of its jumps, which decides what shows. both: what
-    `measured` returned for the same action, where that is known.
+    `measured` returned for the same action, if that is known.
     """
     times, into, left = measure_stance_distance(project, action) if both is None else both
     motion = end_gaps.motion_of(project, action)

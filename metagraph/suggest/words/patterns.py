@@ -133,7 +133,7 @@ class Patterns:
         return Patterns(changes, _learned(data.get("learned", {})))
 
 
-_PLAIN: Final = Patterns()  # what words mean where nobody has changed a thing
+_PLAIN: Final = Patterns()  # what words mean if nobody has changed a thing
 
 
 def _learned(data: Any) -> Learned:

@@ -403,8 +403,8 @@ class Stances:
         return self._begun.get(stance.words, 0) > COMMON * self._count
 
     def within(self, words: Words) -> tuple[FoundStance, int, int] | None:
-        """Return a stance of posture that is told after what is done ("talk_sitting_01"), and from where to
-        where.
+        """Return a stance of posture that is reported after what is done ("talk_sitting_01"), and from where
+        to where.
         """
         best: tuple[int, int, FoundStance] | None = None
         for start in range(1, len(words)):

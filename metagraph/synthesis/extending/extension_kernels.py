@@ -19,7 +19,7 @@ Array = Any
 class KnownStates(NamedTuple):
     """What is known of states. kinds `[F]` uint8: bits of what was heard there. events `[F]` uint8: STRESS
     and EDGE. stops `[F]`: the first state behind a run that goes through each. recent `[F]` float32: 1 where
-    it was shown a moment ago, less where that is longer ago.
+    it was shown a moment ago, less if that is longer ago.
     """
 
     kinds: Array

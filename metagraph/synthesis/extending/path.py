@@ -256,8 +256,8 @@ class PathExtender:
 
 
 def replay_path(graph: DriverGraph, told: Sequence[Told], frames: int, seed: int = 1) -> Path:
-    """Return the path that was extended so far when this was told: the same, frame by frame. told: by frame;
-    frames: how many were shown.
+    """Return the path that was extended so far when this was reported: the same, frame by frame. told: by
+    frame; frames: how many were shown.
     """
     extender, place = PathExtender(graph, seed), 0
     out = np.empty(frames, np.int64)

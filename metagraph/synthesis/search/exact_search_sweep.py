@@ -42,9 +42,9 @@ class Foresight:
 
 
 class Sweep:
-    """One sweep within a bound. cost `[2 F]`: of the cheapest way to where somebody is; alive: where that
-    is, as the loops count it. through: what some way all through costs that was come upon, infinite without.
-    exact: the sweep as it was when it first left somebody out for others were cheaper; None before.
+    """One sweep within a bound. cost `[2 F]`: of the cheapest way to where somebody is; alive: if that is, as
+    the loops count it. through: what some way all through costs that was come upon, infinite without. exact:
+    the sweep as it was when it first left somebody out for others were cheaper; None before.
     """
 
     exact: Sweep | None = None
@@ -297,8 +297,8 @@ class Sweep:
         return self.alive[costs <= dear], min(reach, dear + self._spare)
 
     def _foresee(self, t: int) -> tuple[Array, Any]:
-        """Look up what it costs to go on for who jumps to arrive at frame t; return where that is known, and
-        the least.
+        """Look up what it costs to go on for who jumps to arrive at frame t; return if that is known, and the
+        least.
         """
         from metagraph.synthesis.search.exact_search_kernels import foresee
 

@@ -105,7 +105,7 @@ class PaidAlong:
     def copied(self) -> PaidAlong:
         """Return another one that is as far, and goes on by itself."""
         out = copy.copy(self)
-        out.before = self.before.copy()  # the other array is made anew for each frame
+        out.before = self.before.copy()  # the other array is made again for each frame
         return out
 
     def go_on(self, t: int) -> None:

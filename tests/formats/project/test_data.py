@@ -314,7 +314,7 @@ def test_whatever_stands_in_a_field_the_error_says_where(chance: random.Random, 
     else:
         assert to_data(from_data(to_data(project))) == to_data(
             project
-        )  # but for what lies below a microsecond
+        )  # except for what lies below a microsecond
 
 
 def test_every_layer_is_there_whatever_the_data_holds() -> None:

@@ -1,4 +1,4 @@
-"""Verifying a project tells of each file that is not whole, hides none of them, and changes nothing."""
+"""Verifying a project reports each file that is not whole, hides none of them, and changes nothing."""
 
 from __future__ import annotations
 

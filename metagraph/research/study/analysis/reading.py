@@ -131,7 +131,7 @@ def prediction(run: TaskRun, times: OperatorTimes = USUAL) -> float:
 
 def collect_study(folder: str | Path, jumps: bool = True, progress: Progress | None = None) -> Data:
     """Read a study's folder, or study file, and what lies beside it. jumps: judge them, which needs the
-    references' clips. Raises FileError if the study file cannot be read; whatever else is wrong is told in
+    references' clips. Raises FileError if the study file cannot be read; whatever else is wrong is given in
     `missing`.
     """
     study = read_study(folder)

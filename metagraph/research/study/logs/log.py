@@ -103,7 +103,7 @@ class StudyLog:
 
     @property
     def frozen(self) -> dict[str, str] | None:
-        """Return what was worked with, name -> SHA-256, as it was told first; None if it was not."""
+        """Return what was worked with, name -> SHA-256, as it was reported first; None if it was not."""
         found = next((e.get("digests") for e in self.events if e["type"] == "frozen"), None)
         return {str(k): str(v) for k, v in found.items()} if isinstance(found, dict) else None
 
@@ -241,7 +241,7 @@ class Writer:
         self.before = read_log(self.path) if self.path.exists() else StudyLog(self.path)
         self.n = self.before.following
         self._waiting: list[bytes] = []  # lines that could not be written yet
-        self.listeners: list[Callable[[Event], None]] = []  # told of each event that is in the log
+        self.listeners: list[Callable[[Event], None]] = []  # reported about each event that is in the log
         self.closed = False
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)

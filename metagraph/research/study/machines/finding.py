@@ -60,7 +60,7 @@ def _most(sets: Sequence[tuple[int, int]], left: int) -> int:
 
 
 class Finder:
-    """What parts of names select. names: of all states there are, of which sets are told as bits."""
+    """What parts of names select. names: of all states there are, of which sets are reported as bits."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = tuple(n.lower() for n in names)

@@ -20,7 +20,7 @@ from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
 from metagraph.research.study.statistics.student_t import t_quantile, t_two_sided
 
 Array = NDArray[np.float64]
-NOTHING = 0.02  # a deviation of log odds below which a group is told as having none
+NOTHING = 0.02  # a deviation of log odds below which a group is reported as having none
 FARTHEST = 12.0  # log odds beyond which a share is 0 or 1, and no model has an end
 
 

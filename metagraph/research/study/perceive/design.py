@@ -67,7 +67,7 @@ class Key(Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class Design:
-    """A key, and what the page is told: `public`, whose sessions are sealed there, each with its code."""
+    """A key, and what the page is given: `public`, whose sessions are sealed there, each with its code."""
 
     key: Key
     public: dict[str, Any]

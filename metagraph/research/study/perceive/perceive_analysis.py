@@ -52,7 +52,7 @@ class ComparedPair:
 
     @property
     def best(self) -> Estimate | None:
-        """Return the share that is told first: the model's where there is one."""
+        """Return the share that is reported first: the model's where there is one."""
         return self.model.share if self.model is not None else self.share
 
     @property
@@ -63,7 +63,7 @@ class ComparedPair:
 
 @dataclass(frozen=True)
 class RatedPair:
-    """A question and a pair of conditions. difference: first less second, points. by: what it was reckoned
+    """A question and a pair of conditions. difference: first less second, points. by: what it was computed
     with, in words. p: two-sided; together: corrected (Holm).
     """
 

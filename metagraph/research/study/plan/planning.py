@@ -26,7 +26,7 @@ Verdict = Literal["larger", "equivalent", "smaller", "not told"]
 @dataclass(frozen=True)
 class Assumed:
     """What is assumed of people: the ratio of times, and the standard deviation of the logs of their ratios.
-    source: where that comes from, in words. worst: the deviation that is reckoned with to be careful: of a
+    source: where that comes from, in words. worst: the deviation that is computed with to be careful: of a
     pilot, the upper end of its one-sided 80 % interval.
     """
 
@@ -61,7 +61,7 @@ def assume_without_pilot(ratio: float, spread: float) -> Assumed:
 
 
 def from_pilot(ratios: Sequence[float], source: str = "a pilot") -> Assumed:
-    """Return what a pilot's people's ratios say; small pilots flatter, so that the deviation to reckon with
+    """Return what a pilot's people's ratios say; small pilots flatter, so that the deviation to compute with
     is the upper end of a one-sided 80 % interval (Browne 1995). Raises ValueError for fewer than 3.
     """
     if len(ratios) < 3:

@@ -20,7 +20,7 @@ def merge_site_data(
     folders: Sequence[str | Path], jumps: bool = True, progress: Progress | None = None
 ) -> Data:
     """Return the data of all folders as one. Raises FileError if one cannot be read, has not the same tasks
-    and conditions, or is called as another is; what else differs is told in `missing`.
+    and conditions, or is called as another is; what else differs is reported in `missing`.
     """
     studies = [read_study(f) for f in folders]
     names = [s.plan.site or s.folder.name for s in studies]

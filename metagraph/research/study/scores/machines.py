@@ -75,7 +75,7 @@ class Score:
 
     @property
     def recall(self) -> float | None:
-        """Of the connections that are wanted, the share that was made; None where none is wanted."""
+        """Of the connections that are wanted, the share that was made; None if none is wanted."""
         return self.right / (self.right + self.missing) if self.right + self.missing else None
 
     @property
@@ -227,7 +227,7 @@ def _told_by_links(
     got: NormalMachine, want: NormalMachine, less: Collection[Pair], more: Collection[Pair]
 ) -> frozenset[str]:
     """Return the states whose place follows from links drawn by hand and is unclear only since some to or
-    from rest were forgotten: that is one mistake, and is told of the links.
+    from rest were forgotten: that is one mistake, and is reported for the links.
     """
 
     def at_rest(pairs: Iterable[Pair], machine: NormalMachine) -> set[str]:
@@ -253,7 +253,7 @@ def _placing(
     layer: Layer,
 ) -> list[Mistake]:
     """Return what is wrong about where a clip is placed; nothing if links drawn by hand do not tell, as that
-    is told of the links.
+    is reported for the links.
     """
     key = want.key
     if got is None:
@@ -313,8 +313,8 @@ def _timing(
     got: NormalMachine, want: NormalMachine, both: Collection[Pair], tolerance: float
 ) -> list[Mistake]:
     """Return the times that are off. Loops are left whenever something is asked, so when is not compared; the
-    blend between two is told once, of the clip that has it: of what is going back to rest its own, else that
-    of what comes.
+    blend between two is reported once, of the clip that has it: of what is going back to rest its own, else
+    that of what comes.
     """
     out: dict[tuple[str, str], list[tuple[float | None, float | None]]] = {}
     for key in want.states.keys() & got.states.keys():

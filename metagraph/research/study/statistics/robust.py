@@ -79,9 +79,9 @@ def odd_ones(values: Sequence[float]) -> list[int]:
 def censored_mean(
     exact: Sequence[float], above: Sequence[float] = (), below: Sequence[float] = (), level: float = LEVEL
 ) -> Estimate | None:
-    """Return the mean of normal values, some known only to lie above, or below, a bound. Its interval is
-    that of the profile likelihood, scaled so that it is Student's where none is censored; an end that the
-    values do not bound is infinite. None with fewer than 2 known ones, or where those are all alike.
+    """Return the mean of normal values, some known only to lie above, or below, a bound. Its interval is that
+    of the profile likelihood, scaled so that it is Student's where none is censored; an end that the values
+    do not bound is infinite. None with fewer than 2 known ones, or where those are all the same.
     """
     x, lows, highs = (np.asarray(v, np.float64) for v in (exact, above, below))
     n = len(x) + len(lows) + len(highs)
@@ -146,8 +146,8 @@ def _lowest(f: Callable[[float], float], low: float, high: float) -> tuple[float
 
 
 def _crossing(f: Callable[[float], float], start: float, step: float, edge: float) -> float:
-    """Return where a function that rises from `start` in the direction of step reaches an edge; infinite
-    where that is beyond WIDEST steps.
+    """Return where a function that rises from `start` in the direction of step reaches an edge; infinite if
+    that is beyond WIDEST steps.
     """
     near, far = start, start + step
     while f(far) < edge:

@@ -1,6 +1,6 @@
-"""The ratio of times reckoned otherwise: what hangs on one person, on a limit, on a choice of the analysis.
+"""The ratio of times computed otherwise: what hangs on one person, on a limit, on a choice of the analysis.
 
-Nobody is left out of the figure that is reported for being odd; what it would be without them is told
+Nobody is left out of the figure that is reported for being odd; what it would be without them is reported
 beside it.
 """
 
@@ -35,7 +35,7 @@ class Otherwise:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """ways: the ratio reckoned otherwise. mixed: the model of tasks, on logs. odd: what is unlike the rest,
+    """ways: the ratio computed otherwise. mixed: the model of tasks, on logs. odd: what is unlike the rest,
     in words. correct: condition -> tasks without a mistake, and tasks whose mistakes were counted.
     """
 
