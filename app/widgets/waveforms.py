@@ -119,7 +119,9 @@ def join_columns(low: Array, high: Array, least: float) -> tuple[Array, Array]:
 
 
 def paint_columns(low: Array, high: Array, height: int, color: QColor) -> QImage:
-    """Return a picture of columns from `low` to `high` `[W]`, pixels from the top; nothing if low is greater."""
+    """Return a picture of columns from `low` to `high` `[W]`, pixels from the top; nothing if low
+    is greater.
+    """
     rows = np.arange(height, dtype=np.float32)[:, None]
     top, bottom = (
         np.clip(low, -1, height + 1).astype(np.float32),

@@ -68,7 +68,9 @@ def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
 
 
 def read_contact_rig(rig: c.ExportedContactRig, skeleton: Skeleton) -> ContactRig:
-    """Return an exported contact rig as the player takes it. Raises DataError if it does not fit the joints."""
+    """Return an exported contact rig as the player takes it. Raises DataError if it does not fit
+    the joints.
+    """
     count = len(rig.joints)
     places = [
         *(p for arm in rig.arms for p in arm),

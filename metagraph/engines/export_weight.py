@@ -69,7 +69,9 @@ def _plants(project: Project) -> bool:
 def read_weight(
     rig: c.ExportedWeightRig | None, clips: Sequence[c.ExportedClip], skeleton: Skeleton
 ) -> Weight:
-    """Return an exported weight rig as the player takes it. Raises DataError if it does not fit the joints."""
+    """Return an exported weight rig as the player takes it. Raises DataError if it does not fit the
+    joints.
+    """
     rows: Mapping[str, list[list[int]]] = {clip.id: clip.arms for clip in clips}
     feet: Mapping[str, list[list[int]]] = {clip.id: clip.feet for clip in clips}
     if rig is None:

@@ -18,7 +18,9 @@ def tools_name(stem: str) -> str:
 
 
 def write_tools(project: Project, folder: Path) -> Path:
-    """Write `offered.tools` as JSON into a folder; return the file. Raises FileError if it cannot be written."""
+    """Write `offered.tools` as JSON into a folder; return the file. Raises FileError if it cannot
+    be written.
+    """
     path = folder / tools_name(stem_of(project))
     write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
     return path

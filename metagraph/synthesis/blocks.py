@@ -187,7 +187,9 @@ def transitions(
 
 
 class _Kept:
-    """Finished blocks, in a folder, or in memory if there is none. A file is there as a whole or not at all."""
+    """Finished blocks, in a folder, or in memory if there is none. A file is there as a whole or
+    not at all.
+    """
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder

@@ -31,7 +31,9 @@ BINS = ((0.0, 0.6), (0.6, 0.75), (0.75, 0.85), (0.85, 0.93), (0.93, 1.01))
 
 @dataclass
 class Score:
-    """Of one field in one set: how many labels there are, guessed, guessed rightly; guesses if there is none."""
+    """Of one field in one set: how many labels there are, guessed, guessed rightly; guesses if
+    there is none.
+    """
 
     there: int = 0
     said: int = 0

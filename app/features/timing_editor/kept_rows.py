@@ -91,7 +91,9 @@ def paint_kept(
 
 
 def _free(rows: TrackRows, axis: Axis, facts: Facts, kept: KeptHand, place: QRectF) -> bool:
-    """Return whether a number is in sight and lies on no other bar of its hand, nor if that has its number."""
+    """Return whether a number is in sight and lies on no other bar of its hand, nor if that has its
+    number.
+    """
     if not axis.left <= place.left() <= place.right() <= axis.left + axis.width + 1:
         return False
     room = place.width() + 8

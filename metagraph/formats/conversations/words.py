@@ -244,7 +244,9 @@ def _level(voice: SideVoice, start: float, end: float) -> float:
 
 
 def cut_words_to_sound(notes: list[str], called: str, said: TranscribedSide, length: float) -> list[Word]:
-    """Return the words as far as the sound goes, seconds. Raises FileError if it has gone before the first."""
+    """Return the words as far as the sound goes, seconds. Raises FileError if it has gone before
+    the first.
+    """
     words = said.words
     out = [
         w if w.end <= length else msgspec.structs.replace(w, end=round(length, 4))

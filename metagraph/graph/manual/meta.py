@@ -43,7 +43,9 @@ def as_meta(project: Project) -> tuple[Project, Pairs, Pairs]:
 
 
 def describe_meta_differences(project: Project) -> list[str]:
-    """Say in words how the meta-graph differs from the manual machines it is made of; nothing if it does not."""
+    """Say in words how the meta-graph differs from the manual machines it is made of; nothing if it
+    does not.
+    """
     made, missing, extra = as_meta(project)
     drawn = sum(len(m.states) for m in project.manual.values())
     left = drawn - sum(len(made.graphs[layer].actions) for layer, m in project.manual.items() if m.states)

@@ -165,7 +165,9 @@ def _site(done: Sequence[AnalysisRow], data: Data, site: str) -> Estimate | None
 
 
 def learning(rows: Sequence[AnalysisRow]) -> Curve | None:
-    """Return how people got quicker from clip to clip, within one condition; None if nobody had three clips."""
+    """Return how people got quicker from clip to clip, within one condition; None if nobody had
+    three clips.
+    """
     by: dict[str, list[float]] = {}
     for r in sorted(rows, key=lambda r: r.run.index):
         by.setdefault(r.run.participant, []).extend(s for s in r.run.per_clip.values() if s > 0)
