@@ -1,4 +1,4 @@
-"""Drags of the mouse as objects: from a press to the release, or to what breaks them off."""
+"""Drags of the mouse as objects, from the press to the release or to an interruption."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""A skeleton's joints as a figure seen from the front: clicked, or circled by a drag, to say which move, and
-how far.
+"""Show a skeleton's joints as a figure from the front. A click or a drag sets which joints move, and how
+much.
 """
 
 from __future__ import annotations

@@ -55,12 +55,12 @@ class Child(ChildChannel):
         super().__init__(self.process.stdout, self.process.stdin)
 
     def close(self, patience: float) -> None:
-        """Report it that nothing more comes, and wait until it has ended, as `end` does."""
+        """Signal the end of the messages, and wait until the child has ended, as `end` does."""
         self._shut(self._out)
         self.end(patience)
 
     def end(self, patience: float) -> None:
-        """Wait until it ends; after `patience` seconds it is made to."""
+        """Wait until the child ends, and kill it after `patience` seconds."""
         import subprocess
 
         for ask in (self.process.terminate, self.process.kill):

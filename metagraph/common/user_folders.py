@@ -1,4 +1,4 @@
-"""The folders in which the system has programs keep a user's files, found without Qt."""
+"""Find the system's folders for a user's files, without Qt."""
 
 from __future__ import annotations
 

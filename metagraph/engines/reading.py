@@ -1,4 +1,4 @@
-"""Reading an export back: into the project it came from, or resolved, as a runtime plays it."""
+"""Read an export back, into a project or in the resolved form that a runtime plays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may be asked of a character as tools for a language model, in a file beside its export."""
+"""Write the requests to a character as tools for a language model, in a file beside the export."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from metagraph.graph.offered import tools
 
 
 def tools_name(stem: str) -> str:
-    """Return what the file is called beside an export that is called so."""
+    """Return the name of the tools file beside an export of this name."""
     return f"{stem}.tools.json"
 
 

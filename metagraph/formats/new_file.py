@@ -1,4 +1,4 @@
-"""Making files that no more people may read than may read another file."""
+"""Make files that have the access rights of another file."""
 
 from __future__ import annotations
 

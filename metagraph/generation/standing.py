@@ -1,5 +1,5 @@
-"""How far trainings got that were begun: what can be gone on with after a stop, a crash or a kill. No torch
-here.
+"""Find trainings that were started, and how far they got, to continue them after a stop or a crash. This
+module does not use torch.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def find_begun_trainings(folder: Path) -> list[Standing]:
 
 
 def standing_of(training: Path) -> Standing | None:
-    """Return how far the training in a folder got, None if there is none that can be gone on with."""
+    """Return how far the training in a folder got, or None if there is none to continue."""
     try:
         plan = read_training_plan(training)
     except FileError:

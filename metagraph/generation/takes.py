@@ -1,4 +1,6 @@
-"""Takes to learn from: motion, what was said with it, and where both came from; and which are held out."""
+"""Takes to learn from: motion with its speech and its source; and the split into training and held-out
+takes.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,7 @@ class TakeError(ValueError):
 
 
 class SplitError(ValueError):
-    """Takes that cannot be told into those to learn from and those held out."""
+    """Takes that cannot be split into takes to learn from and takes held out."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What of a live session is made of what is heard: by a learned model, or by a motion graph."""
+"""Generate motion of a live session from the sound that it hears, by a learned model or a motion graph."""
 
 from __future__ import annotations
 

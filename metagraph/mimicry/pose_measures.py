@@ -1,5 +1,5 @@
-"""What tells stances apart: differences between keypoints, seen from the torso (arms) or upright (body,
-head), in torso lengths.
+"""Measures that distinguish stances: differences between keypoints, seen from the torso (arms) or upright
+(body, head), in torso lengths.
 
 A measure is a weighted sum of points that adds up to a direction, so that neither place nor size nor picture
 matters. `scale` says how far it may be off, in torso lengths, before that counts as 1; they are ours: about

@@ -26,7 +26,7 @@ BESIDE = 20.0  # pixels from a mark to its words
 
 
 class HandMarks(QWidget):
-    """A pane over the view of a preview panel that lets everything through but what it draws."""
+    """A pane over the view of a preview panel. It passes all mouse events on."""
 
     def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)

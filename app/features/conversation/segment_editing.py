@@ -128,8 +128,8 @@ class Editing(QObject):
     # --- edits
 
     def edit(self, text: str, function: Edit) -> bool:
-        """Change the project in one step; what cannot be done is reported in the status bar. Return whether it
-        was done.
+        """Change the project in one step; what cannot be done is reported in the status bar. Return whether
+        it was done.
         """
         try:
             self.document.edit(text, function)

@@ -1,4 +1,4 @@
-"""What a conversation's lanes look like. Functions of values; only what is in sight is looked at."""
+"""Paint a conversation's lanes. All functions are pure and only treat what is visible."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ SMALL = 13  # pixels of what stands beside
 
 @dataclass(frozen=True)
 class SegmentScene:
-    """All that is painted. heard: the sound of each side. ratio: pixels of the screen to one of the window.
-    chosen: (side, place) of the selected segments. over: what the pointer is on.
+    """Everything that is painted. heard: the sound of each side. ratio: screen pixels per window pixel.
+    chosen: (side, index) of the selected segments. over: what is under the pointer.
     """
 
     conversation: Conversation
@@ -315,7 +315,7 @@ def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
 
 
 def peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
-    """Return how high a peak's dot stands: on the pitch, or below all of it if there is none."""
+    """Return the height of a peak's dot: on the pitch curve, or below it if there is no pitch."""
     if heard is not None and heard.pitch is not None:
         values, at = heard.pitch.lows[0], round(seconds * heard.pitch.rate)
         near = values[max(0, at - 5) : at + 6]
@@ -326,7 +326,7 @@ def peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
 
 
 def paint_empty_conversation(painter: QPainter, t: WindowTheme, area: QRectF, lines: Sequence[str]) -> None:
-    """Paint what an empty panel says: two who talk, and how to bring them in."""
+    """Paint the empty panel: two speakers, and how to add them."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     middle, top = area.center().x(), area.center().y() - 62
     for side, (shift, kind, high) in enumerate(((-58.0, "clause", 0.0), (4.0, "response", 12.0))):

@@ -18,7 +18,9 @@ from metagraph.graph.model import Project
 
 
 class GenerationDialog(QDialog):
-    """Stays open beside the window; a training ends with it, and keeps what it has."""
+    """The dialog of generated motion, which stays open beside the window. Closing it stops a training and
+    keeps its last checkpoint.
+    """
 
     def __init__(
         self, document: Document, session: StageSession, jobs: Jobs, parent: QWidget | None = None

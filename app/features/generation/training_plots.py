@@ -1,4 +1,4 @@
-"""How a training goes: how near it is to its goal, and its samples' statistics beside what they should be."""
+"""Plot a training: the distance to its goal, and the statistics of its samples beside their targets."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MOST = 2000  # points of a line, the rest is thinned out
 
 
 class TrainingPlots(QWidget):
-    """Two plots beside each other, over minutes."""
+    """Two plots side by side, over minutes."""
 
     def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -61,7 +61,7 @@ class TrainingPlots(QWidget):
         self._draw()
 
     def add(self, minutes: float, goals: Mapping[str, float], ratios: Mapping[str, float]) -> None:
-        """Add a moment. goals: how near it is to its goal, by what that is. ratios: of which 1 is right."""
+        """Add a moment. goals: progress by goal. ratios: 1 is the target."""
         for lines, values in ((self.goals, goals), (self.ratios, ratios)):
             for name, value in values.items():
                 if isfinite(value):

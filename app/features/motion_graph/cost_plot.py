@@ -1,5 +1,5 @@
-"""What a jump costs: the histogram of costs between frames a few apart, the distribution fitted to it, and
-the threshold.
+"""Plot the costs of jumps: the histogram of costs between frames that are a few apart, the fitted
+distribution, and the threshold.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Fields for how often things play: an action's cooldown and spacing, the phases of a gesture, and the
-planner's own numbers.
+"""Fields for how often actions play: cooldown and spacing, the phases of a gesture, and the numbers of the
+planner.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The commands that take stances and actions from other projects, and hand them to other windows."""
+"""Commands that copy stances and actions between projects and windows."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class TakingFeature(Feature):
         )
 
     def offer(self, name: str, piece: ProjectPiece) -> None:
-        """Show what can be taken. name: of where it comes from."""
+        """Show what can be imported. name: the name of the source."""
         from app.features.taking.taking_dialog import TakingDialog
 
         shell, look = self.shell, theme(self.session.look.name)

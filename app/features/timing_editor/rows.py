@@ -1,4 +1,4 @@
-"""Where everything of the editor stands: for each action a title and its rows, from the top down."""
+"""Lay out the timing editor: a title and rows for each action, from the top down."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an empty window begins with: import, practice, the sample, what was worked on last."""
+"""The start page of an empty window: import, practice, the sample, recent projects."""
 
 from __future__ import annotations
 

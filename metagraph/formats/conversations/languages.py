@@ -1,5 +1,5 @@
-"""Which language each of those who talk is read in: what was chosen, or what their words tell; and what there
-is to say of that.
+"""Find the language of each speaker: the chosen one, or the one that the words suggest; and report how it was
+found.
 """
 
 from __future__ import annotations

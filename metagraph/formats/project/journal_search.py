@@ -1,4 +1,4 @@
-"""Finding journals whose sittings are over: beside their project, and wherever else they have come to."""
+"""Find journals of sessions that are over, beside their project and elsewhere."""
 
 from __future__ import annotations
 

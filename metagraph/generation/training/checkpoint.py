@@ -1,4 +1,4 @@
-"""Where a training stands, on disk: two files by turns, so that one is whole whenever it is cut short."""
+"""Store the state of a training on disk, in two files by turns, so that one is always complete."""
 
 from __future__ import annotations
 

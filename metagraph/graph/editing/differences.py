@@ -1,5 +1,5 @@
-"""What differs between two states of a project, as lines to read: clips, actions, stances and settings added,
-removed, changed.
+"""Describe the difference of two states of a project in lines: clips, actions, stances and settings that were
+added, removed or changed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The drag of a likelihood's bar."""
+"""Drag a likelihood bar."""
 
 from __future__ import annotations
 
