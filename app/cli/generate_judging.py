@@ -150,7 +150,7 @@ def find_floor(
         missing = [t.source.name for t in takes if t.source.name not in found]
         if missing:
             why = f" ({batch.failures[0]})" if batch.failures else ""
-            raise ValueError(f"{folder} holds no other motion for '{missing[0]}'{why}")
+            raise ValueError(f"{folder} has no other motion for '{missing[0]}'{why}")
         return [part_like(found[t.source.name], t) for t in takes]
     return perform_planted_floor(given, takes, rig)
 

@@ -78,7 +78,7 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
         place = ", ".join(str(p) for p in options.takes)
         if not failures:
             raise FileError(
-                place, "holds no takes", remedy="Give clips that have their sound in the same folder."
+                place, "has no takes", remedy="Give clips that have their sound in the same folder."
             )
         raise ValueError(f"cannot use any of the {len(failures)} takes in {place}: {failures[0]}")
     return batch

@@ -71,7 +71,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     words = "leave each take out once, make motion for its speech from the others, and count matches"
     _evaluate_options(action("evaluate", words, print_evaluation, speech=True))
-    words = "count how often hands and head move with what is said"
+    words = "count how often hands and head move with speech"
     action("co-occurrence", words, print_co_occurrence, speech=True)
 
 

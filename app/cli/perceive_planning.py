@@ -189,7 +189,7 @@ def _chance(found: Any) -> str:
 
 EXAMPLE = """\
 perceive: 1
-title: A made-up study
+title: A simulated study
 participants: 24
 project: sample.metagraph.yaml
 conditions:

@@ -237,7 +237,7 @@ class Stimuli:
             kept = ", ".join(f"'{c.name}'" for c in found[:8])
             raise FileError(
                 path,
-                f"holds no take '{take}'" if take else f"holds {len(found)} takes",
+                f"has no take '{take}'" if take else f"holds {len(found)} takes",
                 f"conditions.{name}",
                 f"Add its name after '#', as in {path.name}#{found[0].name}; it has {kept}.",
             )

@@ -175,7 +175,7 @@ def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[s
     for some, what, ending in ((sounds, "sound", "wav"), (transcripts, "transcript", "srt")):
         if some and (without := [n for n, _ in takes if n not in some]):
             raise ValueError(
-                f"no {what} for {', '.join(without[:5])}: it is called as the take is, take1.bvh and "
+                f"no {what} for {', '.join(without[:5])}: give it the name of its take, as in take1.bvh and "
                 f"take1.{ending}"
             )
     return (

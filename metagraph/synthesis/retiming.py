@@ -34,7 +34,7 @@ STROKE = 0.5  # of the fastest moment of a movement of a hand: what is faster is
 SLOW = 0.1  # metres a second: a hand that is slower, seen from its shoulder, does nothing that shows
 STEP = 0.1  # frames: how exactly events are moved
 NEARER = 0.1  # of the graph's threshold: what an event costs that is as far off as it may be
-FARTHER = 3.0  # likewise where more is allowed than was asked for: what is retimed into it has to be near
+FARTHER = 3.0  # the same if more is allowed than was asked for: what is retimed into it has to be near
 EASY = 0.01  # what moving by a frame costs beside being off by one
 
 

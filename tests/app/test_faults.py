@@ -104,7 +104,7 @@ def test_a_report_tells_versions_actions_and_places_of_ours_alone(told):
         try:
             zero()
         except ZeroDivisionError:
-            raise StrangeError("Anna's own words")  # noqa: B904 - what was raised before is told, too
+            raise StrangeError("Anna's own words")  # noqa: B904 - what was raised before is reported, too
 
     raised(strange)
     text = faults.format_fault_report()

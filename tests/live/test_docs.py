@@ -164,7 +164,7 @@ def test_the_python_client_runs(port: str, tmp_path: Path) -> None:
 
 
 def test_the_talking_agent_talks_with_voice_lips_and_gestures(port: str, tmp_path: Path) -> None:
-    """It is told something, and what it does about it is what was played: most gestures on their words."""
+    """It hears something, and what it does about it is what was played: most gestures on their words."""
     if shutil.which("espeak-ng") is None:
         pytest.skip("espeak-ng is not here (python3 run.py test installs it)")
     text = (CLIENTS / "talking_agent.py").read_text(encoding="utf-8")

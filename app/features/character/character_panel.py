@@ -259,7 +259,7 @@ class PreviewPanel(QWidget):
         seats = (seat for one in shown.everyone for seat in stools(one))
         behind = self.reference.picture if self.reference.behind else None
         scene = Scene((*actors, *seats), picture=behind)
-        shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
+        shape = round(self.view.width() / max(1, self.view.height()), 1)  # frame it again for another size
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
         self.composed = scene

@@ -238,7 +238,7 @@ class Journal:
         """Start again from the saved file, whose text is kept, or from `base` when there is none. Whatever
         was there stands until the new one is whole. Raises FileError.
 
-        unsaved: how many edits of `base` are in no file. done: edits after it, which are written with it.
+        unsaved: how many edits of `base` are unsaved. done: edits after it, which are written with it.
         """
         self._base = (base, unsaved, done) if base is not None else None
         try:

@@ -429,7 +429,7 @@ def test_each_bad_take_fails_alone_and_in_words(
 def test_takes_none_of_which_can_be_used_are_an_error(
     tmp_path: Path, model: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert "holds no takes" in run(capsys, "evaluate", model, tmp_path, code=1)
+    assert "has no takes" in run(capsys, "evaluate", model, tmp_path, code=1)
     _take(tmp_path, "short", moving(2.0), np.stack([babble(2.0), babble(2.0, 2)]))
     assert "cannot use any of the 1 takes" in run(capsys, "evaluate", model, tmp_path, code=1)
 
