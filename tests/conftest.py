@@ -149,7 +149,7 @@ LONG = (
     "playback/planning/test_running_plan.py",
 )
 
-# The gate must give the same answer twice; at the desk, examples are drawn again each time, and twice as many.
+# The gate must give the same answer twice. At the desk, examples are new each time, and twice as many.
 settings.register_profile("gate", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("desk", deadline=None)
 settings.register_profile("thorough", deadline=None, max_examples=1000)

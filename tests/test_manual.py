@@ -118,7 +118,7 @@ def test_systems_that_nobody_ran_it_on_are_offered_as_not_tested() -> None:
 
 
 def long_lines(text: str) -> list[int]:
-    """Return the numbers of lines of prose with more than 120 columns: not tables, code, pictures or formulas."""
+    """Return the numbers of lines of prose with more than 120 columns, without tables, code and formulas."""
     out, in_code = [], False
     for number, line in enumerate(text.splitlines(), 1):
         in_code ^= line.lstrip().startswith("```")

@@ -232,16 +232,12 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
     if known is not None or (retarget == "yes" and not strangers.joint_map.missing):
         brought = bring_over(bringing, strangers, known or strangers.joint_map)
         count, first = len(strangers.clips), Path(strangers.clips[0][0]).name
-        whose = (
-            phrase("{count} clips ({first} …)", count=count, first=first)
-            if count > 1
-            else phrase("the clip of {first}", first=first)
-        )
+        whose = phrase("{count} clips ({first} …)", count=count, first=first) if count > 1 else first
         note = (
-            phrase("retargeted {whose} with the joint map of the project", whose=whose)
+            phrase("{whose}: retargeted with the joint map of the project", whose=whose)
             if known is not None
             else phrase(
-                "retargeted {whose} from a skeleton of {joints} joints",
+                "{whose}: retargeted from a skeleton of {joints} joints",
                 whose=whose,
                 joints=len(strangers.skeleton),
             )

@@ -42,26 +42,31 @@ class Delivered:
         name = NAMES[self.kind]
         if not self.count:
             return phrase("{name}: none", name=name)
-        values = {
-            "name": name,
-            "asked": 100 * self.asked,
-            "drawn": self.drawn,
-            "count": self.count,
-            "chosen": 100 * self.drawn / self.count,
-            "performed": self.performed,
-            "played": 100 * self.performed / self.count,
-        }
+        asked, chosen = 100 * self.asked, 100 * self.drawn / self.count
+        played = 100 * self.performed / self.count
         if self.kind != "clause":
             return phrase(
                 "{name}: {asked:.0f} % requested, {drawn} of {count} chosen ({chosen:.0f} %), {performed} "
                 "performed ({played:.0f} %)",
-                **values,
+                name=name,
+                asked=asked,
+                drawn=self.drawn,
+                count=self.count,
+                chosen=chosen,
+                performed=self.performed,
+                played=played,
             )
         return phrase(
             "{name}: {asked:.0f} % requested, {drawn} of {count} chosen ({chosen:.0f} %), {performed} "
             "performed ({played:.0f} %), {strokes} of them with a stroke on the stress",
             strokes=self.strokes,
-            **values,
+            name=name,
+            asked=asked,
+            drawn=self.drawn,
+            count=self.count,
+            chosen=chosen,
+            performed=self.performed,
+            played=played,
         )
 
 

@@ -52,15 +52,19 @@ class GazeShare:
         """Return a sentence, such as "when addressed, looks at the speaker for 71 % of 12.3 s and at others
         for 8 %: 90 % of all looks at faces".
         """
-        values = {"role": NAMES[self.doing], "main": 100 * self.main, "seconds": self.seconds}
+        role, main = NAMES[self.doing], 100 * self.main
         if self.doing == "speaking to all" or self.of_faces is None:
-            return phrase("{role} for {main:.0f} % of {seconds:.1f} s", **values)
+            return phrase(
+                "{role} for {main:.0f} % of {seconds:.1f} s", role=role, main=main, seconds=self.seconds
+            )
         return phrase(
             "{role} for {main:.0f} % of {seconds:.1f} s and at others for {others:.0f} %: {faces:.0f} % of "
             "all looks at faces",
             others=100 * self.others,
             faces=100 * self.of_faces,
-            **values,
+            role=role,
+            main=main,
+            seconds=self.seconds,
         )
 
 

@@ -134,13 +134,14 @@ class ProsodyMatch:
 
     def words(self) -> str:
         """Return a phrase such as "loudness differs by 0.42 standard deviations, correlation 0.71"."""
-        values = {"measure": _MEASURES[self.measure], "off": self.off}
+        measure = _MEASURES[self.measure]
         if self.correlation is None:
-            return phrase("{measure} differs by {off:.2f} standard deviations", **values)
+            return phrase("{measure} differs by {off:.2f} standard deviations", measure=measure, off=self.off)
         return phrase(
             "{measure} differs by {off:.2f} standard deviations, correlation {correlation:.2f}",
             correlation=self.correlation,
-            **values,
+            measure=measure,
+            off=self.off,
         )
 
 

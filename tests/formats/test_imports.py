@@ -185,7 +185,7 @@ def test_what_is_true_of_many_files_is_said_once(shared_data: Path) -> None:
     result = import_files(Project(), None, [shared_data / "bandai-namco-1"])
     assert len(result.notes) == 1
     assert result.notes[0].startswith(
-        "63 files (dataset-1_bow_active_001.bvh ...): units taken for centimetres"
+        "63 files (dataset-1_bow_active_001.bvh …): units taken for centimetres"
     )
 
 

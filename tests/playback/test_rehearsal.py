@@ -81,7 +81,7 @@ def test_of_a_sound_project_nothing_is_reported(sound: Project) -> None:
 def test_a_figure_above_or_under_the_floor_is_an_error_with_its_moment(sound: Project) -> None:
     for metres, code in ((0.6, "play-in-air"), (-0.6, "play-under-floor")):
         found = [p for p in rehearse(changed(sound, lifted(metres)), SECONDS) if p.code == code]
-        assert found and found[0].severity == "error" and "100%" in found[0].message
+        assert found and found[0].severity == "error" and "100 %" in found[0].message
         assert found[0].moment is not None and 0 <= found[0].moment < SECONDS
 
 

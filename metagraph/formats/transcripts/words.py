@@ -201,7 +201,9 @@ def settle_words(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
             )
         )
     if gone:
-        notes.append(phrase("{count} were entirely inside another and were skipped", count=count(gone, "word")))
+        notes.append(
+            phrase("{count} were entirely inside another and were skipped", count=count(gone, "word"))
+        )
     return tuple(out), notes
 
 

@@ -104,11 +104,12 @@ class RelaxedAnswer:
         if not self.given_up:
             return ""
         missed = join_phrases([m.words() for m in self.misses[:3]], ", ") if self.misses else _MET
-        values = {"dropped": join_phrases(self.given_up, ", "), "missed": missed}
-        more = len(self.misses) - 3
+        dropped, more = join_phrases(self.given_up, ", "), len(self.misses) - 3
         if more > 0:
-            return phrase("dropped: {dropped}; {missed} and {more} more", more=more, **values)
-        return phrase("dropped: {dropped}; {missed}", **values)
+            return phrase(
+                "dropped: {dropped}; {missed} and {more} more", dropped=dropped, missed=missed, more=more
+            )
+        return phrase("dropped: {dropped}; {missed}", dropped=dropped, missed=missed)
 
 
 def list_relaxations(asked: Constraints) -> Iterator[Constraints]:

@@ -338,7 +338,7 @@ def test_models_are_judged_on_what_was_held_out(
     assert "2 takes, 0.67 min, 2 seeds" in text
     for name in ("true", "floor", "mismatched", "mean pose", "plain", "perfect"):
         assert f"\n{name}" in text
-    assert "little to judge a model on" in text
+    assert "too short to judge a model well" in text
     data = json.loads((tmp_path / "report" / "report.json").read_text())
     rows = {r["name"]: r["values"] for r in data["rows"]}
     assert rows["true"]["speed"] == pytest.approx(1) and rows["mean pose"]["profile"] is None

@@ -107,10 +107,10 @@ def test_what_was_asked_can_be_kept_and_performed_again(
     [
         (
             ("--host", "0.0.0.0"),
-            "a token is needed, so that not everyone there can move the character; choose one, for example "
+            "needs a token, so that not everyone there can control the character; choose one, for example "
             "--token ",
         ),
-        (("--port", "70000"), "between 0 and 65535"),
+        (("--port", "70000"), "from 0 to 65535"),
     ],
 )
 def test_what_is_not_safe_is_refused_in_words(

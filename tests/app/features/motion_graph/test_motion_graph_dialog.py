@@ -164,7 +164,7 @@ def test_what_no_motion_goes_with_is_given_up_and_that_is_said(shown):
     count = len(drive.document.project.clips)
     press(dialog.wishes.go)
     drive.wait(lambda: not dialog.busy and bool(dialog.said.text()), 120)
-    assert "Given up: responses" in dialog.said.text() and "response at 1.0 s" in dialog.said.text()
+    assert "Dropped: responses" in dialog.said.text() and "response at 1.0 s" in dialog.said.text()
     assert len(drive.document.project.clips) == count + 1
 
 

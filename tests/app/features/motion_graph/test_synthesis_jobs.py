@@ -122,7 +122,7 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
         and "cost" in found.words()
     )
     other = synthesise(graph, takes, Wish(2.0, (Segment("response", 0.5, 1.5),), tolerance=0.0), "new")
-    assert "Given up: responses" in other.words() and "repeats within 3 s" in other.words()
+    assert "Dropped: responses" in other.words() and "repeats within 3 s" in other.words()
 
 
 @pytest.mark.parametrize(("exact", "search"), [(True, "find_best_path"), (False, "greedy")])
