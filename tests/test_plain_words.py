@@ -73,7 +73,7 @@ PRINTED_PHRASES = {
     r"\b(is|are) called (so|as)\b": "has this name, has the name of",
     r"\bcalled as\b": "with the name of",
     r"\bnobody is called\b": "there is no",
-    r"(?<!there )\b(is|are) no (sound|model|seed|take|number)\b": "is not a",
+    r"(^|[:;,'] )(is|are) no (sound|model|seed|take|number)\b": "is not a",
     r"\b(a|the) \w+ of yours\b": "your",
     r"\bcannot be taken back\b": "cannot be undone",
     r"\bsays? nothing of\b": "does not describe, does not apply to",
