@@ -55,7 +55,7 @@ def read_kept(path: Path) -> tuple[KeptMotion, ...]:
             path,
             "has no motion",
             "",
-            "Give the file of a session in which a motion graph moved the character.",
+            "Give a file of a session in which a motion graph moved the character.",
         )
     return read.motions
 

@@ -175,7 +175,7 @@ def test_files_that_do_not_go_together_are_told(
         '"end": 1}]}]}'
     )
     assert "has no clauses" in run(capsys, "evaluate", two[0], "--speech", str(words), code=1)
-    assert "--k is at least 2" in run(capsys, "build", takes, "--k", "1", code=1)
+    assert "--k must be at least 2" in run(capsys, "build", takes, "--k", "1", code=1)
     assert "--level is a share" in run(capsys, "build", takes, "--level", "95", code=1)
 
 
