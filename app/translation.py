@@ -99,7 +99,7 @@ def tr_error(error: object) -> str:
     return tr_phrase(describe_error(error)) if isinstance(error, BaseException) else str(error)
 
 
-def in_english(text: str) -> str:
+def get_english(text: str) -> str:
     """Return in English a text that `tr` or a similar function returned, for logs that others read; other
     text unchanged.
     """
@@ -154,7 +154,7 @@ def _filled(template: str, english: str, values: Mapping[str, object]) -> Shown:
 
 
 def _in_english(value: object) -> object:
-    return in_english(value) if isinstance(value, str) else value
+    return get_english(value) if isinstance(value, str) else value
 
 
 def _look_up(text: str) -> str:

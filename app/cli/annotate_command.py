@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from app.cli.kept_options import kept_name
+from app.cli.kept_options import check_kept_name
 from app.cli.outputs import ProjectOutput
 from app.project.annotation_reading import (
     AnnotationReading,
@@ -78,7 +78,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--perform",
         metavar="NAME",
-        type=kept_name,
+        type=check_kept_name,
         help="save the annotated actions as a performance of the project",
     )
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from app.project.opening import open_whole
 from metagraph.formats.outputs import declare_inputs
-from metagraph.formats.store import files_of
+from metagraph.formats.store import list_project_files
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 from metagraph.graph.words import MODES
@@ -45,7 +45,7 @@ def run_until_stopped() -> Iterator[None]:
 def open_for_command(path: Path) -> Project:
     """Read a project, protect the files that it names from the command, and print what is odd about it."""
     found = open_whole(path)
-    declare_inputs(*files_of(found.project, path.resolve().parent))
+    declare_inputs(*list_project_files(found.project, path.resolve().parent))
     for note in found.notes:
         print(f"note: {note}", file=sys.stderr)
     return found.project

@@ -152,10 +152,10 @@ def _once(options: Namespace) -> None:
     )
     if options.tools:
         from metagraph.engines.export import stem_of
-        from metagraph.engines.tools_file import tools_name
+        from metagraph.engines.tools_file import name_tools_file
         from metagraph.formats.outputs import claim
 
-        claim(options.out / tools_name(stem_of(project)))
+        claim(options.out / name_tools_file(stem_of(project)))
     contents = Contents(
         character,
         options.expanded,

@@ -170,14 +170,14 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
 
     from metagraph.errors import FileError
     from metagraph.generation.features import RATE
-    from metagraph.generation.loudness import integrated_loudness
+    from metagraph.generation.loudness import measure_integrated_loudness
 
     seconds = samples.shape[1] / RATE
     if not np.isfinite(samples).all():
         raise FileError(place, "holds a sample that is not a number", remedy="Export it again.")
     if seconds < LEAST:
         raise FileError(place, f"lasts {seconds:.2f} s", remedy=f"Give at least {LEAST:g} s of speech.")
-    if not any(np.isfinite(integrated_loudness(channel, RATE)) for channel in samples):
+    if not any(np.isfinite(measure_integrated_loudness(channel, RATE)) for channel in samples):
         raise FileError(place, "is silent", remedy="Check the microphone, or what was exported.")
     if max(speech.clipped, default=0.0) > 1e-4:
         share = 100 * max(speech.clipped)

@@ -124,7 +124,7 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
     mean = mean_landmarks(judged.true)
     systems = {"true": judged.true}
     systems |= {name: seeds[0] for name, seeds in judged.made.items()}
-    far = {name: figures.landmark_distances(motion, mean) for name, motion in systems.items()}
+    far = {name: figures.measure_landmark_distances(motion, mean) for name, motion in systems.items()}
     most = max(float(v.max()) for v in far.values())
     parts = ["<h1>Generated and recorded motion</h1>", "<div class='card'>"]
     parts += [f"<p>{escape(str(k))}: {escape(str(v))}</p>" for k, v in told.items()]
@@ -148,7 +148,9 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
     )
     for number, who, words in ((7, SELF, "the speaker speaks"), (8, PARTNER, "the partner speaks")):
         parts.append(f"<h2>Figure {number}: how fast that distance changes while {words}</h2>")
-        grown = {name: figures.distance_changes(motion, mean, who) for name, motion in systems.items()}
+        grown = {
+            name: figures.measure_distance_changes(motion, mean, who) for name, motion in systems.items()
+        }
         parts.append(_figure(figures.draw_boxes(grown, "cm/s"), "All takes; the first seed of each model"))
     head = "<meta charset='utf-8'><title>Generated motion</title>"
     return f"<!DOCTYPE html><html lang='en'><head>{head}<style>{STYLE}{_STYLE}</style></head><body>" + (

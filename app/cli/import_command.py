@@ -15,7 +15,7 @@ from metagraph.formats.import_words import count_alike, describe_import, remedie
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.pieces import read_other_project
 from metagraph.formats.store import SUFFIX
-from metagraph.graph.editing.taking import words_of_taking
+from metagraph.graph.editing.taking import describe_taking
 from metagraph.graph.model import Project
 
 
@@ -56,7 +56,7 @@ def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tup
     clips = [thing for thing in left if thing.kind == "clip"]
     for thing in clips or left:
         print(f"left out: {thing.kind} '{thing.name}': {thing.words}", file=sys.stderr)
-    words = f"{other.name.removesuffix(SUFFIX)}: {words_of_taking(taking)}"
+    words = f"{other.name.removesuffix(SUFFIX)}: {describe_taking(taking)}"
     if clips and not options.retarget:
         words += ". Add --retarget to bring clips of another skeleton onto this one"
     return taking.project, words, bool(left)

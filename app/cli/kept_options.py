@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentTypeError
 
 
-def kept_name(text: str) -> str:
+def check_kept_name(text: str) -> str:
     """Return the name for a saved performance. A name that is too long is refused before any work is done."""
     from metagraph.graph.requests import LONGEST_NAME
 
@@ -14,7 +14,7 @@ def kept_name(text: str) -> str:
     return text
 
 
-def kept_seed(text: str) -> int:
+def parse_kept_seed(text: str) -> int:
     """Return a seed in the form that projects have."""
     if not (text.isascii() and text.isdigit() and int(text) <= 0xFFFFFFFF):
         raise ArgumentTypeError(f"'{text[:40]}' is not a seed; a seed is a whole number from 0 to 4294967295")

@@ -17,7 +17,7 @@ def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) ->
     from app.cli.render_command import load_figure
     from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError
-    from preview.thumbnail import ThumbnailStyle, clip_thumbnail, thumbnail
+    from preview.thumbnail import ThumbnailStyle, draw_clip_thumbnail, thumbnail
 
     out: dict[str, Any] = {}
     style = ThumbnailStyle(SIZE, scale=1)
@@ -26,7 +26,7 @@ def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) ->
         with Offscreen(SIZE, SIZE) as stage:
             for clip in clips:
                 if (motion := project.clips[clip].motion) is not None:
-                    out[clip] = clip_thumbnail(stage, figure, motion, style)
+                    out[clip] = draw_clip_thumbnail(stage, figure, motion, style)
             for graph in project.graphs.values():
                 for stance in graph.stances:
                     rest = next(iter(graph.of(stance, "stance")), None)

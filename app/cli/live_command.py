@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli import live_graph_options
-from app.cli.kept_options import kept_name, kept_seed
+from app.cli.kept_options import check_kept_name, parse_kept_seed
 from app.cli.outputs import ProjectOutput
 from metagraph.live import OSC_PORT, PORT
 
@@ -58,7 +58,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--seed",
-        type=kept_seed,
+        type=parse_kept_seed,
         help="random seed; another seed gives another performance (default: the project's seed)",
     )
     parser.add_argument(
@@ -67,7 +67,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--keep",
         metavar="NAME",
-        type=kept_name,
+        type=check_kept_name,
         help="save the requests as a performance of the project at the end, and the motion of a motion "
         "graph in a file next to it",
     )

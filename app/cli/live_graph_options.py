@@ -83,9 +83,9 @@ def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
             )
             return {}
         return {NAME: graph}
-    from app.cli.takes import pair_speech
+    from app.cli.takes import match_speech
 
-    clips, speech = pair_speech(options)
+    clips, speech = match_speech(options)
     graph = live_graph(_brought(clips, project, options.retarget), speech)
     kept, edges = graph.driver.graph.size
     if not graph.fits(project):

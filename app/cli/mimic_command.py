@@ -135,7 +135,7 @@ def _take(options: Namespace, project: Project, seen: KeypointTrack) -> Path | N
     from metagraph.errors import FileError
     from metagraph.formats.bvh.file import write_bvh
     from metagraph.formats.gltf.writer import write_glb
-    from metagraph.mimicry.keypoint_take import KeypointTakeError, clip_from_keypoints
+    from metagraph.mimicry.keypoint_take import KeypointTakeError, make_clip_from_keypoints
 
     path: Path | None = options.take
     if path is None:
@@ -143,7 +143,7 @@ def _take(options: Namespace, project: Project, seen: KeypointTrack) -> Path | N
     if project.skeleton is None:
         raise ValueError("a project without clips has no skeleton to move: import clips first")
     try:
-        clip = clip_from_keypoints(
+        clip = make_clip_from_keypoints(
             seen if options.no_mirror else seen.mirrored(), project.skeleton, path.stem
         )
     except KeypointTakeError as error:

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 from app.cli.motion_graph_soft import add_soft_arguments, read_soft_wish
 from app.cli.takes import (
     add_speech_arguments,
-    pair_speech,
-    pair_takes,
+    match_speech,
+    match_takes,
     read_given_files,
     read_side_speech,
     read_take_files,
@@ -198,7 +198,7 @@ def _heard(options: Namespace) -> tuple[States, list[int]]:
 
     if not options.speech:
         return _states([c for _, c in read_take_files(options.takes)]), []
-    clips, speech = pair_speech(options)
+    clips, speech = match_speech(options)
     states = _states(clips)
     return states, list(find_change_states(states, speech))
 
@@ -380,7 +380,7 @@ def synthesize(options: Namespace) -> int:
             f"motion can be written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
         )
     wish = read_soft_wish(options)
-    clips, spoken, names = pair_takes(options)
+    clips, spoken, names = match_takes(options)
     if options.again is not None:
         return _again(options, clips, [one.segments for one in spoken])
     held_out = _take_number(options.take, names) if options.take is not None else None
@@ -526,13 +526,13 @@ def print_evaluation(options: Namespace) -> int:
     """Print for each setting how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
-    from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
+    from metagraph.research.motion_graph.evaluation_table import format_cases_as_csv, format_cases_as_text
     from metagraph.research.motion_graph.search_evaluation import SETTINGS, Beside, GraphMaking, Trials
     from metagraph.research.motion_graph.search_evaluation import evaluate_search as run
 
     _checked(options)
     wish = read_soft_wish(options)
-    clips, spoken, _ = pair_takes(options)
+    clips, spoken, _ = match_takes(options)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
     if options.live:
@@ -549,14 +549,14 @@ def print_evaluation(options: Namespace) -> int:
             Beside(wish, spoken),
         )
     if options.out is not None:
-        write_atomically(options.out, cases_as_csv(found.cases).encode())
+        write_atomically(options.out, format_cases_as_csv(found.cases).encode())
     data = {
         "rows": [asdict(r) for r in found.rows],
         "graphs": [asdict(g) for g in found.graphs],
         "cases": len(found.cases),
         "whole": found.whole,
     }
-    say(options, cases_as_text(found) + (f"\n{options.out}" if options.out is not None else ""), data)
+    say(options, format_cases_as_text(found) + (f"\n{options.out}" if options.out is not None else ""), data)
     return 0 if found.whole else 3
 
 
@@ -564,14 +564,14 @@ def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Seg
     """Print how well motion that is extended while it plays follows speech that becomes known in pieces."""
     from app.cli.command_output import say
     from metagraph.research.motion_graph.extending_evaluation import (
+        format_rows_as_text,
         hold_out_takes,
-        rows_as_text,
         score_extending,
     )
 
     graphs = hold_out_takes(clips, speech, options.k, options.level, options.keys, options.most)
     rows = list(score_extending(graphs, seed=options.seed, progress=_telling(options, "drives")))
-    say(options, rows_as_text(rows), [asdict(r) for r in rows])
+    say(options, format_rows_as_text(rows), [asdict(r) for r in rows])
     return 0
 
 
@@ -580,7 +580,7 @@ def print_co_occurrence(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.synthesis.cooccurrence import count_cooccurrence as count
 
-    clips, speech = pair_speech(options)
+    clips, speech = match_speech(options)
     rows = count(clips, speech)
     lines = [f"{'':<34}{'matched':>8}{'total':>7}{'rate':>7}  {'95 %':<13}{'chance':>7}"]
     for r in rows:

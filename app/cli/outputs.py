@@ -57,7 +57,7 @@ def offer_overwrite(parser: ArgumentParser, command: str) -> None:
 
 def claim_outputs(options: Namespace) -> Outputs:
     """Return the outputs of a command line, and claim what its options name. Raises FileError."""
-    from metagraph.formats.outputs import Outputs, data_folder, find_paths
+    from metagraph.formats.outputs import Outputs, find_data_folder, find_paths
 
     command, action = options.command, getattr(options, "step", None) or getattr(options, "action", None)
     name = " ".join(filter(None, (command, action)))
@@ -70,7 +70,7 @@ def claim_outputs(options: Namespace) -> Outputs:
             out += paths
         else:
             made.reads(*paths)
-    data = data_folder()
+    data = find_data_folder()
     if data is not None:
         made.keeps_up(data)
     if command == "study" and action in STUDIES:

@@ -260,7 +260,7 @@ class Stimuli:
         return lambda begin, seconds: _cut(whole, begin, seconds)
 
     def _video(self, name: str, made: Condition, item: Stretch, apart: bool) -> StimulusSource:
-        from preview.video_reading import read_video_sound, video_seconds
+        from preview.video_reading import measure_video_seconds, read_video_sound
 
         assert made.video is not None
         path = self._file(made.video, item)
@@ -269,7 +269,7 @@ class Stimuli:
         def sound(begin: float, seconds: float) -> np.ndarray | None:
             return None if whole is None else _cut(whole, begin, seconds)
 
-        return StimulusSource(0.0 if apart else item.start, video_seconds(path), sound, video=path)
+        return StimulusSource(0.0 if apart else item.start, measure_video_seconds(path), sound, video=path)
 
 
 def _paths(made: Condition) -> tuple[str, ...]:

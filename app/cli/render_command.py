@@ -15,7 +15,7 @@ from app.cli.command_output import add_performance_arguments, open_for_command, 
 from app.look.names import node_names
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.formats.outputs import claim, declare_inputs
-from metagraph.formats.store import files_of
+from metagraph.formats.store import list_project_files
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
@@ -77,12 +77,12 @@ def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
     draws a stick figure in place of the default body. Raises FileError.
     """
     from preview.character_file import figure_from_file as drawn
-    from preview.default_body.footing import footing_of
+    from preview.default_body.footing import choose_footing
     from preview.figure import StickFigure
 
     assert project.skeleton is not None
     path = folder / project.character if project.character is not None else None
-    footing = footing_of((entry.motion for entry in project.clips.values()), project.skeleton)
+    footing = choose_footing((entry.motion for entry in project.clips.values()), project.skeleton)
     figure = drawn(path, project.skeleton, project.hidden, footing, sticks)
     if figure.instead:
         kind = "a stick figure" if isinstance(figure, StickFigure) else "the default body"
@@ -167,12 +167,12 @@ def render_directed(
         return
     from app.cli.screenless import make_screenless_application
     from app.stage.caption_paint import add_captions
-    from metagraph.speech.captions import captions_at
+    from metagraph.speech.captions import find_captions_at
 
     # Text needs the fonts of an application, which a program without a window has not.
     application = make_screenless_application()
     for at, picture in zip(times, render_pictures(seen, times, size, look, camera, into), strict=True):
-        yield add_captions(picture, captions_at(captions, float(at)))
+        yield add_captions(picture, find_captions_at(captions, float(at)))
     del application
 
 
@@ -236,7 +236,7 @@ def run(options: Namespace) -> int:
             else ShownPlayback(project, stage_performance(project, options), options.start + options.seconds)
         )
     for one in shown.everyone:
-        declare_inputs(*files_of(one.project, one.folder or folder))
+        declare_inputs(*list_project_files(one.project, one.folder or folder))
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
@@ -330,9 +330,9 @@ def mix_sound(
     }
     if not lines:
         return None
-    from metagraph.speech.soundtrack import RATE, line_sounds, mix_track, place_lines
+    from metagraph.speech.soundtrack import RATE, mix_track, place_line_sounds, place_lines
 
-    sounds, notes = line_sounds(lines, folder)
+    sounds, notes = place_line_sounds(lines, folder)
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
     return mix_track(

@@ -56,7 +56,7 @@ def run(options: Namespace) -> int:
     from metagraph.formats.atomic import write_together
     from metagraph.formats.outputs import claim
     from metagraph.research.exhibits.exhibit import choose_exhibits
-    from metagraph.research.exhibits.page import exhibit_as_text, exhibits_as_data, format_exhibits
+    from metagraph.research.exhibits.page import encode_exhibits, exhibit_as_text, format_exhibits
 
     exhibits = choose_exhibits(options.exhibits)
     if options.list:
@@ -76,7 +76,7 @@ def run(options: Namespace) -> int:
     content = {
         "report.html": format_exhibits(made, told),
         "report.json": json.dumps(
-            {**told, "exhibits": exhibits_as_data(made), "notes": material.notes}, indent=1
+            {**told, "exhibits": encode_exhibits(made), "notes": material.notes}, indent=1
         )
         + "\n",
     }
@@ -88,7 +88,7 @@ def run(options: Namespace) -> int:
     say(
         options,
         "\n\n".join([*words, "\n".join(written)]),
-        {"exhibits": exhibits_as_data(made), "written": written},
+        {"exhibits": encode_exhibits(made), "written": written},
     )
     return 3 if any(s.missing for _, s, _ in made) else 0
 

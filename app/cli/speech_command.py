@@ -192,13 +192,13 @@ def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
 def _write(out: Path, read: Read, folder: Path | None) -> None:
     import msgspec
 
-    from metagraph.common.xml_text import replaced_note
+    from metagraph.common.xml_text import describe_replaced
     from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
 
     kind = out.suffix.casefold()
     if kind == ".eaf":
         write_elan(read.conversation, out, folder)
-        if (lost := replaced_note([msgspec.to_builtins(read.conversation)])) is not None:
+        if (lost := describe_replaced([msgspec.to_builtins(read.conversation)])) is not None:
             print(f"note: {lost}", file=sys.stderr)
     elif kind == ".json":
         write_json(read.conversation, out)

@@ -157,7 +157,7 @@ def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
     raise FileError(path, "has no words", "", "Give a transcript with words and their times.")
 
 
-def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
+def match_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
     """Return takes, the speech of each, and their names. Raises ValueError if files do not go together."""
     takes = read_take_files(options.takes)
     files = {path.stem: path for path in options.speech}
@@ -196,7 +196,7 @@ def read_given_files(options: Namespace, what: str) -> dict[str, Path]:
     return out
 
 
-def pair_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
+def match_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
     """Return takes, and what was heard during each. Raises ValueError if files do not go together."""
-    clips, spoken, _ = pair_takes(options)
+    clips, spoken, _ = match_takes(options)
     return clips, [one.segments for one in spoken]

@@ -124,13 +124,13 @@ class GLView(CameraMouse, QOpenGLWidget):
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
 
     def initializeGL(self) -> None:
-        from preview.offscreen import no_opengl_error
+        from preview.offscreen import describe_missing_opengl
 
         try:
             self._ctx = moderngl.create_context(require=330)
             self._renderer = Renderer(self._ctx)
         except Exception as error:
-            self._cannot_draw(no_opengl_error(str(error)))
+            self._cannot_draw(describe_missing_opengl(str(error)))
             return
         self.context().aboutToBeDestroyed.connect(self._lost)
 

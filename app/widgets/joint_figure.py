@@ -34,7 +34,7 @@ class JointFigure(QWidget):
     def __init__(self, skeleton: Skeleton, look: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._skeleton, self._look = skeleton, theme(look)
-        self._seen = front_positions(skeleton)
+        self._seen = measure_front_positions(skeleton)
         self._helpers = [is_control(name) for name in skeleton.names]  # no bone leads to them
         self._weights: Mapping[str, float] = {}
         self._wheel = 0  # eighths of a degree that are no whole notch yet
@@ -189,7 +189,7 @@ def _between(low: QColor, high: QColor, share: float) -> QColor:
     )
 
 
-def front_positions(skeleton: Skeleton) -> np.ndarray:
+def measure_front_positions(skeleton: Skeleton) -> np.ndarray:
     """Return `[J, 2]` where joints are, right and up, metres, of somebody in the rest pose who is looked at
     from the front.
     """

@@ -38,7 +38,7 @@ JOINT = Qt.ItemDataRole.UserRole
 NOTCH = 0.05  # weight a notch of the wheel, and a press of + and -, stand for
 
 
-def joint_tree(tree: QTreeWidget, project: Project) -> dict[str, QTreeWidgetItem]:
+def fill_joint_tree(tree: QTreeWidget, project: Project) -> dict[str, QTreeWidgetItem]:
     """Fill a tree with the skeleton's joints; return joint name -> item."""
     items: dict[str, QTreeWidgetItem] = {}
     skeleton = project.skeleton
@@ -109,7 +109,7 @@ class MaskDialog(QDialog):
         self.tree.setColumnCount(2)
         self.tree.setHeaderHidden(True)
         self.tree.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
-        self.items = joint_tree(self.tree, self.document.project)
+        self.items = fill_joint_tree(self.tree, self.document.project)
         header = self.tree.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)

@@ -39,7 +39,7 @@ def still_plot(parent: QWidget) -> Any:
     return plot
 
 
-def empty_plot(plot: Any, look: WindowTheme) -> None:
+def clear_plot(plot: Any, look: WindowTheme) -> None:
     """Remove everything from a plot, and give it the theme's colours."""
     plot.clear()
     plot.setBackground(look.panel)

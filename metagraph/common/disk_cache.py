@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from metagraph.common.user_folders import user_folder
+from metagraph.common.user_folders import find_user_folder
 
 LEFT = 0.8  # of what a cache may hold, after a clearing
 SEEN = 3600.0  # seconds after which the use of a file is written down again
@@ -18,7 +18,7 @@ def cache_folder(name: str) -> Path | None:
     """Return the folder below the system's for caches in which such things are kept, which may not be there
     yet; None if nobody's home is known.
     """
-    caches = user_folder("caches")
+    caches = find_user_folder("caches")
     return caches / "metagraph" / name if caches is not None else None
 
 

@@ -18,7 +18,7 @@ _PLACES = {
 }
 
 
-def user_folder(kind: Literal["caches", "data"]) -> Path | None:
+def find_user_folder(kind: Literal["caches", "data"]) -> Path | None:
     """Return the user's folder for caches or for what programs remember; None if nobody's home is known. It
     may not be there yet.
     """

@@ -31,7 +31,7 @@ def quote_xml(text: str) -> str:
     return f'"{kept}"'
 
 
-def replaced_note(values: Iterable[Any]) -> Phrase | None:
+def describe_replaced(values: Iterable[Any]) -> Phrase | None:
     """Return what to say where texts lose characters in XML; None if none does. values: texts, and mappings
     and lists of them.
     """

@@ -15,7 +15,7 @@ from metagraph.playback.posing.contacts import has_contacts
 from metagraph.playback.posing.rigs import rigs_of
 
 
-def contacts_of(action: Action) -> list[c.ExportedContact]:
+def export_contacts(action: Action) -> list[c.ExportedContact]:
     """Return an action's contacts as they are exported."""
     return [
         c.ExportedContact(
@@ -49,7 +49,7 @@ def read_contacts(contacts: Sequence[c.ExportedContact]) -> tuple[ContactSpan, .
     )
 
 
-def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
+def export_contact_rig(project: Project) -> c.ExportedContactRig | None:
     """Return what runtimes need for contacts and the guard, None if neither does anything."""
     rig = rigs_of(project).contacts if has_contacts(project) else None
     if rig is None:

@@ -19,7 +19,7 @@ from metagraph.engines.export_rig import read_rig, read_voices
 from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
 from metagraph.formats.clips import digest
-from metagraph.formats.project.data import markov_from, skeleton_from
+from metagraph.formats.project.data import decode_markov, decode_skeleton
 from metagraph.formats.project.fields import DataError
 from metagraph.graph.face.rig import CHANNELS
 from metagraph.graph.model import (
@@ -63,8 +63,8 @@ def read_export(path: str | Path, motions: bool = True, resolved: bool = False) 
 
 
 def glb_of(path: Path) -> Path:
-    """Return the GLB of an export's JSON. Raises FileError as `read_export` and `glb_beside`."""
-    return glb_beside(path, _decoded(path))
+    """Return the GLB of an export's JSON. Raises FileError as `read_export` and `find_glb_beside`."""
+    return find_glb_beside(path, _decoded(path))
 
 
 def _decoded(path: Path) -> c.Export:
@@ -140,7 +140,7 @@ def _clips(
     if motions:
         from metagraph.formats.gltf.reader import read_gltf_clips
 
-        takes = read_gltf_clips(glb_beside(path, document))
+        takes = read_gltf_clips(find_glb_beside(path, document))
     # Clips of one frame are read behind the longer ones.
     every = [x.animation for x in document.clips]
     longer = sorted(x.animation for x in document.clips if x.frames > 1) or every
@@ -173,7 +173,7 @@ def _clips(
     return clips
 
 
-def glb_beside(path: Path, document: c.Export) -> Path:
+def find_glb_beside(path: Path, document: c.Export) -> Path:
     """Return the GLB of an export's JSON. Raises FileError if it is not the one that the JSON was written
     with: an export that was interrupted, or files copied one by one, leave two that do not belong together.
     """
@@ -230,7 +230,7 @@ def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
 def _skeleton(joints: list[c.Joint]) -> Skeleton:
     rows = [{"name": j.name, "parent": j.parent, "at": j.translation, "turn": j.rotation} for j in joints]
     try:
-        found = skeleton_from(rows, "$.joints")
+        found = decode_skeleton(rows, "$.joints")
     except DataError as error:
         where = error.where.replace(".at", ".translation").replace(".turn", ".rotation")
         raise DataError(where, str(error)) from None
@@ -255,7 +255,9 @@ def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
         "lengths": model.lengths,
         "modes": model.modes,
     }
-    return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
+    return decode_markov(
+        layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov"
+    )
 
 
 def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:

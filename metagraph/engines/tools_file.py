@@ -12,7 +12,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.offered import tools
 
 
-def tools_name(stem: str) -> str:
+def name_tools_file(stem: str) -> str:
     """Return the name of the tools file beside an export of this name."""
     return f"{stem}.tools.json"
 
@@ -21,6 +21,6 @@ def write_tools(project: Project, folder: Path) -> Path:
     """Write `offered.tools` as JSON into a folder; return the file. Raises FileError if it cannot
     be written.
     """
-    path = folder / tools_name(stem_of(project))
+    path = folder / name_tools_file(stem_of(project))
     write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
     return path

@@ -110,7 +110,7 @@ def find_held_meshes(body: CharacterMesh) -> tuple[str, ...]:
     return tuple(mesh for mesh in body.meshes if mesh in some)
 
 
-def character_among(
+def find_character_among(
     clips: Iterable[str], still: Iterable[str], folder: Path | None, skeleton: Skeleton
 ) -> tuple[CharacterFile | None, tuple[CharacterFile, ...]]:
     """Return the first file with a character for a skeleton, and those whose mesh is none if there is no such

@@ -11,7 +11,7 @@ from metagraph.common.files import unforeseen_error
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError, describe_error
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.store import path_for_project, relative
+from metagraph.formats.store import make_path_for_project, relative
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import add_clips
 from metagraph.graph.face.curves import describe_unused_curves
@@ -161,7 +161,7 @@ def import_files(
         try:
             if path not in digests:
                 digests[path] = digest(path)
-            name = path_for_project(path, folder)
+            name = make_path_for_project(path, folder)
         except FileError as error:
             failures.append(error.words)
             continue
@@ -189,10 +189,10 @@ def import_files(
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
     if project.character is None and skeleton is not None:
-        from metagraph.formats.characters import character_among
+        from metagraph.formats.characters import find_character_among
 
         still = {_name(e.path, folder): e for e in report.failures}
-        character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
+        character, stand_ins = find_character_among([name for name, *_ in loaded], still, folder, skeleton)
         if character is not None and character.path in still:  # it is useful without a motion
             failures.remove(still[character.path].words)
     notes = (*_together(report.clips), *_together(lost), *_other_bones(list(apart.values())))

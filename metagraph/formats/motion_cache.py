@@ -77,7 +77,7 @@ def read_or_kept(path: Path, digest: str, as_is: Collection[str]) -> list[Clip]:
     """Return what `read_clips` does, from what is kept if that is of the same content. digest: of the file.
     Raises FileError as `read_clips` does.
     """
-    kept, key = _cache(motion_cache_folder()), _key(path, digest, as_is)
+    kept, key = _cache(find_motion_cache_folder()), _key(path, digest, as_is)
     content = kept.read(key)
     if content is not None:
         with suppress(Exception):  # whatever is wrong with it, the file itself is there
@@ -93,7 +93,7 @@ def _cache(folder: Path | None) -> DiskCache:
     return DiskCache(folder, MOST, ".motion")
 
 
-def motion_cache_folder() -> Path | None:
+def find_motion_cache_folder() -> Path | None:
     """Return the folder it is kept in, None if nothing is."""
     told = os.environ.get("METAGRAPH_MOTION_CACHE")
     return cache_folder("motion") if told is None else Path(told) if told else None

@@ -234,7 +234,7 @@ def conversation_activity(conversation: Conversation, side: int, frames: int) ->
     return one_hot(found[0], np.any(found[1:], axis=0))  # of several, whoever answers is the partner
 
 
-def voice_activity(own: Array, partner: Array | None, rate: int, frames: int) -> Array:
+def detect_voice_activity(own: Array, partner: Array | None, rate: int, frames: int) -> Array:
     """Return activity `[T, 4]` by loudness alone. own, partner: samples `[N]`; without a partner nobody
     answers.
     """

@@ -25,6 +25,6 @@ def list_models(folder: Path | None) -> dict[str, Path]:
     return out
 
 
-def model_title(name: str) -> str:
+def name_model(name: str) -> str:
     """Return a model's name as people read it."""
     return OWN_WORDS if name == OWN else name

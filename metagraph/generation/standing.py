@@ -54,10 +54,10 @@ class Standing:
 
     @property
     def share(self) -> float:
-        return training_share(self.plan, self.step, self.seconds, self.minutes)
+        return measure_training_share(self.plan, self.step, self.seconds, self.minutes)
 
 
-def training_share(plan: TrainingPlan, step: int, seconds: float, minutes: float) -> float:
+def measure_training_share(plan: TrainingPlan, step: int, seconds: float, minutes: float) -> float:
     """Return how much of a training is over, 0..1."""
     used = ((seconds, plan.seconds), (minutes, plan.minutes), (float(step), plan.steps))
     return min(1.0, max((value / most for value, most in used if most), default=0.0))

@@ -20,11 +20,11 @@ from metagraph.generation.features import (
     SELF,
     compute_features,
     conversation_activity,
+    detect_voice_activity,
     frames_of,
     resample_for_features,
-    voice_activity,
 )
-from metagraph.generation.loudness import gain_of, integrated_loudness
+from metagraph.generation.loudness import gain_of, measure_integrated_loudness
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import (
     PoseError,
@@ -186,7 +186,7 @@ def make_take(
             )
         )
         partner = sound[1] if len(sound) > 1 else None
-        activity, marks = voice_activity(sound[0], partner, RATE, count), TakeMarks()
+        activity, marks = detect_voice_activity(sound[0], partner, RATE, count), TakeMarks()
     else:
         activity, marks = conversation_activity(conversation, side, count), _marks(conversation, side)
     own = activity[:, SELF].sum() / FPS
@@ -206,7 +206,7 @@ def make_take(
 
 def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool, notes: list[str]) -> None:
     """shared: one channel has both voices, and the words tell whose each is."""
-    silent = [not np.isfinite(integrated_loudness(channel, RATE)) for channel in sound]
+    silent = [not np.isfinite(measure_integrated_loudness(channel, RATE)) for channel in sound]
     if all(silent):
         raise TakeError(f"{who}: its sound is silent. Check the microphone, or which channel is its own")
     if len(sound) == 1 and not shared:

@@ -123,7 +123,7 @@ def soft_edge(
     return out
 
 
-def unknown_joints(skeleton: Skeleton | None, of: Action | State) -> list[str]:
+def list_unknown_joints(skeleton: Skeleton | None, of: Action | State) -> list[str]:
     """Return the joints that a mask names and the skeleton does not have; none without a skeleton."""
     if skeleton is None:
         return []

@@ -19,7 +19,12 @@ from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES, tools
 from metagraph.live.stdio import StdioLine
 from metagraph.speech.spoken_text import read_spoken_line
-from metagraph.speech.text_gestures import gesture_requests, gesture_words_for, propose_gestures, timed_words
+from metagraph.speech.text_gestures import (
+    find_gesture_words,
+    make_gesture_requests,
+    propose_gestures,
+    timed_words,
+)
 
 VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
 BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  # JSON-RPC's codes
@@ -181,9 +186,9 @@ class McpLine(StdioLine):
         begins = float(reply["at"])
         if told and "since" in reply:  # it is when the first of these words is said
             begins -= told[0][1]
-        lexicon = gesture_words_for(said.text)
+        lexicon = find_gesture_words(said.text)
         made = propose_gestures(timed_words(said.text, told), self._tags, lexicon, self._gestured + 1)
-        requests = gesture_requests(made, begins, str(reply.get("id", "said")), self._gestured)
+        requests = make_gesture_requests(made, begins, str(reply.get("id", "said")), self._gestured)
         self._gestured += len(requests) or 1
         for request in requests:
             self._calls.append(_Call(_NOBODY))

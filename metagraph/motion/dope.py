@@ -29,7 +29,7 @@ class DopeSheet:
     parts: Array
 
 
-def dope_sheet(clip: Clip, groups: Mapping[str, str] | None = None) -> DopeSheet:
+def make_dope_sheet(clip: Clip, groups: Mapping[str, str] | None = None) -> DopeSheet:
     """Return what moves in a clip. groups: joint -> the line that reports it, as fast as the fastest
     of them; joints that are not named there are left out. Without it every joint has a line.
     """

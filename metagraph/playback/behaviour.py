@@ -152,7 +152,7 @@ def _acts(project: Project, plan: Plan, seconds: float) -> list[BehaviourRow]:
         out.append(
             BehaviourRow(
                 name,
-                repeated_share(acts, span),
+                measure_repeated_share(acts, span),
                 phrase("of them"),
                 None,
                 most,
@@ -178,7 +178,7 @@ def _tilted(project: Project, plan: Plan, seconds: float) -> float:
     )
 
 
-def repeated_share(cues: Sequence[Cue], seconds: float) -> float:
+def measure_repeated_share(cues: Sequence[Cue], seconds: float) -> float:
     """Return the share of cues whose action began already within `seconds` before, 0..1."""
     last: dict[str, float] = {}
     again = 0

@@ -34,8 +34,8 @@ from metagraph.playback.posing.layers import (
     crossfade,
     ease_blend,
     keep_to,
+    make_zero_offsets,
     sample_offsets,
-    zero_offsets,
 )
 from metagraph.playback.posing.rigs import rigs_of
 
@@ -384,7 +384,7 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     """
     motion = playable(project, turn.action)
     if motion is None:
-        return zero_offsets(len(times), len(reach.joints))
+        return make_zero_offsets(len(times), len(reach.joints))
     shown = sample_offsets(ground, reach, motion, clip_seconds(project, turn, times))
     mask = anatomy.action_mask(project, turn.action)
     if mask is not None:

@@ -20,11 +20,11 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
-from metagraph.motion.in_place import travel_of
+from metagraph.motion.in_place import measure_travel
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.continuity import ContinuityLaw
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
-from metagraph.playback.own_moves import RATE, body_joints, own_moves, play_clips
+from metagraph.playback.own_moves import RATE, find_body_joints, own_moves, play_clips
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import improvise, plan_performance
 from metagraph.playback.posing.composer import playable
@@ -176,7 +176,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     roles = anatomy.project_roles(project)
     parts = tuple(part for part in PARTS if part in roles)
     joints = [roles[part] for part in parts]
-    body = body_joints(skeleton, roles)
+    body = find_body_joints(skeleton, roles)
     contacts = rigs_of(project).contacts
     evaluator = Evaluator(plan, project)
     times = np.arange(round(seconds * RATE)) / RATE
@@ -460,7 +460,7 @@ class _Findings:
         if action is None or clip is None or self.project.skeleton is None:
             return False
         hips = anatomy.project_roles(self.project).get("hips", 0)
-        far = travel_of(clip, hips, *self.project.span(action))
+        far = measure_travel(clip, hips, *self.project.span(action))
         return not self.project.clips[action.clip].in_place and far > GLIDES * self.size
 
     def _floor(self) -> Iterator[Problem]:

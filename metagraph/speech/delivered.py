@@ -10,7 +10,7 @@ from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Sp
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.timing.phases import phases
-from metagraph.speech.drive import TOLERANCE, clause_peak, draw_segments, key_segments
+from metagraph.speech.drive import TOLERANCE, draw_segments, find_clause_peak, key_segments
 
 NAMES = {
     "clause": phrase("clauses with a gesture"),
@@ -101,11 +101,11 @@ def _told(cue: Cue, project: Project) -> tuple[float, float]:
 
 
 def _strikes(segment: Segment, told: Sequence[tuple[float, float]]) -> bool:
-    return any(abs(stroke - clause_peak(segment)) <= TOLERANCE for stroke, _ in told)
+    return any(abs(stroke - find_clause_peak(segment)) <= TOLERANCE for stroke, _ in told)
 
 
 def _covered(segment: Segment, told: Sequence[tuple[float, float]]) -> bool:
-    peak = clause_peak(segment)
+    peak = find_clause_peak(segment)
     return any(stroke - TOLERANCE <= peak <= end + TOLERANCE for stroke, end in told)
 
 

@@ -17,7 +17,7 @@ from metagraph.playback.life.gaze import BodyGaze
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.rigs import rigs_of
 from metagraph.speech.addressing import roles_of
-from metagraph.speech.drive import partner_points
+from metagraph.speech.drive import find_partner_points
 
 FACE = 0.14  # metres round the middle of a head that are its face, hair and chin with it
 STEP, MOST = 0.1, 6000  # seconds between samples at least, and samples at most
@@ -72,7 +72,7 @@ def gaze_shares(conversation: Conversation, side: int, project: Project, plan: P
     """Return where a side looks by what it does, in the order of `NAMES`; nothing of what it never does, and
     nothing of two, who have nobody else to look at. project: whose graph moves it.
     """
-    points = partner_points(plan)
+    points = find_partner_points(plan)
     if len(conversation.sides) < 3 or not points or not project.life.on:
         return ()
     gaze = BodyGaze(plan.life, project.life, rigs_of(project).body, project.points)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import Segment, Sound, Word
-from metagraph.speech.loudness import loudness_within
+from metagraph.speech.loudness import measure_loudness_within
 from metagraph.speech.sound import analyse_sound, syllables
 
 Array = NDArray[Any]
@@ -44,7 +44,7 @@ def prosody(
     own = [s.kind in OWN for s in segments]
     loud = np.full(len(segments), np.nan)
     if samples is not None and any(own):
-        loud = loudness_within(samples, rate, [(s.start, s.end) for s in segments])
+        loud = measure_loudness_within(samples, rate, [(s.start, s.end) for s in segments])
     found = _by_words(segments, words)
     if np.isnan(found).all():
         found = np.array([_of(letters(s.text), s.end - s.start) for s in segments])

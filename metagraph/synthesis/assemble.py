@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
-from metagraph.suggest.tracks import RATE, clip_poses, facing_and_standing, track_rig
+from metagraph.suggest.tracks import RATE, measure_facing_and_standing, sample_clip_poses, track_rig
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.retiming import Retiming
 from metagraph.synthesis.search.path import Path
@@ -101,7 +101,7 @@ def assemble(
         way = way[retiming.frames]
     if not hold_feet or not len(path.jumps):
         return made
-    each = [find_standing(c.skeleton, clip_poses(c)) for c in takes]
+    each = [find_standing(c.skeleton, sample_clip_poses(c)) for c in takes]
     feet = {side: np.concatenate([one[side] for one in each])[way] for side in each[0]}
     return keep_feet_still(made, feet)
 
@@ -116,8 +116,8 @@ def _frames(takes: Sequence[Clip]) -> _Frames:
     rig = track_rig(takes[0], None)
     rotations, translations, ground, heading = [], [], [], []
     for clip in takes:
-        poses = clip_poses(clip)
-        facing, at = facing_and_standing(rig, poses)
+        poses = sample_clip_poses(clip)
+        facing, at = measure_facing_and_standing(rig, poses)
         rotations.append(poses.rotations)
         translations.append(poses.translations)
         ground.append(at[:, rig.root][:, [0, 2]])

@@ -96,7 +96,7 @@ def find_phrase_spans(words: Sequence[Word], phrases: Sequence[str]) -> list[tup
     return out
 
 
-def word_places(
+def find_word_places(
     wishes: Sequence[WordWish],
     states: States,
     takes: Sequence[SpokenTake],
@@ -160,7 +160,9 @@ def _near(
     return out
 
 
-def word_cost(places: Sequence[WordPlace], frames: int, price: float, limit: float) -> FrameCost | None:
+def measure_word_cost(
+    places: Sequence[WordPlace], frames: int, price: float, limit: float
+) -> FrameCost | None:
     """Return what frames cost that show nothing of a word they should. price: of a word that is missed all
     along, of the graph's threshold (limit, metres); for a part of it as much less.
     """

@@ -104,7 +104,7 @@ def of_speech(new: SpokenTake, start: float, seconds: float, measure: Measure) -
     return out
 
 
-def prosody_cost(
+def measure_prosody_cost(
     measure: Measure, weight: float, of_state: Array, of_frame: Array, limit: float
 ) -> FrameCost:
     """Return what frames cost by how they are said. weight: what a second costs that is off by one spread, of
@@ -145,7 +145,9 @@ class ProsodyMatch:
         )
 
 
-def prosody_match(measure: Measure, of_state: Array, of_frame: Array, way: Array) -> ProsodyMatch | None:
+def measure_prosody_match(
+    measure: Measure, of_state: Array, of_frame: Array, way: Array
+) -> ProsodyMatch | None:
     """Return how well the states `[T]` of a path go with speech, None if nothing can be compared."""
     shown = of_state[np.asarray(way)]
     both = np.isfinite(shown) & np.isfinite(of_frame[: len(shown)])

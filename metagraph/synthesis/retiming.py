@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
 from metagraph.motion.clip import Clip
-from metagraph.suggest.tracks import RATE, clip_poses, track_seconds
+from metagraph.suggest.tracks import RATE, sample_clip_poses, track_seconds
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
 from metagraph.synthesis.cooccurrence import activation, speeds
 from metagraph.synthesis.graph import BLEND
@@ -91,7 +91,7 @@ def retimable(takes: Sequence[Clip]) -> Array:
     """
     out = []
     for clip in (c for c in takes if c.frames >= 2):
-        times, poses = track_seconds(clip), clip_poses(clip)
+        times, poses = track_seconds(clip), sample_clip_poses(clip)
         free = np.ones(len(times), bool)
         own = np.arange(clip.frames) / clip.fps
         for part, speed in speeds(clip).items():

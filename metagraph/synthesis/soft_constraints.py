@@ -21,20 +21,20 @@ from metagraph.synthesis.iconic_words import (
     WordShown,
     WordWish,
     describe_words,
+    find_word_places,
     find_words_shown,
+    measure_word_cost,
     unsaid,
-    word_cost,
-    word_places,
 )
 from metagraph.synthesis.prosody_costs import (
     MEASURES,
     Measure,
     ProsodyMatch,
     SpokenTake,
+    measure_prosody_cost,
+    measure_prosody_match,
     of_speech,
     of_states,
-    prosody_cost,
-    prosody_match,
 )
 from metagraph.synthesis.retiming import Retiming, check_share, retimable, retime
 from metagraph.synthesis.search.frame_costs import FrameCosts, join_costs
@@ -143,11 +143,13 @@ class SoftMaterial:
             if not np.isfinite(new.values(measure)).any() and new.segments:
                 raise SynthesisError(_unknown(measure, "the new speech"))
             of_frame = of_speech(new, start, seconds, measure)
-            kinds.append(prosody_cost(measure, getattr(wish, measure), of_state, of_frame, self.limit))
+            kinds.append(
+                measure_prosody_cost(measure, getattr(wish, measure), of_state, of_frame, self.limit)
+            )
             known.append((measure, of_state, of_frame))
-        places = word_places(wish.words, self.states, self.takes, new, start, seconds, tolerance)
+        places = find_word_places(wish.words, self.states, self.takes, new, start, seconds, tolerance)
         frames = max(1, round(seconds * RATE))
-        charged = join_costs([*kinds, word_cost(places, frames, wish.price, self.limit)])
+        charged = join_costs([*kinds, measure_word_cost(places, frames, wish.price, self.limit)])
         never = unsaid(wish.words, new, start, seconds)
         return SoftConstraints(charged, places, wish.hard, self.free, wish.retime, tuple(known), never)
 
@@ -200,7 +202,7 @@ def soft_report(
     """Return how well a path meets preferences, as it is shown."""
     way = path.states if retiming is None else path.states[retiming.frames]
     paid = soft.charged.paid(path.states) if soft.charged is not None else {}
-    matches = [prosody_match(measure, a, b, way) for measure, a, b in soft.known]
+    matches = [measure_prosody_match(measure, a, b, way) for measure, a, b in soft.known]
     return SoftReport(
         paid,
         tuple(m for m in matches if m is not None),

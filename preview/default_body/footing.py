@@ -43,7 +43,7 @@ class Footing:
     ups: tuple[Array | None, Array | None] = (None, None)
 
 
-def footing_of(clips: Iterable[Clip | None], skeleton: Skeleton) -> Footing | None:
+def choose_footing(clips: Iterable[Clip | None], skeleton: Skeleton) -> Footing | None:
     """Return how a skeleton stands, as the first of some clips that is on it tells; None if none is."""
     clip = next((c for c in clips if c is not None and c.skeleton == skeleton), None)
     return find_footing(clip) if clip is not None else None

@@ -366,7 +366,7 @@ class Reviewer(Participant):
 def without_times(project: Project) -> Project:
     """Return a project whose actions have the times of clips that are dropped: the review proposes others."""
     for action in list(project.actions()):
-        timing = edits.default_timing(project.clips[action.clip], action.kind)
+        timing = edits.make_default_timing(project.clips[action.clip], action.kind)
         project = edits.update_actions(project, [action.id], timing=asdict(timing))
     return project
 

@@ -14,7 +14,7 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback import continuity
-from metagraph.playback.own_moves import body_joints
+from metagraph.playback.own_moves import find_body_joints
 from metagraph.playback.rehearsal import LEAST_MINUTES, rehearse
 
 SECONDS = 40.0
@@ -96,9 +96,9 @@ def test_a_control_joint_under_the_floor_is_no_part_of_the_figure(toy: Any) -> N
         np.vstack([bones.rest_rotations, [0, 0, 0, 1]]),
         np.vstack([bones.rest_translations, [0, -5.0, 0]]),
     )
-    body = body_joints(control, find_roles(control))
+    body = find_body_joints(control, find_roles(control))
     assert len(bones) not in body and set(find_roles(control).values()) <= set(body)
-    assert body_joints(bones, {}) == list(range(len(bones)))
+    assert find_body_joints(bones, {}) == list(range(len(bones)))
 
 
 def test_what_a_clip_in_place_still_does_gets_another_advice(sound: Project, toy: Any) -> None:

@@ -17,7 +17,14 @@ from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import WindowTheme, theme
 from app.translation import lazy_texts, tr, tr_noop
-from metagraph.playback.posing.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
+from metagraph.playback.posing.foot_slides import (
+    RATE,
+    SLIDES,
+    FeetSeen,
+    FeetWatch,
+    FootState,
+    find_worst_slide,
+)
 
 SPAN = 1.5  # seconds before and after now that the line reports
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
@@ -197,7 +204,7 @@ def find_foot_states(seen: FeetSeen, side: int) -> list[tuple[float, float, int,
 
 def describe_slide(seen: FeetSeen) -> str:
     """Return which foot slides fastest around now and when, or that none slides."""
-    worst = worst_slide(seen)
+    worst = find_worst_slide(seen)
     if worst is None:
         return tr("No planted foot slides") if len(seen.times) > 1 else ""
     time, side, speed = worst

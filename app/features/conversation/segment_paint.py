@@ -15,9 +15,9 @@ from app.features.conversation.segment_lanes import (
     SegmentLane,
     find_visible_segments,
     find_words_between,
-    pitch_y,
+    measure_pitch_y,
+    measure_segment_rect,
     place_segment_lanes,
-    segment_rect,
 )
 from app.features.conversation.sound_reading import SideSound
 from app.look.theme import SOUND_MARKS, WindowTheme
@@ -114,7 +114,7 @@ def _titles(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, l
     painter.setPen(QColor(t.dim))
     right = Qt.AlignmentFlag.AlignRight | MIDDLE
     for hertz in AXIS:
-        y = float(pitch_y(hertz, lane.wave))
+        y = float(measure_pitch_y(hertz, lane.wave))
         if y > lane.wave.top() + 26 and y < lane.wave.bottom() - 5:
             painter.drawText(QRectF(12, y - 8, LEFT - 18, 16), right, f"{hertz:.0f} Hz")
     if lane.wave.height() > 34:
@@ -137,7 +137,7 @@ def _wave(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lan
     _strokes(painter, t, scene, segments, behind, (26, 70), chosen)
     painter.setPen(QPen(QColor(t.line), 1, Qt.PenStyle.DotLine))
     for hertz in AXIS:
-        y = round(float(pitch_y(hertz, area))) + 0.5
+        y = round(float(measure_pitch_y(hertz, area))) + 0.5
         painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
     if heard is not None and heard.wave is not None:
         middle, half = area.height() / 2, area.height() / 2 - 3
@@ -147,7 +147,13 @@ def _wave(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lan
         _curve(painter, heard.wave, scene, area, color, lambda v: middle - v * grow, 1.0)
     if heard is not None and heard.pitch is not None:
         _curve(
-            painter, heard.pitch, scene, area, QColor(t.text), lambda v: pitch_y(v, area) - area.top(), 1.7
+            painter,
+            heard.pitch,
+            scene,
+            area,
+            QColor(t.text),
+            lambda v: measure_pitch_y(v, area) - area.top(),
+            1.7,
         )
     _told(painter, t, heard, area)
 
@@ -236,7 +242,7 @@ def _segments(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int,
     for n in wide:
         segment = segments[n]
         rect, fill, chosen = (
-            segment_rect(segment, scale, lane),
+            measure_segment_rect(segment, scale, lane),
             QColor(t.sounds[segment.kind]),
             (side, n) in scene.chosen,
         )
@@ -267,7 +273,7 @@ def _peaks(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, la
         segment = segments[n]
         if segment.kind != "clause" or segment.peak is None:
             continue
-        at = QPointF(scale.x(segment.peak), peak_y(segment.peak, heard, lane))
+        at = QPointF(scale.x(segment.peak), measure_peak_y(segment.peak, heard, lane))
         held = scene.over.part == "peak" and (scene.over.side, scene.over.at) == (side, n)
         painter.setPen(QPen(stem, 1.4))
         painter.drawLine(at, QPointF(at.x(), lane.segments.top()))
@@ -314,14 +320,14 @@ def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
     return round(color.blue() * part), round(color.green() * part), round(color.red() * part), alpha
 
 
-def peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
+def measure_peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
     """Return the height of a peak's dot: on the pitch curve, or below it if there is no pitch."""
     if heard is not None and heard.pitch is not None:
         values, at = heard.pitch.lows[0], round(seconds * heard.pitch.rate)
         near = values[max(0, at - 5) : at + 6]
         near = near[np.isfinite(near)]
         if len(near):
-            return float(pitch_y(float(near.max()), lane.wave))
+            return float(measure_pitch_y(float(near.max()), lane.wave))
     return lane.wave.bottom() - 8
 
 

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.conversation.conversation_settings import ORDINALS, SettingDialog, Tall, make_caption
-from app.project.speech_files import SOUNDS, channels_of
+from app.project.speech_files import SOUNDS, count_channels
 from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -165,7 +165,7 @@ class SidesDialog(SettingDialog):
     def _show_channels(self, side: int, chosen: int | None) -> None:
         """Offer the channels that the sound has, as far as that is known."""
         name = self.sounds[side].text().strip()
-        count = channels_of((self.document.folder or Path()) / name) if name else 0
+        count = count_channels((self.document.folder or Path()) / name) if name else 0
         box = self.channels[side]
         box.clear()
         box.addItem(tr("All channels, mixed"), None)

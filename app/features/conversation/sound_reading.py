@@ -13,12 +13,12 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Qt, Signal
 
-from app.features.conversation.segment_hits import pitch_maxima
+from app.features.conversation.segment_hits import find_pitch_maxima
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop
-from app.widgets.waveforms import Envelope, bin_values
+from app.widgets.waveforms import Envelope, measure_bins
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Conversation
 
@@ -211,7 +211,7 @@ class _Work:
             if begin >= len(samples) or job.cancelled:
                 break
             piece = samples[begin : round((first + step) * each)]
-            self.hand_over(partial(wave.put, first, *bin_values(piece, each)))
+            self.hand_over(partial(wave.put, first, *measure_bins(piece, each)))
             loudest = max(loudest, float(abs(piece).max()))
             self.set(heard, loudest=loudest, part=0.5 * begin / len(samples))
             job.tell(*progress, tr("waveform"))
@@ -224,7 +224,7 @@ class _Work:
         found = pitch(samples, rate)
         curve = Envelope(len(samples) / rate, HOPS)
         curve.fill(0, found.hertz)
-        self.set(heard, maxima=pitch_maxima(found.times, found.hertz), pitch=curve, part=1.0, told="")
+        self.set(heard, maxima=find_pitch_maxima(found.times, found.hertz), pitch=curve, part=1.0, told="")
 
 
 def _set(heard: SideSound, values: dict[str, Any]) -> None:

@@ -38,7 +38,7 @@ NAMES = (
 )
 
 
-def language_name(code: str) -> str:
+def name_language(code: str) -> str:
     """Return the name of the language with a code, or "" for no code."""
     pack = list_language_packs().get(code)
     return (
@@ -71,7 +71,7 @@ class LanguageBox(ComboBox):
         """Show a language without emitting a signal. One that is not in the box is added to it."""
         with QSignalBlocker(self):
             if code and self.findData(code) < 0:
-                self.addItem(language_name(code).capitalize(), code)
+                self.addItem(name_language(code).capitalize(), code)
             self.setCurrentIndex(max(0, self.findData(code)))
 
 

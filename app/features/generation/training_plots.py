@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 from app.look.theme import theme
 from app.stage.session import StageSession
 from app.translation import lazy_texts, tr
-from app.widgets.still_plot import empty_plot, still_plot
+from app.widgets.still_plot import clear_plot, still_plot
 
 # Statistics of which 1 is right, as people read them; others are reported in words.
 RATIOS = lazy_texts(
@@ -78,7 +78,7 @@ class TrainingPlots(QWidget):
             (self.left, next(iter(self.goals), tr("training goal")), self.goals),
             (self.right, tr("samples compared with takes: 1 is a perfect match"), self.ratios),
         ):
-            empty_plot(plot, look)
+            clear_plot(plot, look)
             plot.setLabel("bottom", tr("minutes"), color=look.dim)
             plot.setTitle(words, color=look.dim, size="9pt")
             if lines is self.ratios:

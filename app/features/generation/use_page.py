@@ -40,7 +40,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
 from metagraph.generation.chunks import GUIDANCE
-from metagraph.generation.offered import list_models, model_title
+from metagraph.generation.offered import list_models, name_model
 from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation.model import side_name
 
@@ -197,7 +197,7 @@ class UsePage(GenerationPage):
         self.model.blockSignals(True)
         self.model.clear()
         for name, path in found.items():
-            self.model.addItem(tr_phrase(model_title(name)), path)
+            self.model.addItem(tr_phrase(name_model(name)), path)
         self.model.choose(now)
         self.model.blockSignals(False)
         self._about()

@@ -152,7 +152,7 @@ def describe_hole(project: Project, layer: Layer, stance: str) -> str:
     return ""
 
 
-def least_canvas_height(width: float) -> float:
+def measure_least_canvas_height(width: float) -> float:
     """Return the least height at which a canvas of this width shows a row in each node. A narrow canvas needs
     more.
     """
@@ -172,7 +172,7 @@ def lay_out_canvas(
     """
     scroll, widths = scroll or {}, widths or {}
     width = max(size.width(), LEAST_WIDTH)
-    height = max(size.height(), least_canvas_height(width))
+    height = max(size.height(), measure_least_canvas_height(width))
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
@@ -287,7 +287,7 @@ def _node(
     return NodeLayout(kind, rect, header, body, tuple(rows), len(actions), first, most, other, columns)
 
 
-def likelihood_at(row: GraphRow, x: float) -> float:
+def read_likelihood_at(row: GraphRow, x: float) -> float:
     """Return the likelihood at a place on a bar: 0.1 at the left, 1 in the middle, 3 at the right, in steps
     of 0.1.
     """
@@ -296,8 +296,8 @@ def likelihood_at(row: GraphRow, x: float) -> float:
     return round(value, 1)
 
 
-def bar_part(likelihood: float) -> float:
-    """Return the part of a bar that a likelihood fills, 0..1; the inverse of `likelihood_at` within its
+def measure_bar_part(likelihood: float) -> float:
+    """Return the part of a bar that a likelihood fills, 0..1; the inverse of `read_likelihood_at` within its
     range.
     """
     part = (likelihood - 0.1) / 1.8 if likelihood <= 1 else 0.5 + (likelihood - 1.0) / 4.0

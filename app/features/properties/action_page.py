@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.properties.page_form import Edit, form_in
+from app.features.properties.page_form import Edit, add_form
 from app.features.properties.timing_plot import TimingPlot
 from app.features.properties.variation_rows import ActionRows
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
@@ -60,7 +60,7 @@ class ActionPage(Halves):
         )
         self.plot.finished.connect(document.finish_merging)
         upper.addWidget(self.plot)
-        self.form = form_in(box)
+        self.form = add_form(box)
         self._add_timing(page)
         self._add_choices(page)
         self.trouble = QLabel(page, wordWrap=True)

@@ -8,7 +8,7 @@ from html import escape
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.features.properties.page_form import page_box
+from app.features.properties.page_form import make_page_box
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import StageSession
@@ -20,7 +20,7 @@ class ClipPage(QWidget):
     def __init__(self, document: Document, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
-        box = page_box(self)
+        box = make_page_box(self)
         self.title = QLabel(self, wordWrap=True)
         self.title.setProperty("title", True)
         self.words = QLabel(self, wordWrap=True)

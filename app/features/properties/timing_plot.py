@@ -143,7 +143,7 @@ class TimingPlot(QWidget):
         )
         if action is None or project.action(action.id) is None:
             return
-        from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, describe_times, far_ends
+        from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, describe_times, find_far_ends
 
         seen = SeenJumps(action, curves) if curves is not None else None
         self.strip.show_seen(project, action, seen)
@@ -154,7 +154,7 @@ class TimingPlot(QWidget):
         start, end = project.span(action)
         first, last = seen.cost("start", start), seen.cost("end", end)
         costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
-        far = far_ends(project, action)
+        far = find_far_ends(project, action)
         self.verdict.setText(tr_phrase(describe_ends(costs, far)))
         fine = max(costs.values()) <= 1 and not far
         set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")

@@ -22,7 +22,7 @@ from app.look.joint_roles import describe_joint_role
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.joint_mask import JOINT, joint_tree
+from app.widgets.joint_mask import JOINT, fill_joint_tree
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph import anatomy, edits
@@ -51,7 +51,7 @@ class SkeletonDialog(QDialog):
         self.tree.header().setStretchLastSection(False)
         self.tree.setSelectionMode(QTreeWidget.SelectionMode.ExtendedSelection)
         layout.addWidget(self.tree, 1)
-        self.items = joint_tree(self.tree, document.project)
+        self.items = fill_joint_tree(self.tree, document.project)
         self.roles: dict[str, QComboBox] = {}
         self.parts: dict[str, QComboBox] = {}
         for name, item in self.items.items():

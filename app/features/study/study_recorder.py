@@ -15,7 +15,7 @@ from app.features.study.screen_areas import screen_areas
 from app.features.study.study_changes import describe_change
 from app.project.importing import Importing
 from app.stage.problem_watch import ProblemWatch
-from app.translation import in_english
+from app.translation import get_english
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported
 from metagraph.formats.project.journal import find_changes
@@ -224,10 +224,10 @@ class Recorder(QObject):
     # --- the rest
 
     def _refused(self, words: str) -> None:
-        self.tell("error", what="refused", words=in_english(words))
+        self.tell("error", what="refused", words=get_english(words))
 
     def _document_failed(self, words: str) -> None:
-        self.tell("error", what="failed", words=in_english(words))
+        self.tell("error", what="failed", words=get_english(words))
 
     def _saved(self) -> None:
         path = self.shell.document.path
@@ -252,7 +252,7 @@ class Recorder(QObject):
         if self._edit is None:
             self._tell_operators()
         for words in self._grave() - self._warned:
-            self.tell("error", what="warning", words=in_english(words))
+            self.tell("error", what="warning", words=get_english(words))
         self._warned = self._grave()
 
     def _grave(self) -> frozenset[str]:

@@ -23,7 +23,7 @@ from app.project.jobs import Jobs
 from app.translation import tr, tr_error, tr_noop, tr_phrase
 from app.widgets.making import make_widget
 from metagraph.formats.project.pieces import ProjectPiece
-from metagraph.graph.editing.taking import TakenItem, Taking, words_of_taking
+from metagraph.graph.editing.taking import TakenItem, Taking, describe_taking
 from metagraph.graph.model import Project
 
 GROUPS = (
@@ -100,7 +100,7 @@ class TakingDialog(QDialog):
             self.summary.setText(tr_error(error))
 
     def _show(self, taking: Taking) -> None:
-        self.summary.setText(tr_phrase(words_of_taking(taking)))
+        self.summary.setText(tr_phrase(describe_taking(taking)))
         self.rest.setText(
             "\n".join(
                 [

@@ -16,7 +16,7 @@ from app.widgets.waveforms import Envelope
 from metagraph.graph.model import Action, Project
 from metagraph.playback.life.track import Speech
 from metagraph.playback.life.voice import voice_for_speech
-from metagraph.playback.planning.asked_lines import asked_line
+from metagraph.playback.planning.asked_lines import find_asked_line
 
 Array = NDArray[Any]
 
@@ -59,7 +59,7 @@ def lay_line(project: Project, ident: str, action: Action, stroke: float) -> Sai
 
 def find_requested_line(project: Project, action: Action) -> Said | None:
     """Return the line that an action is asked for with, performed or not; None if there is none."""
-    found = asked_line(project, action) if action.clip in project.clips else None
+    found = find_asked_line(project, action) if action.clip in project.clips else None
     if found is None:
         return None
     return Said(_speech(project, found.line), round(project.span(action)[0] + found.at, 3))

@@ -37,7 +37,7 @@ from metagraph.graph.clip_source import course_of
 from metagraph.graph.editing.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.graph.model import Project
 from metagraph.graph.repeating import seconds_played
-from metagraph.motion.dope import DopeSheet, dope_sheet
+from metagraph.motion.dope import DopeSheet, make_dope_sheet
 from metagraph.playback.timing.handles import move_handle
 
 Array = NDArray[Any]
@@ -216,7 +216,7 @@ class Subject(QObject):
             groups = dict(zip(motion.skeleton.names, anatomy.project_parts(project), strict=True))
         once = self._sheets.setdefault(ident, Once())
         key = (tuple(groups.items()) if groups is not None else (),)
-        return once.of(key, (motion,), lambda: dope_sheet(motion, groups))
+        return once.of(key, (motion,), lambda: make_dope_sheet(motion, groups))
 
     def clip_axis(self, axis: Axis, facts: Facts) -> Axis:
         """Return the axis as it is for one clip of several."""

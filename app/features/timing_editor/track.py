@@ -19,11 +19,15 @@ from metagraph.graph.checks import end_gaps
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
-from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, blocks_of, handles_of
-from metagraph.playback.timing.speed_curves import SpeedCurve, curves_of, speed_of
+from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, find_blocks, list_handles
+from metagraph.playback.timing.speed_curves import SpeedCurve, find_curves, speed_of
 from metagraph.suggest.jumps.found import Curves
-from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, far_ends
-from metagraph.suggest.stances.stance_distance import StanceDistance, distance_of, measure_stance_distance
+from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, find_far_ends
+from metagraph.suggest.stances.stance_distance import (
+    StanceDistance,
+    measure_stance_distance,
+    measure_stance_distances,
+)
 
 Array = NDArray[Any]
 
@@ -130,7 +134,7 @@ class TimingTrack:
         curves, speeds = self._curves.of(
             (action.clip, action.layer, action.limb, joint, tuple(project.roles.items())),
             (entry.motion, project.skeleton),
-            lambda: (curves_of(project, action, joint), speed_of(project, action)[0]),
+            lambda: (find_curves(project, action, joint), speed_of(project, action)[0]),
         )
         graph = project.graphs[action.layer]
         loops = tuple(a for s in (action.stance, action.end_stance) if s for a in graph.of(s, "stance")[:1])
@@ -148,12 +152,12 @@ class TimingTrack:
             plain_action_name(action.name, stance.name if stance is not None else "", limb),
             entry,
             project.span(action),
-            handles_of(project, action),
-            blocks_of(project, action),
+            list_handles(project, action),
+            find_blocks(project, action),
             speeds,
             curves,
             seen,
-            distance_of(project, action, seen, both),
+            measure_stance_distances(project, action, seen, both),
             words,
             fine,
             list_stays(entry),
@@ -198,5 +202,5 @@ def _verdict(project: Project, action: Action, seen: SeenJumps | None) -> tuple[
     start, end = project.span(action)
     first, last = seen.cost("start", start), seen.cost("end", end)
     costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
-    far = far_ends(project, action)
+    far = find_far_ends(project, action)
     return tr_phrase(describe_ends(costs, far)), max(costs.values()) <= 1 and not far

@@ -10,7 +10,7 @@ from mypy import types as t
 from mypy.types import get_proper_type
 
 from metagraph.engines.translation import tree as x
-from metagraph.engines.translation.source import full_name
+from metagraph.engines.translation.source import join_full_name
 from metagraph.engines.translation.typed import BITS, Typed
 
 PLAIN = {
@@ -46,7 +46,7 @@ class Calls(Typed):
         if formatted is not None:
             return formatted
         callee = node.callee
-        full = full_name(callee)
+        full = join_full_name(callee)
         kind = self.of(node)
         if full in PLAIN:
             plain = [
@@ -131,7 +131,7 @@ class Calls(Typed):
 
     def _most(self, node: m.CallExpr, kind: x.Type) -> x.Expression:
         """max and min: of two or more values, or of a list, with what an empty one gives."""
-        word = full_name(node.callee).rpartition(".")[2]
+        word = join_full_name(node.callee).rpartition(".")[2]
         given = self.expressions(node.args)
         if len(node.args) > 1:
             if set(node.arg_names) != {None}:
@@ -258,13 +258,13 @@ class Calls(Typed):
         return value
 
     def default(self, node: m.Expression, kind: x.Type) -> x.Expression:
-        if isinstance(node, m.CallExpr) and full_name(node.callee) == "dataclasses.field":
+        if isinstance(node, m.CallExpr) and join_full_name(node.callee) == "dataclasses.field":
             if "default" in node.arg_names:
                 return self.default(node.args[node.arg_names.index("default")], kind)
             (factory,) = node.args
             none = x.Gathered(kind, ())
             empty = {"builtins.dict": x.Mapped(kind, ()), "builtins.list": none, "builtins.set": none}
-            full = full_name(factory)
+            full = join_full_name(factory)
             if full not in empty:
                 raise self.refuse(
                     node, "a default made by a function", "use an empty list, map or set, or a value"

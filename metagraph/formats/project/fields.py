@@ -129,13 +129,13 @@ def refuse_unknown_fields(data: Data, allowed: Collection[str], where: str) -> N
             raise DataError(f"{where}.{key}" if where else str(key), f"is not a field known here{hint}")
 
 
-def too_large(data: Any, where: str) -> str | None:
+def is_too_large(data: Any, where: str) -> str | None:
     """Return the place of a number in plain data that no project may hold, None if there is none."""
     if isinstance(data, dict | list):
         inside = data.items() if isinstance(data, dict) else enumerate(data)
         for key, value in inside:
             place = f"{where}[{key}]" if isinstance(data, list) else f"{where}.{key}"
-            if found := too_large(value, place):
+            if found := is_too_large(value, place):
                 return found
     elif isinstance(data, int | float) and not abs(data) <= LARGEST:
         return where
@@ -238,13 +238,13 @@ def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) 
     return [float(x) for x in values]
 
 
-def joint_weights_data(weights: Iterable[tuple[str, float]]) -> Data:
+def encode_joint_weights(weights: Iterable[tuple[str, float]]) -> Data:
     """Return how far joints move, by name; nothing if all move entirely."""
     found = {name: round_number(weight) for name, weight in weights}
     return {"joint_weights": found} if found else {}
 
 
-def joint_weights_from(data: Data, where: str) -> tuple[tuple[str, float], ...]:
+def decode_joint_weights(data: Data, where: str) -> tuple[tuple[str, float], ...]:
     """Return how far joints move, (name, above 0 and below 1). Raises DataError."""
     if "joint_weights" not in data:
         return ()

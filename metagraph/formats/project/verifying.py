@@ -26,7 +26,7 @@ from metagraph.formats.project.verified import (
 )
 from metagraph.formats.project.verifying_clips import verify_clips, verify_named_files
 from metagraph.formats.project.versions import earlier_versions
-from metagraph.formats.recovery import DAMAGED, Left, journal_owner, read_journal, read_journal_head
+from metagraph.formats.recovery import DAMAGED, Left, read_journal, read_journal_head, read_journal_owner
 from metagraph.formats.store import encode_project, parse_project, read_project
 from metagraph.graph.check import check_project
 from metagraph.graph.model import Project
@@ -104,7 +104,7 @@ def _journals(path: Path) -> VerifiedPart:
     words: list[str] = []
     faults: list[VerificationFault] = []
     for journal in find_journals_beside(path):
-        owner = journal_owner(read_journal_head(journal))
+        owner = read_journal_owner(read_journal_head(journal))
         if journal.name.endswith(DAMAGED):
             remedy = "See 'File > Recover…' for what it holds; discard it there when you no longer need it."
             faults.append(VerificationFault(journal.name, "is a damaged journal that was kept.", remedy))

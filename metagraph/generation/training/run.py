@@ -11,7 +11,7 @@ import torch
 
 from metagraph.errors import FileError
 from metagraph.generation.networks import parameters
-from metagraph.generation.standing import CheckpointNote, training_share
+from metagraph.generation.standing import CheckpointNote, measure_training_share
 from metagraph.generation.train_plan import STOP, TrainingPlan, read_planned_takes, read_training_plan
 from metagraph.generation.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from metagraph.generation.training.export import export_model, model_so_far
@@ -57,7 +57,7 @@ class Run:
     @property
     def share(self) -> float:
         """How much of the training is over, 0..1."""
-        return training_share(self.plan, self.learner.step, self.seconds, self.minutes)
+        return measure_training_share(self.plan, self.learner.step, self.seconds, self.minutes)
 
     def go(self) -> Path | None:
         """Learn until it is over or stopped; return the model's file, None if it was deserted: there is a

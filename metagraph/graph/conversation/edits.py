@@ -122,7 +122,7 @@ def _labelled(segment: Segment, before: Lists, after: Lists) -> Segment:
     """Return a segment as other lists label it, if it is what the lists before said."""
     if not split_tokens(segment.text):
         return segment
-    was, now = kind_of_words(segment.text, *before), kind_of_words(segment.text, *after)
+    was, now = classify_words(segment.text, *before), classify_words(segment.text, *after)
     return msgspec.structs.replace(segment, kind=now) if segment.kind == was != now else segment
 
 
@@ -131,7 +131,7 @@ def set_language(project: Project, language: str) -> Project:
     return replace(project, language=_clean(language) or AUTO)
 
 
-def kind_of_words(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
+def classify_words(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
     """Return what words are by two lists: a hesitation or a response if nothing else is said, else a clause.
     Said of both, it is a response: the partner is answered.
     """
@@ -256,7 +256,7 @@ def add_segment(
     _spoken(kind)
     of = _conversation(project, ident)
     segments, start, end = of.sides[side].segments, *sorted((round(start, _DIGITS), round(end, _DIGITS)))
-    low, high = gap_at(of, side, (start + end) / 2) or (0.0, -1.0)
+    low, high = find_gap_at(of, side, (start + end) / 2) or (0.0, -1.0)
     start, end = max(low, start), min(high, end)
     if end - start < SHORTEST:
         raise EditError(
@@ -281,7 +281,7 @@ def remove_segments(project: Project, ident: str, places: Collection[Place]) -> 
     return project
 
 
-def gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float, float] | None:
+def find_gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float, float] | None:
     """Return from when to when nothing is segmented round a time; None if a segment is, and out of the
     conversation.
     """

@@ -322,7 +322,7 @@ def _content(entry: ClipEntry) -> tuple[object, ...]:
     return (entry.digest or entry.path, entry.take, entry.as_is, entry.retime, entry.in_place)
 
 
-def words_of_taking(taking: Taking) -> str:
+def describe_taking(taking: Taking) -> str:
     """Say in a line what was taken."""
     counts = [
         plural_phrase("{count:,} new stance", "{count:,} new stances", taking.count("stance")),

@@ -79,7 +79,7 @@ def put_on_body(project: Project, clip: Clip) -> Clip:
     )
 
 
-def face_joints(project: Project) -> tuple[str, ...]:
+def find_face_joints(project: Project) -> tuple[str, ...]:
     """Return the names of the joints that a face's recording moves: the head, and all of the face."""
     if project.skeleton is None:
         return ()

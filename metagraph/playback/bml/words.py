@@ -64,7 +64,7 @@ class Index:
 _latest: list[tuple[ref[Project], Index]] = []
 
 
-def index_of(project: Project) -> Index:
+def get_word_index(project: Project) -> Index:
     """Return a project's index."""
     if not _latest or _latest[0][0]() is not project:
         _latest[:] = [(ref(project), Index(project))]
@@ -78,7 +78,7 @@ class BmlWords:
 
     def __init__(self, project: Project | None) -> None:
         self.project = project
-        self.index = index_of(project) if project is not None else None
+        self.index = get_word_index(project) if project is not None else None
         self.lengths: dict[Any, dict[str, float]] = {}
 
     def gesture(self, words: Sequence[str], layer: str, fields: Mapping[str, Any]) -> a.Gesture | a.Play:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Kind, Markov
-from metagraph.playback.learning.learn import Act, State, acts_of_metas, model_states, rests, state_of
+from metagraph.playback.learning.learn import Act, State, model_states, read_acts_of_metas, rests, state_of
 from metagraph.playback.planning.markov import write
 
 Array = NDArray[Any]
@@ -135,7 +135,7 @@ def generate(
     model: Markov, seconds: float, seed: int = 1, kinds: AbstractSet[Kind] | None = None
 ) -> tuple[Act, ...]:
     """Return what a model does in some seconds when nobody asks for anything."""
-    return acts_of_metas(write(model, seed, seconds, kinds)[0])
+    return read_acts_of_metas(write(model, seed, seconds, kinds)[0])
 
 
 def quantiles(lengths: Array) -> Array:

@@ -67,7 +67,7 @@ def voice_from_text(text: str, duration: float | None = None) -> Voice:
 
 
 @lru_cache(maxsize=256)
-def voice_from_timing(timing: LineTiming, duration: float) -> Voice:
+def make_voice_from_timing(timing: LineTiming, duration: float) -> Voice:
     """Return the voice of a line whose words and shapes are given with their times."""
     said = timed_sounds(ALPHABET, timing)
     return make_voice(said.pieces, duration, np.array(said.peaks), np.array(said.strengths))
@@ -78,7 +78,7 @@ def voice_for_speech(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     the sound, else one guessed from its text.
     """
     if speech.timing is not None:
-        return voice_from_timing(
+        return make_voice_from_timing(
             speech.timing, speech.end - speech.start if speech.length is None else speech.length
         )
     known = voices.get(speech.line) if speech.line is not None else None

@@ -22,7 +22,7 @@ class AskedLine:
     at: float
 
 
-def asked_line(project: Project, action: Action) -> AskedLine | None:
+def find_asked_line(project: Project, action: Action) -> AskedLine | None:
     """Return the line that an action is asked for with: beside it in a kept performance, else by the line's
     own asks; where several are, the one that names the action itself, then the first. None if none is.
     """

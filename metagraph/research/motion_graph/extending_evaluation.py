@@ -244,7 +244,7 @@ def hold_out_takes(
     return out
 
 
-def rows_as_text(rows: Sequence[LiveRow]) -> str:
+def format_rows_as_text(rows: Sequence[LiveRow]) -> str:
     """Return rows as a table in text."""
     names = ("strokes", "met", "chance", "answered", "later by", "kind", "jumps/s", "again", "rest", "takes")
     out = [f"{'speech is':<18}" + "".join(f"{name:>9}" for name in (*names, "search", "most"))]

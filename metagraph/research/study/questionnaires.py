@@ -142,7 +142,7 @@ def sus_score(answers: Mapping[str, Any]) -> float:
     return total * 2.5
 
 
-def tlx_raw(answers: Mapping[str, Any]) -> float:
+def compute_tlx_raw(answers: Mapping[str, Any]) -> float:
     """Return 0..100: the mean of the six scales ("raw TLX"). Raises ValueError as `sus_score` does."""
     return sum(_value(answers, item) for item in TLX.items) / len(TLX.items)
 

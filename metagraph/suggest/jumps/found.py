@@ -134,7 +134,7 @@ class Measured:
         moved = anatomy.action_mask(project, action)
         key = id(motion), stance, None if moved is None else moved.tobytes()
         if key not in self._costs:
-            self._costs[key] = c.transition_costs(
+            self._costs[key] = c.measure_transition_costs(
                 c.mask_statistics(self.stats, motion, moved, self.roles), motion, frames, self.roles
             )
         return self._costs[key]
@@ -232,7 +232,7 @@ def _loop(project: Project, measured: Measured, action: Action) -> list[Jump]:
     overlap = min(max(0.0, action.timing.blend_in), (end - start) / 2)
     if motion is None or motion.skeleton != project.skeleton or motion.frames < 2 or end <= start:
         return []
-    raw = c.seam_cost(measured.stats, motion, start, end, overlap, measured.roles)
+    raw = c.measure_seam_cost(measured.stats, motion, start, end, overlap, measured.roles)
     now = float(c.visible_difference(raw, overlap))
     if now <= 1:
         return []
@@ -297,8 +297,8 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     if action.kind == "stance":
         start = project.span(action)[0]
         first = c.stance_frames(measured.stats, [(motion, start, start + 1e-6)], roles)
-        cost = c.transition_costs(measured.stats, motion, first, roles)
-        return Curves(_times(motion, cost), cost, cost, c.loop_times(measured.stats, motion, roles))
+        cost = c.measure_transition_costs(measured.stats, motion, first, roles)
+        return Curves(_times(motion, cost), cost, cost, c.find_loop_times(measured.stats, motion, roles))
     into, left = (
         measured.costs(project, action, action.stance),
         measured.costs(project, action, find_end_stance(action)),
@@ -308,7 +308,7 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     stats = c.mask_statistics(measured.stats, motion, anatomy.action_mask(project, action), roles)
     stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
     times = _times(motion, into)
-    gaps = end_gaps.distances_to_stance(project, action, times)
+    gaps = end_gaps.measure_distances_to_stance(project, action, times)
     if cycle_of(action.kind, action.timing, *project.span(action)) > 0:
         proposed = _cycle_times(project, action)
     else:

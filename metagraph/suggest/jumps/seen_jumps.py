@@ -81,7 +81,7 @@ class SeenJumps:
         return []
 
 
-def words_at(project: Project, action: Action, seen: SeenJumps, seconds: float) -> str:
+def find_words_at(project: Project, action: Action, seen: SeenJumps, seconds: float) -> str:
     """Say what a moment would be like to begin or end at."""
     entering = seen.at(seconds) < seen.pivot
     cost = seen.cost("start" if entering else "end", seconds)
@@ -138,7 +138,7 @@ def _cost_words(what: str, cost: float, again: bool) -> str:
     return phrase("ends with a jump, {cost:.1f} times the visible threshold", cost=cost)
 
 
-def far_ends(project: Project, action: Action) -> dict[str, str]:
+def find_far_ends(project: Project, action: Action) -> dict[str, str]:
     """Return which ends of an action are too far from their stance, by how `verdict` calls them, in words."""
     graph = project.graphs[action.layer]
     return {

@@ -50,7 +50,7 @@ class StanceDistance:
         return phrase("{far:.0f} cm from '{name}', no visible jump", far=far, name=name)
 
 
-def distance_of(
+def measure_stance_distances(
     project: Project, action: Action, seen: SeenJumps | None, both: tuple[Array, Array, Array] | None = None
 ) -> StanceDistance:
     """Return an action's distances. seen: what is known of its jumps, which decides what shows. both: what
@@ -79,7 +79,7 @@ def measure_stance_distance(project: Project, action: Action) -> tuple[Array, Ar
     if motion is None:
         return np.zeros(0), np.zeros(0), np.zeros(0)
     times = np.linspace(0, motion.duration, max(2, round(motion.duration * RATE) + 1))
-    return (times, *end_gaps.distances_to_stance(project, action, times))
+    return (times, *end_gaps.measure_distances_to_stance(project, action, times))
 
 
 def _pivot(action: Action, times: Array, into: Array, left: Array, seen: SeenJumps | None) -> int:

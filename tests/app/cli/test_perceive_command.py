@@ -15,7 +15,7 @@ import pytest
 from app.cli.parser import main
 from metagraph.research.study.perceive.folder import read_folder
 from preview.video import write_video
-from preview.video_reading import read_pictures, read_video_sound, video_seconds
+from preview.video_reading import measure_video_seconds, read_pictures, read_video_sound
 from tests.processes import started
 from tests.research.study.perceive.perceive_makers import sheet, study, text
 
@@ -142,7 +142,7 @@ def test_videos_of_others_are_shown_with_one_size_length_and_loudness(
     assert not made.differences()
     loud = []
     for name, (condition, _) in made.key.stimuli.items():
-        assert video_seconds(made.video(name)) == pytest.approx(1.0, abs=0.08)
+        assert measure_video_seconds(made.video(name)) == pytest.approx(1.0, abs=0.08)
         sound = read_video_sound(made.video(name), 44100)
         assert (sound is None) == (condition == "quiet")
         loud += [] if sound is None else [float(np.abs(sound[4000:40000]).max())]

@@ -22,7 +22,7 @@ from metagraph.research.study.logs.withdrawal import read_deleted
 from metagraph.research.study.machines.klm import USUAL, OperatorTimes, predict_seconds
 from metagraph.research.study.machines.normal_machine import NormalMachine, normal
 from metagraph.research.study.plan.freeze import describe_study_differences, find_changed_names, list_people
-from metagraph.research.study.questionnaires import BUILT_IN, sus_score, tlx_raw, tlx_weighted
+from metagraph.research.study.questionnaires import BUILT_IN, compute_tlx_raw, sus_score, tlx_weighted
 from metagraph.research.study.scores.jumps import with_jumps
 from metagraph.research.study.scores.machines import TOLERANCE, Score, score
 from metagraph.research.study.scores.tasks import ItemAnswer
@@ -32,7 +32,7 @@ from metagraph.research.study.study_plan import Study, read_study
 Progress = Callable[[int, int], None]
 SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
     "sus": ("SUS", sus_score),
-    "tlx": ("NASA-TLX, raw", tlx_raw),
+    "tlx": ("NASA-TLX, raw", compute_tlx_raw),
     "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
 }
 AFTER = 1000  # what was done in an engine comes after a sitting's phases

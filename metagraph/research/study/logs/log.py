@@ -26,7 +26,7 @@ from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.research.study.logs.clocks import clock_problems
+from metagraph.research.study.logs.clocks import find_clock_problems
 from metagraph.research.study.scores.tasks import Event, ItemAnswer, TaskRun, last_answers, moment, task_runs
 
 __all__ = [
@@ -166,7 +166,7 @@ def read_log(path: str | Path) -> StudyLog:
             problems.append(f"line {number}: time goes backwards")
         expected = event["n"] + 1
         events.append(event)
-    problems += clock_problems(events)
+    problems += find_clock_problems(events)
     return StudyLog(path, tuple(events), bool(tail), tuple(problems), expected)
 
 

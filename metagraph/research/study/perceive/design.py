@@ -73,7 +73,7 @@ class Design:
     public: dict[str, Any]
 
 
-def stimulus_name(draw: Draw, condition: str, item: str) -> str:
+def name_stimulus(draw: Draw, condition: str, item: str) -> str:
     """Return what a video is called: nobody without the secret can tell what of."""
     return f"{draw('video', condition, item):064x}"[:NAME_LENGTH]
 
@@ -83,7 +83,7 @@ def design(plan: PerceivePlan, secret: str) -> Design:
     draw = drawer(secret)
     used = list(dict.fromkeys(c for pair in plan.pairs for c in pair)) if plan.rating is None else []
     used = used or list(plan.conditions)
-    stimuli = {stimulus_name(draw, c, i.id): (c, i.id) for c in used for i in plan.items}
+    stimuli = {name_stimulus(draw, c, i.id): (c, i.id) for c in used for i in plan.items}
     taken = draw_order_numbers(secret, count_sequences(plan), 1)  # all are drawn before anybody comes
     sessions = {who: _session(plan, draw, who, next(taken)) for who in plan.ids}
     public = {
@@ -135,8 +135,8 @@ def _session(plan: PerceivePlan, draw: Draw, who: str, number: int) -> RatingSes
     trials: list[Trial] = []
 
     def add(kind: Kind, item: str, a: str, b: str = "", told: str | int | None = None) -> None:
-        left = stimulus_name(draw, a, item)
-        right = stimulus_name(draw, b, item) if b else ""
+        left = name_stimulus(draw, a, item)
+        right = name_stimulus(draw, b, item) if b else ""
         name = f"{draw('trial', who, len(trials)):064x}"[:NAME_LENGTH]
         trials.append(Trial(name, kind, left, item, a, right, b, told))
 

@@ -88,7 +88,7 @@ def simulate_power(
         else:
             p, up = found.p["preference"], found.effects["preference"].value > 0
         hits += p < alpha and (up == (expected.share > 0.5) or expected.share == 0.5)
-    return binomial.exact_share(hits, studies)
+    return binomial.estimate_exact_share(hits, studies)
 
 
 def estimate_people(expected: Expected, items: int, each: int, chance: float, alpha: float) -> int | None:

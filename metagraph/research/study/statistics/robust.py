@@ -23,7 +23,7 @@ FAR = 3.5  # such deviations beyond which a value is odd (Iglewicz and Hoaglin 1
 WIDEST = 1000.0  # times the reach of the values beyond which an end of an interval is not known
 
 
-def hodges_lehmann(values: Sequence[float], level: float = LEVEL) -> Estimate:
+def compute_hodges_lehmann(values: Sequence[float], level: float = LEVEL) -> Estimate:
     """Return the median of all means of two values, each with itself, too, and the interval of Wilcoxon's
     signed ranks: exact up to EXACT values. No interval where so few cannot have one of that level. Raises
     ValueError without values.
@@ -62,7 +62,7 @@ def leave_one_out(values: Sequence[float], level: float = LEVEL) -> list[Estimat
     return [mean([v for k, v in enumerate(values) if k != n], level) for n in range(len(values))]
 
 
-def odd_ones(values: Sequence[float]) -> list[int]:
+def find_odd_ones(values: Sequence[float]) -> list[int]:
     """Return the places of values more than FAR robust deviations from the median; none of fewer than 5, or
     where more than half are alike.
     """

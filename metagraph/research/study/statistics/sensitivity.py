@@ -18,7 +18,12 @@ from metagraph.research.study.scores.tasks import AWAY
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.comparison import ConditionComparison, compare_conditions
 from metagraph.research.study.statistics.mixed import Mixed, fit_mixed
-from metagraph.research.study.statistics.robust import censored_mean, hodges_lehmann, leave_one_out, odd_ones
+from metagraph.research.study.statistics.robust import (
+    censored_mean,
+    compute_hodges_lehmann,
+    find_odd_ones,
+    leave_one_out,
+)
 from metagraph.research.study.statistics.small_samples import Estimate
 
 SLACK = 30.0  # seconds by which a task may be longer than its limit: saving, a question that was open
@@ -111,13 +116,13 @@ def _odd(rows: Sequence[AnalysisRow], found: ConditionComparison) -> list[str]:
             out += [
                 f"{_who(mine[n])} took {mine[n].run.seconds / 60:.1f} minutes, far from what the others took "
                 f"(median {float(np.median([r.run.seconds for r in mine])) / 60:.1f})."
-                for n in odd_ones(logs)
+                for n in find_odd_ones(logs)
             ]
     people = found.people
     out += [
         f"{people[n].participant}'s ratio, {people[n].ratio:.2f}, is far from the others' "
         f"(median {float(np.median([p.ratio for p in people])):.2f})."
-        for n in odd_ones(found.logs)
+        for n in find_odd_ones(found.logs)
     ]
     return out
 
@@ -131,7 +136,7 @@ def _robust(found: ConditionComparison) -> list[Otherwise]:
     out = []
     if len(logs) >= 2:
         how = "The middle of all means of two people's ratios (Hodges and Lehmann), by signed ranks."
-        out.append(Otherwise("by ranks", hodges_lehmann(logs).exp(), how))
+        out.append(Otherwise("by ranks", compute_hodges_lehmann(logs).exp(), how))
     without = leave_one_out(logs)
     ends = sorted(range(len(without)), key=lambda n: without[n].value)
     for n in (ends[0], ends[-1]) if ends else ():
@@ -139,7 +144,7 @@ def _robust(found: ConditionComparison) -> list[Otherwise]:
         least = n == ends[0]
         how = f"Of all people the one without whom the ratio is {'smallest' if least else 'largest'}."
         out.append(Otherwise(f"without {name}", without[n].exp(), how))
-    odd = set(odd_ones(logs))
+    odd = set(find_odd_ones(logs))
     rest = [v for n, v in enumerate(logs) if n not in odd]
     if odd and len(rest) > 1:
         how = "Without everybody whose ratio is far from the others'."
