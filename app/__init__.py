@@ -9,7 +9,7 @@ from types import ModuleType
 
 
 class _BeforeQt:
-    """Has `app.guard` stand before the first class of ours is made of one of Qt's. Costs nothing where Qt is
+    """Has `app.guard` stand before the first class of ours is made of one of Qt's. Costs nothing if Qt is
     never imported.
     """
 

@@ -91,7 +91,7 @@ def _hand_out(told: UncaughtError | Exception) -> None:
 
 
 def forget_faults() -> None:
-    """Begin anew, as if nothing had happened."""
+    """Begin again, as if nothing had happened."""
     with _lock:
         _known.clear()
         _actions.clear()
@@ -231,7 +231,7 @@ def _unraisable(raised: sys.UnraisableHookArgs) -> None:
 
 
 def read_child_faults(folder: Path) -> None:
-    """Tell what processes of ours have written down."""
+    """Report what processes of ours have written down."""
     for path in sorted(folder.glob("child-*.txt")):
         with contextlib.suppress(OSError, UnicodeDecodeError):
             what, *trace = path.read_text(encoding="utf-8").splitlines()
@@ -247,7 +247,7 @@ def read_child_faults(folder: Path) -> None:
 
 
 def read_crash_reports(folder: Path) -> str:
-    """Return what ended earlier runs, as the system told it, "" where none did; it is told once."""
+    """Return what ended earlier runs, as the system told it, "" if none did; it is reported once."""
     found: list[str] = []
     for path in sorted(folder.glob("crash-*.txt")):
         with contextlib.suppress(OSError, ValueError):

@@ -1,4 +1,4 @@
-"""An error in a method that Qt calls is told and goes no further.
+"""An error in a method that Qt calls is reported and goes no further.
 
 PySide hands what is raised there back to whoever called Qt, and some kinds end the program with a fault of
 the system's: what C code raises, such as a division by zero, beneath a call from Python into Qt. So every
@@ -15,7 +15,7 @@ from collections.abc import Callable
 from types import CodeType, FunctionType
 from typing import Any
 
-# What Qt is told by methods that failed; those that answer nothing are in SILENT.
+# What Qt is given by methods that failed; those that answer nothing are in SILENT.
 ANSWERS: dict[str, Callable[[], Any]] = {
     **dict.fromkeys(("event", "eventFilter", "viewportEvent", "editorEvent", "setData", "mergeWith"), bool),
     **dict.fromkeys(("hasHeightForWidth", "focusNextPrevChild", "dropMimeData"), bool),

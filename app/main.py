@@ -133,11 +133,11 @@ def _select(window: Window, clip: str) -> None:
 def run_window(path: Path | None, sample: bool = False, clip: str | None = None) -> int:
     """Open the window and stay until it is closed; return the exit status."""
     from app import faults
-    from app.shell.fault_dialog import fault_folder
+    from app.shell.fault_dialog import find_fault_folder
 
     gc.disable()  # objects made until the window shows live on; collecting costs 0.08 s
     app = prepare_application()
-    faults.install(fault_folder())
+    faults.install(find_fault_folder())
     keeper = WindowKeeper(open_window(path, sample, clip))
     gc.freeze()
     gc.enable()

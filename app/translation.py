@@ -99,7 +99,7 @@ def tr_error(error: object) -> str:
     return tr_phrase(describe_error(error)) if isinstance(error, BaseException) else str(error)
 
 
-def in_english(text: str) -> str:
+def get_english(text: str) -> str:
     """Return in English a text that `tr` or a similar function returned, for logs that others read; other
     text unchanged.
     """
@@ -113,24 +113,25 @@ def group_thousands(count: int) -> str:
 
 def format_number(value: float, form: str) -> str:
     """Return a number in a format of `format`, as the chosen language writes it: "2.25"."""
-    return _localize(format(value, form))
+    return localize_number(format(value, form))
 
 
 class _Int(int):
     """An integer that is formatted as the chosen language writes it."""
 
     def __format__(self, form: str) -> str:
-        return _localize(format(int(self), form))
+        return localize_number(format(int(self), form))
 
 
 class _Float(float):
     """A number that is formatted as the chosen language writes it."""
 
     def __format__(self, form: str) -> str:
-        return _localize(format(float(self), form))
+        return localize_number(format(float(self), form))
 
 
-def _localize(number: str) -> str:
+def localize_number(number: str) -> str:
+    """Return a number in English form, such as "1,234.5", as the chosen language writes it."""
     return number if _chosen is None else number.translate(_chosen.separators)
 
 
@@ -153,7 +154,7 @@ def _filled(template: str, english: str, values: Mapping[str, object]) -> Shown:
 
 
 def _in_english(value: object) -> object:
-    return in_english(value) if isinstance(value, str) else value
+    return get_english(value) if isinstance(value, str) else value
 
 
 def _look_up(text: str) -> str:

@@ -12,5 +12,5 @@
 Modules: `camera` (Camera, frame_whole_figure, frame_upper_body, close_up), `figure` (SkinnedFigure,
 StickFigure), `scene` (Actor, Scene, SceneTheme, DARK, LIGHT), `renderer` (Renderer), `offscreen` (Offscreen,
 OpenGLError), `video` (write_video), `sheet` (contact_sheet, write_png), `thumbnail` (thumbnail,
-telling_frame). Import from them; this package loads nothing itself.
+find_telling_frame). Import from them; this package loads nothing itself.
 """

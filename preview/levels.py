@@ -39,7 +39,7 @@ class Level:
     mesh: SkinnedMesh
 
 
-def levels_folder() -> Path | None:
+def find_levels_folder() -> Path | None:
     """Return the folder that levels are kept in, None if nothing is kept."""
     told = os.environ.get("METAGRAPH_MESH_CACHE")
     return cache_folder("meshes") if told is None else Path(told) if told else None
@@ -71,7 +71,7 @@ def _thinned(mesh: SkinnedMesh, height: float, cancelled: Callable[[], bool]) ->
     if not LEAST <= len(mesh.triangles) <= LARGEST or not np.isfinite(mesh.vertices["position"]).all():
         return []
     errors = [share * height for share in ERRORS]
-    cache, key = DiskCache(levels_folder(), MOST, ".npz"), _key(mesh, errors)
+    cache, key = DiskCache(find_levels_folder(), MOST, ".npz"), _key(mesh, errors)
     content = cache.read(key)
     found = None if content is None else _read(content, mesh)
     if found is None:

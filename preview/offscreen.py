@@ -21,7 +21,7 @@ class OpenGLError(RuntimeError):
     """Raised if there is no OpenGL 3.3. The message says what to install."""
 
 
-def no_opengl_error(reasons: str) -> OpenGLError:
+def describe_missing_opengl(reasons: str) -> OpenGLError:
     """Return the error to raise if OpenGL 3.3 is missing. `reasons` is what the system says."""
     remedy = {
         "linux": phrase("Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1"),
@@ -32,7 +32,7 @@ def no_opengl_error(reasons: str) -> OpenGLError:
     )
 
 
-def standalone_context() -> moderngl.Context:
+def make_standalone_context() -> moderngl.Context:
     """Return a context of OpenGL 3.3 that belongs to no window. Raises OpenGLError."""
     tries: list[dict[str, Any]] = [{}]
     if sys.platform.startswith("linux"):
@@ -45,7 +45,7 @@ def standalone_context() -> moderngl.Context:
             return moderngl.create_context(standalone=True, require=330, **options)
         except Exception as error:  # each backend raises its own kinds
             reasons.append(f"{options.get('backend', 'system')}: {error}")
-    raise no_opengl_error("; ".join(dict.fromkeys(reasons)))
+    raise describe_missing_opengl("; ".join(dict.fromkeys(reasons)))
 
 
 class Offscreen:
@@ -60,7 +60,7 @@ class Offscreen:
         self, width: int, height: int, samples: int | None = None, beside: Offscreen | None = None
     ) -> None:
         self._beside = beside
-        self._ctx: moderngl.Context = standalone_context() if beside is None else beside._ctx
+        self._ctx: moderngl.Context = make_standalone_context() if beside is None else beside._ctx
         with self._ctx:
             self.renderer: Renderer = Renderer(
                 self._ctx, samples, None if beside is None else beside.renderer

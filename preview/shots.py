@@ -37,7 +37,7 @@ LOOKING = 0.03  # of the height; how much more room there is before a face than 
 TWO_TURN = math.radians(16.0)  # between the middle and the camera that shows all
 
 
-def camera_from(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
+def place_camera(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
     """Return a camera at `eye [3]` that looks at `target [3]`."""
     away = np.asarray(eye, float) - np.asarray(target, float)
     distance = max(0.05, float(np.linalg.norm(away)))
@@ -99,7 +99,7 @@ def shot_camera(shot: Shot, side: int, heads: Array, heights: Sequence[float], a
         height = heights[side]
         target = heads[side] + height * (LOOKING * sight - np.array([0.0, 0.045, 0.0]))
         tall = CLOSE_TALL * height * max(1.0, 1.0 / aspect)
-        return camera_from(
+        return place_camera(
             target + turned * (tall / 2 / math.tan(CLOSE_FOV / 2)) + (0, 0.02 * height, 0), target, CLOSE_FOV
         )
     scale = heights[other] / USUAL
@@ -109,7 +109,7 @@ def shot_camera(shot: Shot, side: int, heads: Array, heights: Sequence[float], a
     height = heights[side]
     target = heads[side] + height * (OVER_ROOM * across - np.array([0.0, OVER_UP, 0.0]))
     tall = OVER_TALL * height * max(1.0, 1.5 / aspect)
-    return camera_from(eye, target, 2 * math.atan(tall / 2 / float(np.linalg.norm(eye - target))))
+    return place_camera(eye, target, 2 * math.atan(tall / 2 / float(np.linalg.norm(eye - target))))
 
 
 def lamp_side(camera: Camera, shot: Shot, side: int, heads: Array) -> bool:

@@ -25,7 +25,7 @@ LOOK_AT = 120  # frames of a clip that are compared
 FRAMED = 16  # frames of a clip that certainly fit into the picture
 
 
-def telling_frame(clip: Clip) -> int:
+def find_telling_frame(clip: Clip) -> int:
     """Return the frame whose pose differs most from the first. The root is left out; fingers and face count
     little.
     """
@@ -145,11 +145,11 @@ def _camera(box: Box) -> Camera:
     return Camera().facing(np.radians(22), np.radians(6)).frame(box, 1.0, margin=1.02)
 
 
-def clip_thumbnail(
+def draw_clip_thumbnail(
     offscreen: Offscreen, figure: MeshFigure, clip: Clip, style: ThumbnailStyle = USUAL
 ) -> Array:
     """Return `thumbnail` of the clip's telling frame. The clip is on the figure's skeleton."""
-    rotations, positions = clip.skeleton.globals(clip.poses()[telling_frame(clip)])
+    rotations, positions = clip.skeleton.globals(clip.poses()[find_telling_frame(clip)])
     return thumbnail(offscreen, figure, rotations, positions, style)
 
 

@@ -19,7 +19,7 @@ JUMP = 2.0  # seconds; farther pictures are reached by seeking
 _REMEDY = "Convert it to MP4 (H.264), and check that it plays."
 
 
-def video_seconds(path: str | Path) -> float:
+def measure_video_seconds(path: str | Path) -> float:
     """Return how long a video lasts, in seconds. Raises FileError."""
     import av
 
@@ -80,7 +80,7 @@ class VideoPictures:
         import av
 
         self.path = check_file(path, MOTION_FILE)
-        self.seconds = video_seconds(path)
+        self.seconds = measure_video_seconds(path)
         try:
             self._container = av.open(str(self.path))
             self._stream = self._container.streams.video[0]

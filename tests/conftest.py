@@ -149,7 +149,7 @@ LONG = (
     "playback/planning/test_running_plan.py",
 )
 
-# The gate must give the same answer twice; at the desk, examples are drawn anew each time, and twice as many.
+# The gate must give the same answer twice. At the desk, examples are new each time, and twice as many.
 settings.register_profile("gate", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("desk", deadline=None)
 settings.register_profile("thorough", deadline=None, max_examples=1000)
@@ -263,7 +263,7 @@ def numbered_ids() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def quick_codes() -> Iterator[None]:
-    """The codes of perceptual studies are sealed in few rounds: that each takes long is told of in
+    """The codes of perceptual studies are sealed in few rounds: that each takes long is reported in
     `tests/research/study/perceive/test_sealed.py`, and pages in browsers open what took as long as it does.
     """
     from metagraph.research.study.perceive import sealed

@@ -20,7 +20,7 @@ class Killed(BaseException):
 
 
 class System:
-    """Counts the calls that change files below a folder, and lets the n-th fail, as often as it is told.
+    """Counts the calls that change files below a folder, and lets the n-th fail, as often as it is told to.
 
     how: "error" fails with `number`; "short": a write takes one byte, and the next fails; "late": the call
     is done, and fails then; "kill": the process ends there. for_ever: whether all calls after it fail, too.

@@ -95,5 +95,5 @@ def compile_searches() -> None:
 
 
 if __name__ == "__main__":
-    gc.disable()  # a fifth of the time is looking for circles in what LLVM is told
+    gc.disable()  # a fifth of the time is looking for circles in what LLVM is given
     compile_all() if sys.argv[1:] == ["here"] else make()

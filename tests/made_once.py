@@ -1,4 +1,4 @@
-"""What is dear to make, made by one of the processes that test and used by all."""
+"""What is expensive to make, made by one of the processes that test and used by all."""
 
 from __future__ import annotations
 

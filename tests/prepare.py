@@ -34,7 +34,7 @@ if __name__ == "__main__":
     collecting = subprocess.Popen(collected(), cwd=ROOT, **quiet)
     try:
         kernels.make()
-        collecting.wait(timeout=900)  # what cannot be collected is told by the tests themselves
+        collecting.wait(timeout=900)  # what cannot be collected is given by the tests themselves
     finally:
         collecting.kill()
         collecting.wait()

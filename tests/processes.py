@@ -74,7 +74,7 @@ class Answering:
         self._patience = patience  # seconds for one answer
 
     def ask(self, line: str) -> str:
-        """Return the answer to a line, without its end. Raises AssertionError where there is none, or none in
+        """Return the answer to a line, without its end. Raises AssertionError if there is none, or none in
         time.
         """
         assert self._process.stdin is not None and self._process.stdout is not None

@@ -117,6 +117,39 @@ def test_systems_that_nobody_ran_it_on_are_offered_as_not_tested() -> None:
             assert untested == ("not tested yet" in start), (system, page.name)
 
 
+def long_lines(text: str) -> list[int]:
+    """Return the numbers of lines of prose with more than 120 columns, without tables, code and formulas."""
+    out, in_code = [], False
+    for number, line in enumerate(text.splitlines(), 1):
+        in_code ^= line.lstrip().startswith("```")
+        other = line.lstrip().startswith(("|", "!["))
+        formula = "  " in line.strip() or line.lstrip().startswith(("`step(", '{"'))
+        if len(line) > 120 and not (in_code or other or formula):
+            out.append(number)
+    return out
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")),
+        *sorted(DOCS.rglob("*.md")),
+    ],
+    ids=lambda page: page.name,
+)
+def test_lines_of_prose_have_at_most_120_columns(page: Path) -> None:
+    assert not long_lines(page.read_text(encoding="utf-8"))
+
+
+def test_a_long_line_is_found_except_in_tables_and_code() -> None:
+    long = "word " * 30
+    assert long_lines(f"{long}\n| {long}|\n```text\n{long}\n```\n- {long}") == [1, 6]
+
+
+def test_the_readme_has_at_most_120_lines() -> None:
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 120
+
+
 def tracked() -> list[Path]:
     done = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
     if done.returncode:

@@ -25,6 +25,35 @@ PARTICIPLES = {
     *("stood", "sworn", "taken", "told", "worn", "wound", "written"),
 }
 
+# What names of functions begin with: verbs, and words for questions and for variants of a value.
+VERBS = set(
+    """
+    ablate absorb accept access add adopt align allocate allow analyse anchor answer append apply
+    are arrange arrive as ask assemble assign assume bake batch begin bind blend break breathe
+    bridge bring build bundle cache can change charge check choose claim clamp classify clean clear
+    close collect combine compare compose compute conjugate connect continue contribute convert copy
+    count cover crop crossfade cut declare decode decompose delay delete derive describe detect
+    differs digest discover drag draw drive drop duplicate ease edit elide encode escape estimate
+    evaluate exchange exhibit explain export extend fade fetch fill filter find finish fit fix fold
+    follow foresee forget format free freeze from gather generate get go grade group guard guess
+    handle has hear hide hit hold holds import improvise install is join judge keep keeps key label
+    land last lay lead leap learn leave level lie lift limit list load lock log look main make mark
+    mask match matches may mean measure meet merge mimic mirror mix move moves multiply name needs
+    normalize note nudge offer open order pad paint parse paste perceive perform pick place plan
+    play plot predict prepare preregister print process project propose put quote rank reach read
+    recall receive recover refuse register rehearse relabel relocate remake remember remove rename
+    render reopen reorder repair repeat replace replay repoint report require reread resample reset
+    resize restore retarget retime retire reveal reword rotate route run sample save say scale score
+    seal search see select send serve set settle shade share shift shorten show shuffle simplify
+    simulate slip smooth snap soften solve sort spell spend split stack stand standardise start
+    straighten strengthen strip study summarise swap sweep sync synthesise synthesize tabulate take
+    tell thin timed to tr track train translate try turn understand undo unpack unwrap update use
+    uses vary verify wait walk warn watch weigh with withdraw write
+    """.split()  # noqa: SIM905 - three hundred quotes more to read
+)
+# Names of functions that were nouns before this was checked. The list only gets shorter.
+NOUNS = set(Path(__file__).with_name("noun_names.txt").read_text(encoding="utf-8").split())
+
 
 def defined() -> dict[str, list[tuple[Path, ast.stmt]]]:
     """Return by name where public functions and classes are defined."""
@@ -64,6 +93,25 @@ def test_no_function_is_called_by_a_bare_participle() -> None:
         if path not in TRANSLATED and name not in NATIVE
     ]
     assert not found, "call them by a verb, such as find_, make_, list_, describe_"
+
+
+def find_nouns() -> set[str]:
+    """Return the names of public functions that do not begin with a verb, outside of translated modules."""
+    return {
+        name
+        for name, places in defined().items()
+        for path, node in places
+        if isinstance(node, ast.FunctionDef) and name.split("_")[0] not in VERBS
+        if path not in TRANSLATED and name not in PROTOCOLS | KEPT | NATIVE
+    }
+
+
+def test_names_of_functions_begin_with_a_verb() -> None:
+    assert not find_nouns() - NOUNS, "begin the names with a verb, or add a new verb to VERBS"
+
+
+def test_the_list_of_nouns_only_gets_shorter() -> None:
+    assert not NOUNS - find_nouns(), "remove these from tests/noun_names.txt"
 
 
 def test_participles_are_told_from_verbs_and_nouns() -> None:

@@ -1,9 +1,11 @@
-"""Texts for people and docstrings of front doors are plain English: none has a phrase of the list below."""
+"""Texts for people, docstrings and comments are plain English: none has a phrase of the lists below."""
 
 from __future__ import annotations
 
 import ast
+import io
 import re
+import tokenize
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
@@ -13,6 +15,7 @@ import pytest
 
 pytest.importorskip("babel")
 from app.languages.catalogues import find_marked
+from metagraph.engines.translation.listing import LISTING
 
 ROOT = Path(__file__).resolve().parents[1]
 QUOTES = ("docs/contributing/style.md",)  # shows what not to write
@@ -27,7 +30,15 @@ PHRASES = {
     r"\bas it were\b": "leave it out",
     r"\bwhat is asked for\b": "the requests",
     r"(?<![{`\w])anew\b": "again",
-    r"\b(is|are|was|were) told\b": "is reported, is given",
+    r"\b(is|are|was|were) told\b(?! (to|that|who|what|how|when|it|g|in words)\b)": "is reported, is given",
+    r"(?-i:\bNone where\b)": "None if",
+    r"\breckon(ed|s|ing)?\b": "count, compute",
+    r"\blikewise\b": "in the same way",
+    r"\bas good as\b": "almost",
+    r"\bthe very same\b": "the same",
+    r"\bwholly\b": "entirely",
+    r"\btold apart\b": "distinguished",
+    r"\bround about\b": "about",
     r"\b(told|tells?) of\b": "reports",
     r", whichever(?=\s*([.;:|]|$))": "any",
     r"\bnone such\b": "no such",
@@ -47,21 +58,35 @@ PHRASES = {
 }
 # The same for docstrings of front doors only.
 DOCSTRING_PHRASES = {
-    r"\bwholly\b": "entirely",
     r"\bwhoever\b": "the one who, code that",
     r"\bdear\b": "expensive",
-    r"\bas good as\b": "almost",
     r"\bbut for\b": "except for",
     r"\b(under way|on the way)\b": "in progress, at the same time",
-    r"\bround about\b": "around, about",
-    r"\blikewise\b": "in the same way",
     r"\bwhere (nothing|that is|there is none)\b": "if nothing, if that is, if there is none",
     r"\b(is|are) alike\b": "are equal, are similar",
-    r"\breckon(ed|s)?\b": "count",
-    r"\btold apart\b": "distinguished",
-    r"\bthe very same\b": "the same",
 }
-
+# The same for what the command line and the live server print.
+PRINTED_PHRASES = {
+    r"\bgo on (with|where)\b": "continue",
+    r"\b(for|by|only|keep|up to) so (many|much|long)\b": "this many",
+    r"\bso many (seconds|frames|of)\b": "this many",
+    r"\b(is|are) called (so|as)\b": "has this name, has the name of",
+    r"\bcalled as\b": "with the name of",
+    r"\bnobody is called\b": "there is no",
+    r"(^|[:;,'] )(is|are) no (sound|model|seed|take|number)\b": "is not a",
+    r"\b(a|the) \w+ of yours\b": "your",
+    r"\bcannot be taken back\b": "cannot be undone",
+    r"\bsays? nothing of\b": "does not describe, does not apply to",
+    r"\b(made|are|was|is) made out\b": "recognised",
+    r"\bwhat (is said|there is|was played|was asked)\b": "a noun, such as transcript, list, performance",
+    r"\bmade-up\b": "synthetic",
+    r"\btake (it|them|this) over\b": "use, accept",
+    r"\bholds? (no|a study|other)\b": "has no",
+    r"\bit is written as\b": "the file can be",
+}
+PRINTING = ("app/cli/*.py", "metagraph/live/*.py")
+# Modules that are translated for the engines, with their docstrings and comments.
+TRANSLATED = {Path(*one.module.split(".")).with_suffix(".py").as_posix() for one in LISTING}
 
 # Modules that a new maintainer reads first.
 FRONT_DOORS = (
@@ -153,6 +178,50 @@ def search_docstrings(root: Path, modules: Iterable[Path]) -> Iterator[Found]:
             yield from search(name, text.lineno, str(text.value.value), PHRASES | DOCSTRING_PHRASES)
 
 
+def list_modules(root: Path = ROOT) -> Iterator[Path]:
+    """Yield the modules of the program and of its tests; not this one, and none that is translated."""
+    for folder in ("app", "docs", "metagraph", "preview", "sample_clips", "tests"):
+        for path in sorted((root / folder).rglob("*.py")):
+            name = path.relative_to(root).as_posix()
+            other = {"runtimes", "node_modules", "__pycache__"} & set(path.parts)
+            if not other and name not in TRANSLATED and path != Path(__file__):
+                yield path
+
+
+def search_comments(root: Path, modules: Iterable[Path]) -> Iterator[Found]:
+    """Yield the phrases of `PHRASES` in all docstrings and comments, also those of private functions."""
+    for path in modules:
+        source, name = path.read_text(encoding="utf-8"), path.relative_to(root).as_posix()
+        for text, line in list_docstrings(source):
+            yield from search(name, line, text)
+        for token in tokenize.generate_tokens(io.StringIO(source).readline):
+            if token.type == tokenize.COMMENT:
+                yield from search(name, token.start[0], token.string)
+
+
+def list_docstrings(source: str) -> Iterator[tuple[str, int]]:
+    """Yield the docstrings of a module's source, with their lines."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            first = node.body[0] if node.body else None
+            if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+                yield str(first.value.value), first.lineno
+
+
+def search_printed(root: Path, modules: Iterable[Path]) -> Iterator[Found]:
+    """Yield the phrases in texts of more than one word that modules print; not in docstrings."""
+    for path in modules:
+        source, name = path.read_text(encoding="utf-8"), path.relative_to(root).as_posix()
+        docstrings = {line for _, line in list_docstrings(source)}
+        for node in ast.walk(ast.parse(source)):
+            if (
+                isinstance(node, ast.Constant)
+                and isinstance(node.value, str)
+                and node.lineno not in docstrings
+            ):
+                yield from search(name, node.lineno, node.value, PHRASES | PRINTED_PHRASES)
+
+
 def list_pages(root: Path = ROOT) -> Iterator[Path]:
     """Yield the pages of the manual, the readme and the changelog."""
     for page in sorted([*root.glob("docs/**/*.md"), root / "README.md", root / "CHANGELOG.md"]):
@@ -181,6 +250,18 @@ def test_docstrings_of_front_doors_are_plain() -> None:
     assert not found, found
 
 
+def test_docstrings_and_comments_are_plain() -> None:
+    found = show(search_comments(ROOT, list_modules()))
+    assert not found, found
+
+
+def test_what_the_command_line_and_the_live_server_print_is_plain() -> None:
+    modules = sorted(path for pattern in PRINTING for path in ROOT.glob(pattern))
+    assert len(modules) > 50
+    found = show(search_printed(ROOT, modules))
+    assert not found, found
+
+
 def test_each_front_door_is_there() -> None:
     assert not [pattern for pattern in FRONT_DOORS if not any(ROOT.glob(pattern))]
 
@@ -191,6 +272,16 @@ def test_a_planted_phrase_is_found(tmp_path: Path) -> None:
     module.write_text('"""Plain."""\n\n\ndef draw() -> None:\n    """Draw it anew."""\n', encoding="utf-8")
     assert show(search_pages(tmp_path, [page])) == "page.md:3: 'left aside': write skip, skipped"
     assert show(search_docstrings(tmp_path, [module])) == "module.py:5: 'anew': write again"
+
+
+def test_planted_phrases_in_comments_and_printed_texts_are_found(tmp_path: Path) -> None:
+    module = tmp_path / "module.py"
+    module.write_text(
+        'def _draw() -> None:\n    """Draw it anew."""\n    print("go on with it")  # likewise\n',
+        encoding="utf-8",
+    )
+    assert [one.text for one in search_comments(tmp_path, [module])] == ["anew", "likewise"]
+    assert [one.text for one in search_printed(tmp_path, [module])] == ["go on with"]
 
 
 def test_private_functions_and_names_in_braces_or_backquotes_are_not_searched(tmp_path: Path) -> None:

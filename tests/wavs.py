@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def wav(path: Path, rate: int, data: bytes, channels: int = 1, kind: int = 1, bits: int = 16) -> Path:
-    """Write samples under a head that says what it is told, true or not. kind: 1 for whole numbers."""
+    """Write samples under a head that says what the caller wants, true or not. kind: 1 for whole numbers."""
     bytes_a_second = rate * channels * bits // 8 & 0xFFFFFFFF
     head = struct.pack("<IHHIIHH", 16, kind, channels, rate, bytes_a_second, channels * bits // 8, bits)
     body = b"WAVEfmt " + head + b"data" + struct.pack("<I", len(data)) + data

@@ -82,7 +82,7 @@ class Animal:
     above: str | None = None
 
     def called(self, joint: str) -> str | None:
-        """Return what a joint of the figure is called, None where it is missing."""
+        """Return what a joint of the figure is called, None if it is missing."""
         side, _, part = joint.partition("_")
         if side not in ("left", "right"):
             return self.names.get(joint)
@@ -292,7 +292,7 @@ def clip_doing(animal: Animal, name: str, turns: Mapping[str, Array], way: Array
         axes = _axes(animal, joint)
         resting[joint] = rotation.multiply(_drop(joint, animal.arms), axes)
         moving[joint] = rotation.multiply(turns[joint], axes)
-        if animal.kind == ".bvh":  # where joints have no turn at rest: all is told from there
+        if animal.kind == ".bvh":  # where joints have no turn at rest: all is given from there
             moving[joint] = rotation.multiply(moving[joint], rotation.conjugate(resting[joint]))
             resting[joint] = rotation.identity_rotations()
     rows: list[tuple[str, int, Array, Array, Array]] = []

@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from app.cli.kept_options import kept_name
+from app.cli.kept_options import check_kept_name
 from app.cli.outputs import ProjectOutput
 from app.project.annotation_reading import (
     AnnotationReading,
@@ -44,36 +44,47 @@ def add_arguments(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=ROLE",
-        help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, speech, "
-        "partner's speech, ignore",
+        help="set the role of a tier: left arm, right arm, arms, head action, head stance, body, "
+        "speech, partner's speech, ignore",
     )
     parser.add_argument(
         "--label",
         action="append",
         default=[],
         metavar="LABEL=MEANING",
-        help='what a label means: gesture, fidget, transition, ignore ..., then tags ("gesture positive")',
+        help='set the meaning of a label: gesture, fidget, transition, ignore ..., then tags ("gesture '
+        'positive")',
     )
     meaning = parser.add_mutually_exclusive_group()
     meaning.add_argument(
-        "--states", action="store_true", help="positive and negative gestures are states of their own"
+        "--states", action="store_true", help="model positive and negative gestures as separate states"
     )
     meaning.add_argument(
-        "--shares", action="store_true", help="they are shares of all gestures (the default)"
+        "--shares",
+        action="store_true",
+        help="model positive and negative gestures as shares of all gestures (the default)",
     )
     parser.add_argument(
-        "--smoothing", type=float, default=0.0, help="added to every count (default: 0, as in the paper)"
+        "--smoothing",
+        type=float,
+        default=0.0,
+        help="number to add to every count (default: 0, as in the paper)",
     )
     parser.add_argument(
-        "--learn", action="store_true", help="learn the models of all layers that were annotated"
+        "--learn",
+        action="store_true",
+        help="learn the models of all annotated layers, and save them in the project",
     )
-    parser.add_argument("--perform", metavar="NAME", type=kept_name, help="keep it as a performance")
+    parser.add_argument(
+        "--perform",
+        metavar="NAME",
+        type=check_kept_name,
+        help="save the annotated actions as a performance of the project",
+    )
 
 
 def run(options: Namespace) -> int:
-    """Say what an annotation is read as; with `learn` or `perform`, work it into the project and save
-    that.
-    """
+    """Print how an annotation is read. With `learn` or `perform`, change the project and save it."""
     path: Path = options.project
     if not options.learn and options.perform is None:
         return _annotated(options, None)
@@ -82,19 +93,19 @@ def run(options: Namespace) -> int:
 
 
 def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
-    """output: where the project is saved, if it is."""
+    """output: the path at which the project is saved, or None."""
     path: Path = options.project
     opened = open_whole(path)
     project = opened.project
     reading = _reading(read_elan(options.annotation), options, project.tiers, project.labels)
     if options.smoothing < 0:
-        raise ValueError("--smoothing is 0 or more")
+        raise ValueError("--smoothing must be 0 or more")
     doubts = describe_doubts(reading)
     if not any(reading.observed.values()) and (options.learn or options.perform is not None):
         tiers = ", ".join(repr(t.name) for t in reading.annotation.tiers[:12]) or "none"
         raise FileError(
-            options.annotation, f"nothing in it is read as an action; its tiers are {tiers}", "in its tiers",
-            f"Say what they stand for: --tier \"NAME=left arm\" (or {', '.join(list(ROLES)[1:])}).",
+            options.annotation, f"no tier is read as an action; the tiers are {tiers}", "in its tiers",
+            f"Set their roles: --tier \"NAME=left arm\" (or {', '.join(list(ROLES)[1:])}).",
         )  # fmt: skip
     made = work_into_project(
         project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing
@@ -132,20 +143,24 @@ def _reading(
     roles = _said(options.tier, "--tier", "LH=left arm", names)
     for role in roles.values():
         if role not in (*ROLES, *SPEECH, IGNORE):
-            raise ValueError(f"a tier is read as one of {', '.join((*ROLES, *SPEECH, IGNORE))}, not '{role}'")
+            raise ValueError(
+                f"the role of a tier is one of {', '.join((*ROLES, *SPEECH, IGNORE))}, not '{role}'"
+            )
     found = begin_reading(annotation, roles, tiers, labels=(labels,))
     here = [x for label in found.labels for x in (label.text, label.key)]
     said = _said(options.label, "--label", "nod=gesture positive", here, label_of)
     for meaning in said.values():
         if not is_meaning(meaning):
-            raise ValueError(f"a label means {', '.join(MEANINGS)}, with tags behind it, not '{meaning}'")
+            raise ValueError(
+                f"the meaning of a label is one of {', '.join(MEANINGS)}, with tags after it, not '{meaning}'"
+            )
     return AnnotationReading(annotation, found.roles, said, found.memory)
 
 
 def _said(
     given: Iterable[str], option: str, example: str, known: list[str], spelled: Any = str
 ) -> dict[str, str]:
-    """Return NAME=WORDS options as a mapping. Raises ValueError for names that are not there."""
+    """Return NAME=WORDS options as a mapping. Raises ValueError for an unknown name."""
     out = {}
     for text in given:
         name, equals, words = text.rpartition("=")
@@ -199,12 +214,16 @@ def _lines(data: Mapping[str, Any], reading: AnnotationReading, path: Path) -> I
     if data["learned"]:
         yield f"learned: {', '.join(data['learned'])}"
     if data["performance"]:
-        yield f"kept as a performance: {data['performance']}"
+        yield f"saved as performance {data['performance']}"
         for layer, n in data["replayed"].items():
-            other = f", {n['other_limb']} of them with another limb than was seen" if n["other_limb"] else ""
+            other = (
+                f", {n['other_limb']} of them with another limb than in the annotation"
+                if n["other_limb"]
+                else ""
+            )
             yield f"  {layer}: {n['played']} of {n['asked']} acts play{other}"
     yield (
         f"saved {path}"
         if data["saved"]
-        else "nothing was saved; --learn learns models from it, --perform NAME keeps it as a performance"
+        else "nothing was saved: add --learn to learn models, or --perform NAME to save a performance"
     )

@@ -14,10 +14,16 @@ LEAST, MOST = 60.0, 86400.0  # seconds that are counted
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
-        "--mode", choices=MODES, help="only in this mode (default: idle, listening and talking)"
+        "--mode", choices=MODES, help="count this mode only (default: idle, listening and talking)"
     )
-    parser.add_argument("-s", "--seconds", type=float, default=3600.0, help="how long (default: an hour)")
-    parser.add_argument("--seed", type=int, help="another performance (default: the project's seed)")
+    parser.add_argument(
+        "-s", "--seconds", type=float, default=3600.0, help="how long to play (default: an hour)"
+    )
+    parser.add_argument(
+        "--seed",
+        type=int,
+        help="random seed; another seed gives another performance (default: the project's seed)",
+    )
 
 
 def run(options: Namespace) -> int:
@@ -25,7 +31,7 @@ def run(options: Namespace) -> int:
     from metagraph.playback.behaviour import describe_lack, measure_behaviour
 
     if not LEAST <= options.seconds <= MOST:
-        raise ValueError(f"behaviour is counted over {LEAST:g} to {MOST:g} seconds")
+        raise ValueError(f"--seconds must be {LEAST:g} to {MOST:g}")
     project = open_for_command(options.project)
     words: list[str] = []
     data: dict[str, Any] = {}

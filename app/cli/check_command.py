@@ -20,7 +20,7 @@ PLAYED = 600.0  # seconds
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
-        "--strict", action="store_true", help="warnings count as problems for the exit code, too"
+        "--strict", action="store_true", help="also end with exit code 3 if there are only warnings"
     )
     parser.add_argument(
         "--play",
@@ -28,8 +28,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs="?",
         const=PLAYED,
         metavar="SECONDS",
-        help="also play the character untouched for so many seconds, and each action once, and report what a "
-        f"viewer would see go wrong ({PLAYED:.0f} s without a number)",
+        help="also play the character for this many seconds without requests, then each action, and report "
+        f"visible faults ({PLAYED:.0f} s without a number)",
     )
 
 
@@ -37,7 +37,9 @@ def _seconds(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ArgumentTypeError(f"'{text}' is no number of seconds; the project comes before it") from None
+        raise ArgumentTypeError(
+            f"'{text}' is not a number of seconds; give the project before --play"
+        ) from None
 
 
 def run(options: Namespace) -> int:
@@ -47,7 +49,7 @@ def run(options: Namespace) -> int:
         from metagraph.playback.rehearsal import rehearse
 
         if not 0 < options.play <= LONGEST:
-            raise ValueError(f"--play takes more than 0 and at most {LONGEST} seconds")
+            raise ValueError(f"--play must be more than 0 and at most {LONGEST} seconds")
         problems += rehearse(project, options.play)
         order = ("error", "warning", "hint")
         problems.sort(key=lambda p: order.index(p.severity))

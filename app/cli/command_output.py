@@ -1,4 +1,4 @@
-"""What the commands share: a project read, a performance planned, words or JSON said."""
+"""What commands share: they read a project, plan a performance, and print words or JSON."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any
 
 from app.project.opening import open_whole
 from metagraph.formats.outputs import declare_inputs
-from metagraph.formats.store import files_of
+from metagraph.formats.store import list_project_files
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 from metagraph.graph.words import MODES
@@ -43,9 +43,9 @@ def run_until_stopped() -> Iterator[None]:
 
 
 def open_for_command(path: Path) -> Project:
-    """Read a project with what it names, which the command must not write over; say what is odd about it."""
+    """Read a project, protect the files that it names from the command, and print what is odd about it."""
     found = open_whole(path)
-    declare_inputs(*files_of(found.project, path.resolve().parent))
+    declare_inputs(*list_project_files(found.project, path.resolve().parent))
     for note in found.notes:
         print(f"note: {note}", file=sys.stderr)
     return found.project
@@ -57,20 +57,20 @@ def explain_code_3(why: str) -> None:
 
 
 def stage_performance(project: Project, options: Namespace) -> Plan:
-    """Return the performance that is asked for, or an improvised one; its length goes into the options."""
+    """Return the requested performance, or an improvised one, and set the option of its length."""
     kept = _kept(project, options.performance) if options.performance is not None else None
     if options.seconds is None:
         length = kept.length if kept is not None else options.usual_seconds
         options.seconds = max(0.0, length - options.start)
     if not 0 < options.seconds <= LONGEST:
-        raise ValueError(f"a performance lasts more than 0 and at most {LONGEST} seconds")
+        raise ValueError(f"--seconds must be more than 0 and at most {LONGEST}")
     length = options.start + options.seconds
     if options.start and kept is not None:  # a part is the same as in the whole
         length = max(length, kept.length)
     if kept is None:
         return improvise(project, length, options.seed, options.mode or "talking")
     if options.mode is not None:
-        raise ValueError("--mode is for what the models improvise; a kept performance has a mode of its own")
+        raise ValueError("--mode sets how the character improvises; a saved performance has its own mode")
     seed = kept.seed if options.seed is None else options.seed
     return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
@@ -79,7 +79,7 @@ def _kept(project: Project, name: str) -> Performance:
     found = next((p for i, p in project.performances.items() if name in (i, p.name)), None)
     if found is None:
         names = ", ".join(f"'{p.name}'" for p in project.performances.values()) or "none"
-        raise ValueError(f"there is no performance '{name}' in the project; it keeps {names}")
+        raise ValueError(f"there is no performance '{name}' in the project; it has {names}")
     return found
 
 
@@ -88,14 +88,14 @@ def say(options: Namespace, words: str, data: Any) -> None:
 
 
 def may_delete(options: Namespace, folder: Path) -> bool:
-    """Return whether a folder may be deleted: `--yes` says so, or somebody who is asked. Raises ValueError
-    where nobody can be asked.
+    """Return whether a folder may be deleted: `--yes` says so, or somebody who is asked. Raises ValueError if
+    nobody can be asked.
     """
     if options.yes:
         return True
     if options.json or not sys.stdin.isatty():
-        raise ValueError(f"deleting {folder} cannot be taken back: say --yes")
-    asked = f"Delete {folder} and all that is in it? It cannot be taken back. [y/N] "
+        raise ValueError(f"deleting {folder} cannot be undone: confirm with --yes")
+    asked = f"Delete {folder} and everything in it? This cannot be undone. [y/N] "
     return input(asked).lower() == "y"
 
 
@@ -106,13 +106,17 @@ def add_performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     )
     parser.set_defaults(usual_seconds=seconds, start=0.0)
     parser.add_argument(
-        "--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)"
+        "--performance",
+        metavar="NAME",
+        help="play this saved performance of the project (default: improvise)",
     )
     parser.add_argument(
         "--mode",
         choices=MODES,
-        help="what the character does while the models improvise (default: talking); not with --performance",
+        help="what the character does while it improvises (default: talking); not with --performance",
     )
     parser.add_argument(
-        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+        "--seed",
+        type=int,
+        help="random seed; another seed gives another performance (default: the project's seed)",
     )

@@ -17,15 +17,25 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("-o", "--out", type=Path, help="the project to write (default: the same)")
-    parser.add_argument("--list", action="store_true", help="write nothing: list what would be found")
-    parser.add_argument("--clear", action="store_true", help="take the contacts of all actions away")
     parser.add_argument(
-        "--action", action="append", default=[], metavar="NAME", help="only of actions of this name or id"
+        "-o", "--out", type=Path, help="the project to write (default: the project that is read)"
     )
-    parser.add_argument("--contacts", choices=("on", "off"), help="whether contacts hold while it plays")
+    parser.add_argument("--list", action="store_true", help="list the contacts without writing anything")
+    parser.add_argument("--clear", action="store_true", help="remove the contacts of all actions")
     parser.add_argument(
-        "--guard", choices=("on", "off"), help="whether hands are kept out of the body while it plays"
+        "--action",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="only this action, by name or id; repeat for more",
+    )
+    parser.add_argument(
+        "--contacts", choices=("on", "off"), help="keep contacts while the character plays, or not"
+    )
+    parser.add_argument(
+        "--guard",
+        choices=("on", "off"),
+        help="keep hands out of the body while the character plays, or not",
     )
 
 
@@ -45,7 +55,7 @@ def run(options: Namespace) -> int:
 
 
 def _found(options: Namespace, output: ProjectOutput | None) -> int:
-    """output: where the project is saved, if it is."""
+    """output: the path at which the project is saved, or None."""
     import msgspec
 
     from metagraph.formats.gltf.reader import read_character
@@ -55,7 +65,7 @@ def _found(options: Namespace, output: ProjectOutput | None) -> int:
     project = open_for_command(options.project)
     chosen = [a for a in project.actions() if not options.action or {a.id, a.name} & set(options.action)]
     if options.action and not chosen:
-        raise ValueError(f"there is no action called {' or '.join(map(repr, options.action))}")
+        raise ValueError(f"there is no action {' or '.join(map(repr, options.action))}")
     idents = [a.id for a in chosen]
     if options.clear:
         project = edits.update_actions(project, idents, contacts=())

@@ -18,7 +18,9 @@ SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("-o", "--out", type=Path, default=Path("out"), help="a folder (default: out)")
+    parser.add_argument(
+        "-o", "--out", type=Path, default=Path("out"), help="the folder to write into (default: out)"
+    )
     add_performance_arguments(parser, 60.0)
 
 
@@ -44,7 +46,7 @@ def run(options: Namespace) -> int:
     quiet = options.json
     if not quiet:
         print(f"{project.name}: {whole.clips} clips placed")
-        print(f"as a state machine: {whole.states} states, {whole.connections:,} connections")
+        print(f"expanded state machine: {whole.states} states, {whole.connections:,} connections")
         print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
     shown = ShownPlayback(project, made, made.end)
     seen = [(load_figure(project, folder), shown)]

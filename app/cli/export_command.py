@@ -20,38 +20,39 @@ SHOWN = 8  # files named on the screen
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("project", type=Path, nargs="?", help="the project file")
-    parser.add_argument("-o", "--out", type=Path, help="a folder")
+    parser.add_argument("-o", "--out", type=Path, help="the folder to write into")
     parser.add_argument(
         "-t",
         "--target",
         default="metagraph",
-        help="what to write for (default: metagraph, one JSON and one GLB)",
+        help="the engine or format to write for (default: metagraph, one JSON and one GLB)",
     )
-    parser.add_argument("--targets", action="store_true", help="list the targets there are")
+    parser.add_argument("--targets", action="store_true", help="list the targets")
     parser.add_argument(
-        "--watch", action="store_true", help="go on, and write again whenever the project is saved"
-    )
-    parser.add_argument(
-        "--serve", action="store_true", help="go on, and show the web page to this machine's browser"
+        "--watch", action="store_true", help="keep running, and export again whenever the project is saved"
     )
     parser.add_argument(
-        "--vectors", action="store_true", help="write conformance vectors for runtimes as well"
+        "--serve",
+        action="store_true",
+        help="keep running, and serve the web page to a browser on this computer",
+    )
+    parser.add_argument("--vectors", action="store_true", help="also write conformance vectors for runtimes")
+    parser.add_argument(
+        "--tools", action="store_true", help="also write the requests as tools for a language model"
     )
     parser.add_argument(
-        "--tools", action="store_true", help="write what may be asked as tools for a language model as well"
-    )
-    parser.add_argument(
-        "--expanded", action="store_true", help="list the expanded state machine in the JSON as well"
+        "--expanded", action="store_true", help="also write the expanded state machine into the JSON"
     )
     parser.add_argument(
         "--compress",
         action="store_true",
-        help="pack the GLB (EXT_meshopt_compression): half the size, for runtimes and viewers that know it",
+        help="compress the GLB with EXT_meshopt_compression: half the size, for runtimes and viewers "
+        "that support it",
     )
     parser.add_argument(
         "--overwrite",
         action="store_true",
-        help="also files that an export of something else, or somebody, put there",
+        help="also replace files of another export, or files that Metagraph did not write",
     )
     parser.add_argument(
         "--sounds",
@@ -59,13 +60,13 @@ def add_arguments(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="FOLDER",
-        help="also copy sounds of lines that lie there, outside the project's folder",
+        help="also copy sounds of lines from this folder outside the project's folder",
     )
-    parser.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
+    parser.add_argument("--no-mesh", action="store_true", help="write the GLB without the character's mesh")
 
 
 def run(options: Namespace) -> int:
-    """Write a project for a target; with `watch` and `serve` go on until told to stop."""
+    """Write a project for a target; with `watch` and `serve` keep running until the user stops it."""
     from metagraph.engines.targets import registry
 
     if options.targets:
@@ -77,18 +78,19 @@ def run(options: Namespace) -> int:
         return 0
     if options.project is None or options.out is None:
         print(
-            "metagraph export: which project, and where to? metagraph export my.metagraph.yaml -o game/",
+            "metagraph export: give a project and a folder, such as: metagraph export "
+            "my.metagraph.yaml -o game/",
             file=sys.stderr,
         )
         return 2
-    registry.target(options.target)  # a wrong name is told before anything is read
+    registry.target(options.target)  # a wrong name is reported before anything is read
     if options.vectors:
         from metagraph.engines.vectors import NAME
         from metagraph.formats.outputs import claim
 
         claim(options.out / NAME)
     if options.serve and options.target != "web":
-        print("metagraph export: only the web page can be served: --target web --serve", file=sys.stderr)
+        print("metagraph export: --serve needs --target web", file=sys.stderr)
         return 2
     if not (options.watch or options.serve):
         _once(options)
@@ -107,7 +109,7 @@ def _go_on(options: Namespace) -> None:
         _once(options)
     if options.serve:
         options.out.mkdir(parents=True, exist_ok=True)
-        print(f"the page is at {Served(options.out).url} (Ctrl+C stops)", file=sys.stderr, flush=True)
+        print(f"the page is at {Served(options.out).url} (stop with Ctrl+C)", file=sys.stderr, flush=True)
     if options.watch:
         _watch(options)
     while True:
@@ -115,7 +117,7 @@ def _go_on(options: Namespace) -> None:
 
 
 def _watch(options: Namespace) -> None:
-    """Export, and again after each saving; what goes wrong is told, and the next saving tried."""
+    """Export, and export again after each save. An error is printed, and the next save is tried."""
     seen: tuple[int, int] | None = None
     while True:
         now = _state(options.project)
@@ -150,10 +152,10 @@ def _once(options: Namespace) -> None:
     )
     if options.tools:
         from metagraph.engines.export import stem_of
-        from metagraph.engines.tools_file import tools_name
+        from metagraph.engines.tools_file import name_tools_file
         from metagraph.formats.outputs import claim
 
-        claim(options.out / tools_name(stem_of(project)))
+        claim(options.out / name_tools_file(stem_of(project)))
     contents = Contents(
         character,
         options.expanded,
@@ -177,7 +179,7 @@ def _once(options: Namespace) -> None:
         )
         if graph is None:
             print(
-                f"note: target '{options.target}' is not played by a runtime: there are no vectors for it",
+                f"note: target '{options.target}' has no runtime, so there are no vectors for it",
                 file=sys.stderr,
             )
         else:

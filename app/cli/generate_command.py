@@ -13,38 +13,51 @@ def add_arguments(parser: ArgumentParser) -> None:
 
     def action(name: str, words: str, run: Any) -> ArgumentParser:
         out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
-        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.add_argument("--json", action="store_true", help="print JSON for programs")
         out.set_defaults(run=run)
         return out
 
     from app.cli import generate_judging, generate_motion, generate_training
 
     generate_training.add_arguments(action("train", "learn a model from takes", generate_training.train))
-    new = action("sample", "make motion to speech", generate_motion.write_motion)
+    new = action("sample", "generate motion for speech", generate_motion.write_motion)
     generate_motion.add_model_argument(new)
     generate_motion.add_heard_arguments(new, needed=True)
-    new.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
-    judged = action("evaluate", "judge models on takes they have not seen", generate_judging.judge_models)
+    new.add_argument("-o", "--out", type=Path, required=True, help="the .bvh or .glb file to write")
+    judged = action("evaluate", "evaluate models on takes they have not seen", generate_judging.judge_models)
     generate_judging.add_arguments(judged)
     ablated = action(
-        "ablate", "train with one thing changed at a time, and compare", generate_training.run_ablation
+        "ablate",
+        "train variants of a model with one change each, and compare them",
+        generate_training.run_ablation,
     )
     generate_training.add_ablation_arguments(ablated)
-    pieces = action("cut", "make minutes of motion and cut clips of them", generate_motion.write_pieces)
+    pieces = action("cut", "generate minutes of motion and cut them into clips", generate_motion.write_pieces)
     generate_motion.cut_arguments(pieces)
-    generate_motion.add_model_argument(action("info", "tell what a model is", generate_motion.print_model))
-    made = action("planted", "make takes of which the truth is known, to try models on", write_planted_takes)
-    made.add_argument("-o", "--out", type=Path, required=True, help="a folder")
-    made.add_argument("--count", type=int, default=25, help="conversations, two takes each (default: 25)")
-    made.add_argument("-s", "--seconds", type=float, default=180.0, help="of each (default: 180)")
-    made.add_argument("--seed", type=int, default=1, help="of what is said (default: 1)")
+    generate_motion.add_model_argument(action("info", "describe a model", generate_motion.print_model))
+    made = action(
+        "planted", "make synthetic takes with a known ground truth, to test models", write_planted_takes
+    )
+    made.add_argument("-o", "--out", type=Path, required=True, help="the folder to write into")
+    made.add_argument(
+        "--count", type=int, default=25, help="number of conversations, of two takes each (default: 25)"
+    )
+    made.add_argument(
+        "-s", "--seconds", type=float, default=180.0, help="seconds of each conversation (default: 180)"
+    )
+    made.add_argument("--seed", type=int, default=1, help="random seed of the speech (default: 1)")
     made.add_argument(
         "--moves",
         type=int,
         default=1,
-        help="of what is done with it: another number is another performance of the same speech (default: 1)",
+        help="random seed of the motion; another seed gives another performance of the same speech "
+        "(default: 1)",
     )
-    made.add_argument("--project", type=Path, help="whose graph moves both (default: the sample project)")
+    made.add_argument(
+        "--project",
+        type=Path,
+        help="the project whose graph moves both speakers (default: the sample project)",
+    )
 
 
 def run(options: Namespace) -> int:
@@ -63,14 +76,14 @@ def write_planted_takes(options: Namespace) -> int:
     project = open_for_command(SAMPLE if own else options.project)
     for name in ("seed", "moves"):
         if getattr(options, name) < 0:
-            raise ValueError(f"--{name} is a whole number from 0 on")
+            raise ValueError(f"--{name} must be a whole number, 0 or more")
     asked = Planted(count=options.count, seconds=options.seconds, seed=options.seed, moves=options.moves)
     licence = "MIT: synthetic speech, and motion of Metagraph's own sample clips." if own else ""
     new = write_planted(project, options.out, asked, licence, make_progress_printer(options, "conversations"))
     hours = 2 * asked.count * asked.seconds / 3600
     words = (
         f"{asked.count} conversations, {2 * asked.count} takes, {hours:.2f} h in {options.out} "
-        f"({new} new, {asked.count - new} were there)"
+        f"({new} new, {asked.count - new} made earlier)"
     )
     data = {"folder": str(options.out), "conversations": asked.count, "new": new, "hours": round(hours, 4)}
     say(options, words, data)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 
 
 def add_arguments(parser: ArgumentParser) -> None:
-    """Add the options of `evaluate`. What are models and what takes is told by their endings."""
+    """Add the options of `evaluate`. The endings of the files distinguish models from takes."""
     from app.cli.generate_takes import add_speech_argument
 
     parser.add_argument(
@@ -23,32 +23,38 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         nargs="+",
         metavar="MODEL... TAKES",
-        help="models (.mgmodel), and clips or folders of them that the models have not learned from; of "
-        "folders they have learned from, what was held out is taken",
+        help="models (.mgmodel), and takes (clips or folders) that the models have not learned from; "
+        "from folders they have learned from, only held-out takes are used",
     )
     add_speech_argument(parser)
-    parser.add_argument("-o", "--out", type=Path, help="write a page, JSON and CSV into this folder")
+    parser.add_argument("-o", "--out", type=Path, help="write a report page, JSON and CSV into this folder")
     parser.add_argument(
         "--floor",
         type=Path,
         metavar="FOLDER",
-        help="other true motion to the same speech, clips of the same names (default: of planted takes, "
-        "another performance; else half of the takes beside the other half)",
+        help="other recorded motion to the same speech, in clips with the same names (default: another "
+        "performance of synthetic takes; else one half of the takes against the other)",
     )
     add_manner_arguments(parser)
 
 
 def add_manner_arguments(parser: ArgumentParser) -> None:
     """Add the options that say how models are sampled and judged."""
-    parser.add_argument("--seeds", type=int, default=5, help="takes of each model (default: 5)")
-    parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
+    parser.add_argument("--seeds", type=int, default=5, help="number of takes per model (default: 5)")
     parser.add_argument(
-        "--lookahead", type=int, help="frames of sound ahead, 0 for live use (default: all the model uses)"
+        "--temperature", type=float, default=1.0, help="how much the motion varies, 0 to 1.2 (default: 1)"
+    )
+    parser.add_argument(
+        "--lookahead",
+        type=int,
+        help="frames of sound the model hears ahead; 0 for live use (default: as many as the model uses)",
     )
     parser.add_argument(
         "--guidance", type=float, help="how closely a matching model follows the speech (default: 1.5)"
     )
-    parser.add_argument("--draws", type=int, default=200, help="draws of blocks for intervals (default: 200)")
+    parser.add_argument(
+        "--draws", type=int, default=200, help="bootstrap draws for the intervals (default: 200)"
+    )
 
 
 def read_manner(options: Namespace) -> SamplingManner:
@@ -57,11 +63,11 @@ def read_manner(options: Namespace) -> SamplingManner:
     from metagraph.research.generation.evaluation import SamplingManner
 
     if not 1 <= options.seeds <= 100:
-        raise ValueError(f"--seeds is 1 to 100, not {options.seeds}")
+        raise ValueError(f"--seeds must be 1 to 100, not {options.seeds}")
     if not 0 <= options.draws <= 10000:
-        raise ValueError(f"--draws is 0 to 10000, not {options.draws}")
+        raise ValueError(f"--draws must be 0 to 10000, not {options.draws}")
     if options.lookahead is not None and options.lookahead < 0:
-        raise ValueError("--lookahead is 0 frames or more")
+        raise ValueError("--lookahead must be 0 frames or more")
     guidance = GUIDANCE if options.guidance is None else options.guidance
     return SamplingManner(options.seeds, options.temperature, options.lookahead, guidance)
 
@@ -78,8 +84,8 @@ def judge_models(options: Namespace) -> int:
     paths = [p for p in options.given if p.suffix.lower() == SUFFIX]
     options.takes = [p for p in options.given if p.suffix.lower() != SUFFIX]
     if not paths or not options.takes:
-        missing = "are no takes to judge them on" if paths else f"is no model ({SUFFIX})"
-        raise ValueError(f"give models and takes: there {missing}")
+        missing = "takes are missing" if paths else f"a model ({SUFFIX}) is missing"
+        raise ValueError(f"give models and takes: {missing}")
     manner = read_manner(options)
     if options.out is not None:
         claim(*(options.out / name for name in REPORT))
@@ -89,7 +95,7 @@ def judge_models(options: Namespace) -> int:
     batch = read_all(options, first.rig, first.card.tracks)
     takes, left = for_all(models, batch.takes)
     if left:
-        print(f"note: {len(left)} takes are left out, since a model has learned from them", file=sys.stderr)
+        print(f"note: {len(left)} takes skipped, because a model has learned from them", file=sys.stderr)
     held = HeldOut(takes, find_floor(options.floor, options.takes, takes, first.rig))
     show = make_progress_printer(options, "made")
     judged = judge_on_takes(first.rig, models, held, manner, draws=options.draws, progress=show)
@@ -105,7 +111,7 @@ def judge_models(options: Namespace) -> int:
         "models": ", ".join(f"{n} ({m.card.kind}, {m.card.steps:,} steps)" for n, m in models.items()),
     }
     written = write_generation_report(judged, said, notes, options.out) if options.out is not None else []
-    lines = [f"{len(takes)} takes, {said['minutes']:g} min, {manner.seeds} seeds of each model"]
+    lines = [f"{len(takes)} takes, {said['minutes']:g} min, {manner.seeds} seeds per model"]
     lines += [
         report_as_text(judged.rows),
         *(f"note: {n}" for n in notes),
@@ -121,15 +127,19 @@ def require_alike(models: dict[str, Model]) -> None:
     first, *others = models.items()
     for name, model in others:
         if model.card.skeleton.fingerprint != first[1].card.skeleton.fingerprint:
-            raise ValueError(f"'{name}' is for another skeleton than '{first[0]}': judge them one by one")
+            raise ValueError(
+                f"'{name}' is for another skeleton than '{first[0]}': evaluate them one at a time"
+            )
         if model.card.tracks != first[1].card.tracks or model.rig.roles != first[1].rig.roles:
-            raise ValueError(f"'{name}' hears or moves otherwise than '{first[0]}': judge them one by one")
+            raise ValueError(
+                f"'{name}' hears or moves other things than '{first[0]}': evaluate them one at a time"
+            )
 
 
 def find_floor(
     folder: Path | None, given: list[Path], takes: tuple[Take, ...], rig: PoseRig
 ) -> list[Any] | None:
-    """Return other true motion to the same speech, poses of each take; None where there is none. Raises
+    """Return other true motion to the same speech, poses of each take; None if there is none. Raises
     ValueError.
     """
     from metagraph.generation.take_files import find_takes, read_take_batch
@@ -140,7 +150,7 @@ def find_floor(
         missing = [t.source.name for t in takes if t.source.name not in found]
         if missing:
             why = f" ({batch.failures[0]})" if batch.failures else ""
-            raise ValueError(f"{folder} holds no other motion for '{missing[0]}'{why}")
+            raise ValueError(f"{folder} has no other motion for '{missing[0]}'{why}")
         return [part_like(found[t.source.name], t) for t in takes]
     return perform_planted_floor(given, takes, rig)
 
@@ -151,7 +161,7 @@ def part_like(whole: Take, take: Take) -> Any:
 
 
 def perform_planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseRig) -> list[Any] | None:
-    """Return planted takes performed anew, None where they are not planted or not by the sample project."""
+    """Return another performance of takes that the sample project made, or None for other takes."""
     from app.cli.command_output import open_for_command
     from app.cli.demo_command import SAMPLE
     from metagraph.research.generation.planted import again, read_planted
@@ -174,19 +184,20 @@ def list_judging_cautions(
     out = []
     seconds = sum(t.seconds for t in takes)
     if seconds < 240:
-        out.append(f"{seconds:.0f} s are little to judge a model on: intervals are wide.")
+        out.append(f"{seconds:.0f} s are too short to judge a model well: the intervals are wide.")
     if "floor" in beside:
         out.append(
-            "The floor is half of the takes beside the other half, not other motion to the same speech."
+            "The floor compares one half of the takes with the other, not two performances of the same "
+            "speech."
         )
     elif "other motion" not in beside:
         out.append("There is too little motion for a floor.")
     if not any(t.marks.hesitations for t in takes):
-        out.append("No partner hesitates, or words are missing: nothing is said of listening.")
+        out.append("No partner hesitates, or words are missing, so listening is not measured.")
     kinds = {m.card.kind for m in models.values()}
     if len(kinds) > 1:
         out.append(
-            "These models differ in several things at once (the CVAE has neither past poses nor a flow): "
-            "`ablate` changes one at a time."
+            "These models differ in several ways at once (the CVAE has neither past poses nor a flow). "
+            "`ablate` changes one thing at a time."
         )
     return tuple(out)

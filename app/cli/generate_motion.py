@@ -44,28 +44,36 @@ def add_heard_arguments(parser: ArgumentParser, needed: bool) -> None:
         type=Path,
         nargs="+",
         metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: as the sound is called, "
-        "else by loudness)",
+        help="transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: a file named "
+        "like the sound, else loudness)",
     )
     add_language_arguments(parser)
-    parser.add_argument("--side", type=int, choices=(1, 2), default=1, help="whose motion (default: 1)")
-    parser.add_argument("--seed", type=int, default=1, help="another take (default: 1)")
-    parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
+    parser.add_argument(
+        "--side", type=int, choices=(1, 2), default=1, help="the speaker who moves (default: 1)"
+    )
+    parser.add_argument(
+        "--seed", type=int, default=1, help="random seed; another seed gives another take (default: 1)"
+    )
+    parser.add_argument(
+        "--temperature", type=float, default=1.0, help="how much the motion varies, 0 to 1.2 (default: 1)"
+    )
     parser.add_argument("--guidance", type=float, help="how closely a matching model follows the speech")
     parser.add_argument(
-        "--lookahead", type=int, help="frames of sound ahead, 0 for live use (default: all the model uses)"
+        "--lookahead",
+        type=int,
+        help="frames of sound the model hears ahead; 0 for live use (default: as many as the model uses)",
     )
     parser.add_argument(
         "--activity",
         choices=ROLES,
-        help="whoever speaks, this is the role: 'listening' makes a listener (default: as it is)",
+        help="play this role throughout: 'listening' makes a listener (default: the role of the recording)",
     )
     parser.add_argument(
         "--from",
         dest="first",
         type=Path,
         metavar="CLIP",
-        help="a clip whose first pose it goes on from, a stance say (default: the mean pose)",
+        help="start from the first pose of this clip, such as a stance (default: the mean pose)",
     )
 
 
@@ -73,13 +81,16 @@ def cut_arguments(parser: ArgumentParser) -> None:
     """Add the options of `cut`."""
     add_model_argument(parser)
     add_heard_arguments(parser, needed=False)
-    parser.add_argument("-o", "--out", type=Path, required=True, help="a folder for the pieces")
+    parser.add_argument("-o", "--out", type=Path, required=True, help="the folder for the clips")
     parser.add_argument(
-        "--minutes", type=float, default=3.0, help="how much is made to be cut, by several seeds (default: 3)"
+        "--minutes",
+        type=float,
+        default=3.0,
+        help="minutes of motion to generate, from several seeds (default: 3)",
     )
-    parser.add_argument("--least", type=float, default=1.0, help="seconds of a piece (default: 1)")
-    parser.add_argument("--most", type=float, default=8.0, help="seconds of a piece (default: 8)")
-    parser.add_argument("--project", type=Path, help="add the pieces to this project")
+    parser.add_argument("--least", type=float, default=1.0, help="seconds of the shortest clip (default: 1)")
+    parser.add_argument("--most", type=float, default=8.0, help="seconds of the longest clip (default: 8)")
+    parser.add_argument("--project", type=Path, help="add the clips to this project")
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +110,7 @@ def read_heard(options: Namespace, tracks: int) -> HeardInput:
 
     paths: list[Path] = options.speech or []
     if len(paths) > 2 or len(options.words or ()) > 2:
-        raise ValueError("a conversation of two has one or two sounds, and at most two files with words")
+        raise ValueError("give one or two sounds and at most two transcripts for a conversation of two")
     speech, name = _read_speech(options, paths) if paths else _planted_speech(options)
     for note in speech.notes:
         print(f"note: {note}", file=sys.stderr)
@@ -135,7 +146,7 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str
         if not path.is_file():
             raise FileError(path, "the sound file does not exist", remedy="Check the path of the speech.")
         if path.suffix.lower() not in SOUNDS:
-            raise FileError(path, "is no sound", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
+            raise FileError(path, "is not a sound file", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
     words = _words_beside(paths[0]) if options.words is None else options.words
     swapped = options.side == 2 and len(paths) == 2 and not words
     sounds = tuple(reversed(paths)) if swapped else tuple(paths)
@@ -154,41 +165,41 @@ def _words_beside(sound: Path) -> list[Path]:
 
 
 def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
-    """Raise FileError where a sound cannot be used; tell where it is cut off."""
+    """Raise FileError if a sound cannot be used; warn if it clips."""
     import numpy as np
 
     from metagraph.errors import FileError
     from metagraph.generation.features import RATE
-    from metagraph.generation.loudness import integrated_loudness
+    from metagraph.generation.loudness import measure_integrated_loudness
 
     seconds = samples.shape[1] / RATE
     if not np.isfinite(samples).all():
-        raise FileError(place, "holds a sample that is not a number", remedy="Export it anew.")
+        raise FileError(place, "holds a sample that is not a number", remedy="Export it again.")
     if seconds < LEAST:
         raise FileError(place, f"lasts {seconds:.2f} s", remedy=f"Give at least {LEAST:g} s of speech.")
-    if not any(np.isfinite(integrated_loudness(channel, RATE)) for channel in samples):
+    if not any(np.isfinite(measure_integrated_loudness(channel, RATE)) for channel in samples):
         raise FileError(place, "is silent", remedy="Check the microphone, or what was exported.")
     if max(speech.clipped, default=0.0) > 1e-4:
         share = 100 * max(speech.clipped)
-        print(f"note: {share:.2g} % of the sound is clipped. Record it at a lower level", file=sys.stderr)
+        print(f"note: {share:.2g} % of the sound clips. Record it at a lower level", file=sys.stderr)
 
 
 def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:
-    """Return who speaks when: `[T, 4]`, of the words where there are any, else of the sound."""
+    """Return who speaks when: `[T, 4]`, of the words if there are any, else of the sound."""
     from metagraph.generation.features import conversation_activity
     from metagraph.generation.sampler import hear_activity
 
     if speech.conversation is None:
         if len(samples) == 1:
-            print("note: only one voice: the speaker's own. The partner never speaks", file=sys.stderr)
+            print("note: the sound has only the speaker's voice; the partner stays silent", file=sys.stderr)
         return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
-        print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)
+        print(f"note: side {options.side} does not speak, so it listens", file=sys.stderr)
     return conversation_activity(speech.conversation, options.side - 1, frames)
 
 
 def as_role(activity: Any, role: str) -> Any:
-    """Return activity in which whoever speaks, this is the role."""
+    """Return activity that gives the speaker this role throughout."""
     import numpy as np
 
     from metagraph.generation.features import BOTH, NONE, PARTNER, SELF
@@ -213,7 +224,9 @@ def make_motion(options: Namespace, model: Model, heard: HeardInput, seed: int) 
         stance = read_clips(options.first)[0]
         if stance.skeleton != model.rig.skeleton:
             raise FileError(
-                options.first, "has another skeleton than the model", remedy="Retarget it to the model's."
+                options.first,
+                "has another skeleton than the model",
+                remedy="Retarget it to the model's skeleton.",
             )
         first = first_pose(stance)
     return sample_whole(
@@ -238,7 +251,7 @@ def write_motion(options: Namespace) -> int:
 
     out: Path = options.out
     if out.suffix.lower() not in OUT:
-        raise ValueError(f"motion is written as {' or '.join(OUT)}, not as '{out.suffix or out.name}'")
+        raise ValueError(f"motion can be written as {' or '.join(OUT)}, not as '{out.suffix or out.name}'")
     model = read_model(options.model)
     heard = read_heard(options, model.card.tracks)
     clip = make_motion(options, model, heard, options.seed)
@@ -263,7 +276,7 @@ def write_motion(options: Namespace) -> int:
 
 
 def write_pieces(options: Namespace) -> int:
-    """Make motion, cut it where that is safe, and write the pieces."""
+    """Make motion, cut it if that is safe, and write the pieces."""
     with ProjectOutput(options.project) if options.project is not None else nullcontext() as output:
         return _cut(options, output)
 
@@ -281,7 +294,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
     from metagraph.synthesis.cut import candidates, uncut
 
     if not 0 < options.minutes <= MINUTES:
-        raise ValueError(f"--minutes is above 0 and at most {MINUTES:g}, not {options.minutes:g}")
+        raise ValueError(f"--minutes must be more than 0 and at most {MINUTES:g}, not {options.minutes:g}")
     model = read_model(options.model)
     heard = read_heard(options, model.card.tracks)
     out: Path = options.out
@@ -322,7 +335,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
 
 
 def _added(output: ProjectOutput, files: list[Path]) -> int:
-    """Add pieces to a project; return how many. Their names, and so their entries, tell model and seed."""
+    """Add pieces to a project and return how many. Their names have the model and the seed."""
     from app.cli.command_output import open_for_command
     from metagraph.formats.imports import import_files
 
@@ -336,14 +349,14 @@ def _added(output: ProjectOutput, files: list[Path]) -> int:
 
 
 def print_model(options: Namespace) -> int:
-    """Tell what a model is."""
+    """Describe a model."""
     import msgspec
 
     from app.cli.command_output import say
     from metagraph.generation.networks import parameters
     from metagraph.generation.stored import read_model
 
-    card = read_model(options.model).card  # its weights are read as well: a damaged file is told here
+    card = read_model(options.model).card  # its weights are read as well: a damaged file is reported here
     count = parameters(card.sizes)
     data = {**msgspec.to_builtins(card), "parameters": count}
     say(options, "\n".join(_told(options.model, card, count)), data)
@@ -361,7 +374,7 @@ def _told(path: Path, card: ModelCard, count: int) -> list[str]:
         f"  made with {', '.join(f'{n} {v}' for n, v in sorted(card.versions.items())) or 'unknown'}",
     ]
     for what, takes in (("learned from", card.takes), ("held out", card.held_out)):
-        licences = sorted({t.licence or "no licence told" for t in takes})
+        licences = sorted({t.licence or "no licence given" for t in takes})
         minutes = sum(t.seconds for t in takes) / 60
         lines.append(f"  {what} {len(takes)} takes, {minutes:.1f} min" + (": " if takes else ""))
         lines += [f"    {t.name}{' (mirrored)' if t.mirrored else ''}, {t.seconds:.1f} s" for t in takes[:10]]

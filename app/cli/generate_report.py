@@ -40,20 +40,21 @@ PERFECT = {
     "diversity": "true",
 }
 MEANINGS = {
-    "distance": "how the landmarks' distances from the mean pose are distributed: W1 over the mean distance",
-    "speed": "mean speed over the true one; speed_w1: W1 likewise",
-    "acceleration": "mean acceleration over the true one",
-    "wrist_range": "range between quartiles of the wrists' distances over the true one",
-    "still": "how often a hand rests (under 4 cm/s, the mean over half a second) over the true one",
-    "trembling": "mean acceleration of hands that rest over the true one",
-    "role": "mean change of the distances while speaking over that while listening; role_w1: W1 of "
-    "figures 7, 8",
-    "stroke": "speed of the hands within 0.25 s of own stresses over their mean speed",
-    "nods": "vertical speed of the nose beside the head in the second after own responses, and after the "
-    "partner's hesitations, over its mean",
-    "profile": "correlation of the hands' mean speed about own stresses with the true one",
-    "frechet": "distance between Gaussians of seconds of motion",
-    "diversity": "mean distance of the landmarks between two takes to the same speech, cm",
+    "distance": "distribution of the landmarks' distances from the mean pose: W1 divided by the mean "
+    "distance",
+    "speed": "mean speed divided by the recorded one; speed_w1: W1 of the speeds",
+    "acceleration": "mean acceleration divided by the recorded one",
+    "wrist_range": "interquartile range of the wrists' distances, divided by the recorded one",
+    "still": "share of time a hand rests (mean over half a second below 4 cm/s), divided by the recorded one",
+    "trembling": "mean acceleration of resting hands, divided by the recorded one",
+    "role": "mean change of the distances while speaking, divided by that while listening; role_w1: W1 "
+    "of figures 7, 8",
+    "stroke": "speed of the hands within 0.25 s of own stresses, divided by their mean speed",
+    "nods": "vertical speed of the nose relative to the head in the second after own responses and "
+    "after the partner's hesitations, divided by its mean",
+    "profile": "correlation of the hands' mean speed around own stresses with the recorded one",
+    "frechet": "distance between Gaussians fitted to one-second pieces of motion",
+    "diversity": "mean distance of the landmarks between two takes for the same speech, in cm",
 }
 _STYLE = f"""
 body {{ max-width: 1180px; }} svg {{ max-width: 1000px; }} .wide-table {{ overflow-x: auto; }}
@@ -62,7 +63,7 @@ table {{ font-size: 12px; }} td:first-child {{ min-width: 110px; }} td .dim {{ f
 
 
 def report_as_data(rows: Sequence[MeasureRow], told: dict[str, Any]) -> dict[str, Any]:
-    """Return the table as plain data; what is unknown is null. told: what stands beside the rows."""
+    """Return the table as plain data, with null for unknown values. told: further entries beside the rows."""
 
     def plain(value: float) -> float | None:
         return round(value, 5) if isfinite(value) else None
@@ -79,7 +80,7 @@ def report_as_data(rows: Sequence[MeasureRow], told: dict[str, Any]) -> dict[str
 
 
 def report_as_text(rows: Sequence[MeasureRow]) -> str:
-    """Return the table as text, a line a system."""
+    """Return the table as text, with a line for each system."""
     wide = max([7, *(len(row.name) for row in rows)])
     short = [n.replace("nods_", "nods ").replace("_", " ") for n in NAMES]
     columns = [max(len(n), 6) for n in short]
@@ -93,7 +94,7 @@ def report_as_text(rows: Sequence[MeasureRow]) -> str:
 
 
 def report_as_csv(rows: Sequence[MeasureRow]) -> str:
-    """Return the table as CSV: name, measure, value and its interval a line."""
+    """Return the table as CSV, with name, measure, value and interval in each line."""
     lines = [["system", "measure", "value", "low", "high"]]
     for row in rows:
         for n in NAMES:
@@ -123,31 +124,33 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
     mean = mean_landmarks(judged.true)
     systems = {"true": judged.true}
     systems |= {name: seeds[0] for name, seeds in judged.made.items()}
-    far = {name: figures.landmark_distances(motion, mean) for name, motion in systems.items()}
+    far = {name: figures.measure_landmark_distances(motion, mean) for name, motion in systems.items()}
     most = max(float(v.max()) for v in far.values())
-    parts = ["<h1>Generated motion beside recorded motion</h1>", "<div class='card'>"]
+    parts = ["<h1>Generated and recorded motion</h1>", "<div class='card'>"]
     parts += [f"<p>{escape(str(k))}: {escape(str(v))}</p>" for k, v in told.items()]
     parts += ["</div>", *(f"<p class='warn'>{escape(n)}</p>" for n in notes)]
     parts += ["<h2>Table</h2>", format_report_table(judged.rows)]
     parts.append(
         "<p class='dim'>Under each value what 95 % of draws of blocks of 15 s give. <i>floor</i>: other "
         "motion as true as the recorded one; <i>mismatched</i>: recorded motion to other speech; <i>mean "
-        "pose</i>: somebody who stands still. No value says more than what stands beside it.</p>"
+        "pose</i>: a figure that stands still. Read each value only together with these.</p>"
     )
     words = "".join(f"<dt>{escape(k)}</dt><dd>{escape(v)}</dd>" for k, v in MEANINGS.items())
     parts += [f"<dl>{words}</dl>", "<h2>Figure 6: distance from the mean pose</h2>"]
     for name, motion in systems.items():
         parts.append(_figure(figures.draw_over_time(motion[0], mean, most), f"{name}: the first take"))
     parts.append(
-        _figure(figures.draw_boxes(far, "cm"), "All takes; whiskers by Tukey, notches about the median")
+        _figure(figures.draw_boxes(far, "cm"), "All takes; Tukey's whiskers, notches around the median")
     )
     first = {name: motion[0] for name, motion in systems.items()}
     parts.append(
         _figure(figures.draw_overlaid(first), "Poses of the first take, one a second, from the front")
     )
-    for number, who, words in ((7, SELF, "oneself speaks"), (8, PARTNER, "the partner speaks")):
+    for number, who, words in ((7, SELF, "the speaker speaks"), (8, PARTNER, "the partner speaks")):
         parts.append(f"<h2>Figure {number}: how fast that distance changes while {words}</h2>")
-        grown = {name: figures.distance_changes(motion, mean, who) for name, motion in systems.items()}
+        grown = {
+            name: figures.measure_distance_changes(motion, mean, who) for name, motion in systems.items()
+        }
         parts.append(_figure(figures.draw_boxes(grown, "cm/s"), "All takes; the first seed of each model"))
     head = "<meta charset='utf-8'><title>Generated motion</title>"
     return f"<!DOCTYPE html><html lang='en'><head>{head}<style>{STYLE}{_STYLE}</style></head><body>" + (
@@ -156,7 +159,7 @@ def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Se
 
 
 def format_report_table(rows: Sequence[MeasureRow]) -> str:
-    """Return the table as HTML: a measure a line, a system a column."""
+    """Return the table as HTML, with a row for each measure and a column for each system."""
     head = "".join(f"<th>{escape(n)}</th>" for n in ("", *(row.name for row in rows), "perfect"))
     body = []
     for n in NAMES:

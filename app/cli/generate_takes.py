@@ -1,4 +1,4 @@
-"""What the actions of `metagraph generate` share: takes read and told of, models read."""
+"""Read takes and models for the actions of `metagraph generate`, and report on them."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def add_takes_arguments(parser: ArgumentParser) -> None:
         type=Path,
         nargs="+",
         metavar="TAKES",
-        help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
-        "and talk_2.bvh for the sides of talk.wav",
+        help="clips, or folders of clips, each with its sound in the same folder: talk.bvh and "
+        "talk.wav, or talk_1.bvh and talk_2.bvh for the two speakers of talk.wav",
     )
     add_speech_argument(parser)
 
@@ -37,13 +37,13 @@ def add_speech_argument(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="sounds and words that lie elsewhere, or folders of them (default: beside the clips)",
+        help="sounds and transcripts, or folders of them (default: the clips' folders)",
     )
     add_language_arguments(parser)
 
 
 def make_progress_printer(options: Namespace, what: str) -> Any:
-    """Return what tells how far the work is, on a terminal."""
+    """Return a function that prints progress on a terminal."""
     show = sys.stderr.isatty() and not options.json
 
     def progress(done: int, total: int) -> None:
@@ -54,9 +54,7 @@ def make_progress_printer(options: Namespace, what: str) -> Any:
 
 
 def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) -> TakeBatch:
-    """Read the takes that are asked for, and say what there is to know of them. Raises ValueError where none
-    can be used.
-    """
+    """Read the requested takes, and print notes on them. Raises ValueError if none can be used."""
     from app.cli.language_options import read_speaking
     from metagraph.errors import FileError
     from metagraph.generation.take_files import find_takes, read_take_batch
@@ -79,8 +77,10 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
     if not batch.takes:
         place = ", ".join(str(p) for p in options.takes)
         if not failures:
-            raise FileError(place, "holds no takes", remedy="Give clips with their sound beside them.")
-        raise ValueError(f"none of the {len(failures)} takes in {place} can be used: {failures[0]}")
+            raise FileError(
+                place, "has no takes", remedy="Give clips that have their sound in the same folder."
+            )
+        raise ValueError(f"cannot use any of the {len(failures)} takes in {place}: {failures[0]}")
     return batch
 
 
@@ -89,7 +89,7 @@ def print_notes(notes: tuple[str, ...]) -> None:
     for note in notes[:SHOWN]:
         print(f"note: {note}", file=sys.stderr)
     if len(notes) > SHOWN:
-        print(f"note: and {len(notes) - SHOWN} more like these", file=sys.stderr)
+        print(f"note: and {len(notes) - SHOWN} more", file=sys.stderr)
 
 
 def read_models(paths: list[Path]) -> dict[str, Model]:
@@ -99,7 +99,5 @@ def read_models(paths: list[Path]) -> dict[str, Model]:
     names = [p.stem for p in paths]
     twice = next((n for n in names if names.count(n) > 1), None)
     if twice is not None:
-        raise ValueError(
-            f"two models are called '{twice}': rename one, so that the table can tell them apart"
-        )
+        raise ValueError(f"two models are called '{twice}': rename one of them")
     return {p.stem: read_model(p) for p in paths}

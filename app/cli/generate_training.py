@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 
 KINDS = ("flow-vae", "moglow", "cvae", "matching")
 MINUTES = 15.0
-EVERY = 30.0  # seconds between lines where nobody looks on
+EVERY = 30.0  # seconds between lines if nobody looks on
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -32,24 +32,32 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         nargs="*",
         metavar="TAKES",
-        help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
-        "and talk_2.bvh for the sides of talk.wav",
+        help="clips, or folders of clips, each with its sound in the same folder: talk.bvh and "
+        "talk.wav, or talk_1.bvh and talk_2.bvh for the two speakers of talk.wav",
     )
     add_speech_argument(parser)
-    parser.add_argument("-o", "--out", type=Path, required=True, help="the model (.mgmodel)")
+    parser.add_argument("-o", "--out", type=Path, required=True, help="the model to write (.mgmodel)")
     add_training_arguments(parser, "matching")
     parser.add_argument(
         "--minutes", type=float, help=f"of the clock, all runs together (default: {MINUTES:g})"
     )
-    parser.add_argument("--seconds", type=float, help="of the processor instead, all runs together")
-    parser.add_argument("--seed", type=int, default=1, help="another training (default: 1)")
     parser.add_argument(
-        "--loss", choices=("paper", "whitened", "finished"), help="of a flow (default: what suits it)"
+        "--seconds", type=float, help="processor time in seconds instead, for all runs together"
     )
     parser.add_argument(
-        "--mirror", action="store_true", help="learn from mirror twins as well; nobody is right-handed then"
+        "--seed", type=int, default=1, help="random seed; another seed gives another training (default: 1)"
     )
-    parser.add_argument("--resume", action="store_true", help="go on where it was stopped")
+    parser.add_argument(
+        "--loss",
+        choices=("paper", "whitened", "finished"),
+        help="the loss of a flow model (default: the one that suits the model)",
+    )
+    parser.add_argument(
+        "--mirror",
+        action="store_true",
+        help="also learn from mirrored takes; the result has no dominant hand",
+    )
+    parser.add_argument("--resume", action="store_true", help="continue a training that was stopped")
 
 
 def add_training_arguments(parser: ArgumentParser, kind: str) -> None:
@@ -58,11 +66,11 @@ def add_training_arguments(parser: ArgumentParser, kind: str) -> None:
         "--size",
         choices=("small", "tokens", "paper"),
         default="small",
-        help="'tokens' is a small flow-vae on pieces of 160 ms, as matching; 'paper' learns for hundreds of "
-        "hours on a processor (default: small)",
+        help="'tokens' is a small flow-vae on pieces of 160 ms, like matching; 'paper' trains for "
+        "hundreds of processor hours (default: small)",
     )
-    parser.add_argument("--two-tracks", action="store_true", help="hear both voices apart")
-    parser.add_argument("--threads", type=int, default=0, help="of the processor (default: all)")
+    parser.add_argument("--two-tracks", action="store_true", help="hear the two voices separately")
+    parser.add_argument("--threads", type=int, default=0, help="processor threads to use (default: all)")
 
 
 def add_ablation_arguments(parser: ArgumentParser) -> None:
@@ -72,20 +80,34 @@ def add_ablation_arguments(parser: ArgumentParser) -> None:
 
     add_takes_arguments(parser)
     parser.add_argument(
-        "-o", "--out", type=Path, required=True, help="a folder for models and table; what is there is kept"
+        "-o",
+        "--out",
+        type=Path,
+        required=True,
+        help="the folder for models and table; models already there are used again",
     )
     add_training_arguments(parser, "matching")
     parser.add_argument(
-        "--seconds", type=float, default=300.0, help="of the processor for each training (default: 300)"
+        "--seconds", type=float, default=300.0, help="processor time in seconds per training (default: 300)"
     )
-    parser.add_argument("--trainings", type=int, default=1, help="of each kind, by seeds (default: 1)")
+    parser.add_argument(
+        "--trainings",
+        type=int,
+        default=1,
+        help="number of trainings of each variant, with different seeds (default: 1)",
+    )
     parser.add_argument(
         "--change",
         action="append",
         metavar="NAME",
-        help="only this change, beside the whole model; as often as you like (default: all)",
+        help="only this change, compared with the full model; repeat for more (default: all)",
     )
-    parser.add_argument("--floor", type=Path, metavar="FOLDER", help="as for evaluate")
+    parser.add_argument(
+        "--floor",
+        type=Path,
+        metavar="FOLDER",
+        help="other recorded motion to the same speech, as for 'evaluate'",
+    )
     add_manner_arguments(parser)
 
 
@@ -96,15 +118,15 @@ def require_trainable(options: Namespace) -> None:
     for name in ("minutes", "seconds"):
         value = getattr(options, name, None)
         if value is not None and not 0 < value < 1e7:
-            raise ValueError(f"--{name} is more than 0, not {value:g}")
+            raise ValueError(f"--{name} must be more than 0, not {value:g}")
     if not 0 <= options.threads <= 256:
-        raise ValueError(f"--threads is 0 to 256, not {options.threads}")
+        raise ValueError(f"--threads must be 0 to 256, not {options.threads}")
     if words := find_missing_tools():
         raise RuntimeError(words)
 
 
 def train(options: Namespace) -> int:
-    """Train a model, or go on with it, and tell how it does."""
+    """Train a model, or continue its training, and print progress."""
     from app.cli.command_output import say
     from metagraph.formats.outputs import declare_updates
     from metagraph.generation.stored import SUFFIX, read_model
@@ -112,7 +134,7 @@ def train(options: Namespace) -> int:
 
     out: Path = options.out
     if out.suffix.lower() != SUFFIX:
-        raise ValueError(f"a model is written as {SUFFIX}, not as '{out.suffix or out.name}'")
+        raise ValueError(f"a model can be written as {SUFFIX}, not as '{out.suffix or out.name}'")
     require_trainable(options)
     declare_updates(out, folder_of(out))  # what is there is gone on with, or refused
     _go_on(options) if options.resume else _begin(options)
@@ -132,30 +154,30 @@ def train(options: Namespace) -> int:
     }
     lines = [
         f"{out}: {card.kind}, {card.steps:,} steps in {process.last.minutes:.1f} min "
-        f"({process.last.seconds:.0f} s of the processor), learned from {len(card.takes)} takes, "
+        f"({process.last.seconds:.0f} s of processor time), learned from {len(card.takes)} takes, "
         f"{len(card.held_out)} held out" + (", stopped" if stopped else "")
     ]
     lines += [f"  {name}: {value:.4g}" for name, value in card.statistics.items()]
     if stopped:
-        lines.append("go on with: --resume")
+        lines.append("to continue, add --resume")
     else:
-        lines.append(f"what it would need to go on is in {folder_of(out)}")
+        lines.append(f"to continue it later, keep {folder_of(out)}")
     say(options, "\n".join(lines), data)
     return 0
 
 
 def _begin(options: Namespace) -> None:
-    """Read the takes and write the training's folder. Raises ValueError where that would lose something."""
+    """Read the takes and write the training's folder. Raises ValueError if that would lose something."""
     from app.cli.generate_takes import read_all
     from metagraph.generation.takes import split_takes
     from metagraph.generation.train_plan import PLAN, folder_of, plan_of, settings_for, write_training
 
     out: Path = options.out
     if not options.takes:
-        raise ValueError("give takes to learn from, or --resume to go on")
+        raise ValueError("give takes to learn from, or --resume to continue")
     if out.exists() or (folder_of(out) / PLAN).exists():
         what = out if out.exists() else folder_of(out)
-        raise ValueError(f"{what} is there already: choose another name, or go on with --resume")
+        raise ValueError(f"{what} exists already: choose another name, or continue with --resume")
     tracks = 2 if options.two_tracks else 1
     batch = read_all(options, tracks=tracks)
     assert batch.rig is not None
@@ -185,7 +207,7 @@ def _limits(options: Namespace) -> dict[str, Any]:
 
 
 def _go_on(options: Namespace) -> None:
-    """Give a training that was stopped its new limits."""
+    """Set the new limits of a training that was stopped."""
     from msgspec.structs import replace
 
     from metagraph.generation.train_plan import folder_of, read_training_plan, write_plan
@@ -320,11 +342,11 @@ def run_ablation(options: Namespace) -> int:
     write_atomically(options.out / "table.json", (json.dumps(data, indent=1) + "\n").encode())
     write_atomically(options.out / "table.csv", report_as_csv(done.rows).encode())
     lines = [
-        f"{said['model']}: {options.seconds:g} s of the processor each, {len(learned)} takes "
+        f"{said['model']}: {options.seconds:g} s of processor time each, {len(learned)} takes "
         f"({said['hours']:g} h), {len(held)} held out; {len(done.ran)} trained now, {len(done.kept)} kept",
         report_as_text(done.rows),
         *(f"  {c.name}: {c.words}" for c in changes if c.name not in done.left),
-        *(f"  left out, says nothing of such a model: {name}" for name in done.left),
+        *(f"  skipped, does not apply to this model: {name}" for name in done.left),
         f"written: {options.out / 'table.json'}, {options.out / 'table.csv'}",
     ]
     say(options, "\n".join(lines), data)
@@ -337,12 +359,12 @@ def choose_changes(names: list[str] | None) -> list[Any]:
 
     odd = next((n for n in names or () if n not in NAMES), None)
     if odd is not None:
-        raise ValueError(f"there is no change '{odd}'; they are {', '.join(NAMES[1:])}")
+        raise ValueError(f"there is no change '{odd}'; the changes are {', '.join(NAMES[1:])}")
     return [c for n, c in enumerate(CHANGES) if not n or names is None or c.name in names]
 
 
 def _train_one(options: Namespace, rig: Any, tracks: int, job: AblationJob) -> None:
-    """Train one model of an ablation; of one that was cut short, go on."""
+    """Train one model of an ablation, or continue a training that was cut short."""
     from metagraph.errors import FileError
     from metagraph.generation.train_plan import (
         TrainingSettings,

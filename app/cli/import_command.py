@@ -15,7 +15,7 @@ from metagraph.formats.import_words import count_alike, describe_import, remedie
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.pieces import read_other_project
 from metagraph.formats.store import SUFFIX
-from metagraph.graph.editing.taking import words_of_taking
+from metagraph.graph.editing.taking import describe_taking
 from metagraph.graph.model import Project
 
 
@@ -25,22 +25,22 @@ def add_arguments(parser: ArgumentParser) -> None:
         "paths",
         type=Path,
         nargs="*",
-        help="clip files and folders (BVH, GLB, glTF, VRM animation, FBX), and other projects, whose stances "
-        "and actions are taken with their clips",
+        help="clip files and folders (BVH, GLB, glTF, VRM animation, FBX), and other projects, whose "
+        "stances and actions come with their clips",
     )
     parser.add_argument(
         "--labels",
         type=Path,
         metavar="FILE",
-        help="place the clips, and change actions, as a file of labels says (Blender's add-on writes such)",
+        help="place the clips and change actions according to this label file (Blender's add-on writes one)",
     )
     parser.add_argument(
-        "--retarget", action="store_true", help="bring clips of other skeletons onto the project's"
+        "--retarget", action="store_true", help="retarget clips of other skeletons to the project's"
     )
     parser.add_argument(
         "--no-contacts",
         action="store_true",
-        help="with --retarget: leave hands that touch their own body where the arms bring them",
+        help="with --retarget: do not correct hands that touch their own body",
     )
 
 
@@ -56,15 +56,18 @@ def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tup
     clips = [thing for thing in left if thing.kind == "clip"]
     for thing in clips or left:
         print(f"left out: {thing.kind} '{thing.name}': {thing.words}", file=sys.stderr)
-    words = f"{other.name.removesuffix(SUFFIX)}: {words_of_taking(taking)}"
+    words = f"{other.name.removesuffix(SUFFIX)}: {describe_taking(taking)}"
     if clips and not options.retarget:
-        words += ". --retarget brings clips of another skeleton over"
+        words += ". Add --retarget to bring clips of another skeleton onto this one"
     return taking.project, words, bool(left)
 
 
 def run(options: Namespace) -> int:
     if not options.paths and options.labels is None:
-        print("metagraph import: which clips? metagraph import my.metagraph.yaml clips/", file=sys.stderr)
+        print(
+            "metagraph import: give clips or a folder, such as: metagraph import my.metagraph.yaml clips/",
+            file=sys.stderr,
+        )
         return 2
     path: Path = options.project if options.project.is_file() else with_project_ending(options.project)
     with ProjectOutput(path) as output:
@@ -103,8 +106,8 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         place = ", ".join(str(p) for p in files)
         raise FileError(
             place,
-            "no clip was found in it",
-            "on importing it",
+            "has no clips",
+            "while importing it",
             f"Clips are {', '.join(clip_suffixes())} files.",
         )
     for failure in count_alike(result.failures):
@@ -136,7 +139,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     }
     imported = describe_import(result, window=False)
     if again:
-        imported += f" ({len(result.loaded) - again} new, {again} here already and read again)"
+        imported += f" ({len(result.loaded) - again} new, {again} read again)"
     found = [*taken, *([imported] if files or not taken else [])]
     words = f"{path}: {'. '.join(found)}"
     say(options, words if options.labels is None else f"{words}. Labelled {placed} of {len(rows)}", data)

@@ -27,7 +27,7 @@ def run(options: Namespace) -> int:
             path,
             "is a folder",
             "the path",
-            "Name a project, an exported JSON or a clip file in it; 'metagraph verify' takes a folder.",
+            "Give a project, an exported JSON or a clip file in it; 'metagraph verify' takes a folder.",
         )
     if path.suffix.lower() in clip_suffixes():
         clips = read_clips(path)

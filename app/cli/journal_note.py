@@ -1,4 +1,4 @@
-"""A word on edits beside a project that are in no file: commands read the file alone."""
+"""Warn of unsaved edits in a journal beside a project, because commands read the project file only."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from metagraph.formats.recovery import find_left_journals, read_journal
 
 
 def warn_of_journals(path: Path) -> None:
-    """Say on standard error which journals a crash has left beside a project file."""
+    """Print on standard error which journals a crash left beside a project file."""
     for journal in find_left_journals(path.resolve()):
         try:
             left = read_journal(journal, path)
@@ -19,16 +19,21 @@ def warn_of_journals(path: Path) -> None:
             print(f"note: {error}", file=sys.stderr)
             continue
         if left is not None:
-            lost = f" ({_edits(len(left.lost))} in it {_are(left.lost)} damaged)" if left.lost else ""
+            lost = f" ({len(left.lost):,} of them {_are(left.lost)} damaged)" if left.lost else ""
             print(
-                f"note: {journal.name} holds {_edits(left.edits)} that a crash kept from being saved{lost}: "
-                f"open {path.name} in the window to recover them",
+                f"note: {journal.name} has {_edits(left.edits)} from before a crash that "
+                f"{_were(left.edits)} not saved{lost}. "
+                f"Open {path.name} in the window to recover them",
                 file=sys.stderr,
             )
 
 
 def _edits(count: int) -> str:
     return "1 edit" if count == 1 else f"{count:,} edits"
+
+
+def _were(count: int) -> str:
+    return "was" if count == 1 else "were"
 
 
 def _are(things: Sized) -> str:

@@ -1,12 +1,12 @@
-"""Options whose values end up in a project: refused before anything is done that would be lost with them."""
+"""Check options whose values the project keeps, before the command does any work."""
 
 from __future__ import annotations
 
 from argparse import ArgumentTypeError
 
 
-def kept_name(text: str) -> str:
-    """Return the name that a performance is to be kept under; told to be too long before anything is done."""
+def check_kept_name(text: str) -> str:
+    """Return the name for a saved performance. A name that is too long is refused before any work is done."""
     from metagraph.graph.requests import LONGEST_NAME
 
     if len(text) > LONGEST_NAME:
@@ -14,8 +14,8 @@ def kept_name(text: str) -> str:
     return text
 
 
-def kept_seed(text: str) -> int:
-    """Return a seed as projects hold it."""
+def parse_kept_seed(text: str) -> int:
+    """Return a seed in the form that projects have."""
     if not (text.isascii() and text.isdigit() and int(text) <= 0xFFFFFFFF):
-        raise ArgumentTypeError(f"'{text[:40]}' is not a seed: a whole number from 0 to 4294967295")
+        raise ArgumentTypeError(f"'{text[:40]}' is not a seed; a seed is a whole number from 0 to 4294967295")
     return int(text)

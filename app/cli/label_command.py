@@ -1,5 +1,5 @@
-"""Labelling a folder without a window: import, propose, place what is sure, and write down what was decided
-and why.
+"""Label a folder without a window: import, propose, place what is certain, and report each decision with its
+reason.
 """
 
 from __future__ import annotations
@@ -25,55 +25,57 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of `label`."""
     parser.add_argument(
-        "folder", type=Path, help="a folder of clips, or a project whose clips wait to be labelled"
+        "folder", type=Path, help="a folder of clips, or a project with clips that have no label yet"
     )
     parser.add_argument(
-        "-o", "--out", type=Path, help="the project to write (default: beside the folder, called after it)"
+        "-o", "--out", type=Path, help="the project to write (default: next to the folder, with its name)"
     )
     parser.add_argument(
         "--above",
         type=float,
         default=0.0,
         metavar="SURE",
-        help="place only what is at least so sure, 0 to 1 (default: all)",
+        help="place only clips whose proposal is at least this certain, 0 to 1 (default: all)",
     )
     parser.add_argument(
         "--from",
         dest="sources",
         action="append",
         choices=("name", "motion", "learned"),
-        help="believe only this; may be repeated",
+        help="use only this source of evidence; repeat for more",
     )
     parser.add_argument(
         "--learned",
         action="store_true",
-        help="use what you taught the window: corrections, name patterns, saved projects",
+        help="also use what you taught Metagraph in the window: corrections, name patterns, saved projects",
     )
     parser.add_argument(
         "--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)"
     )
     parser.add_argument(
-        "--retarget", action="store_true", help="bring clips of other skeletons onto that of most clips"
+        "--retarget",
+        action="store_true",
+        help="retarget clips of other skeletons to the skeleton that most clips have",
     )
     parser.add_argument(
         "--no-contacts",
         action="store_true",
-        help="with --retarget: leave hands that touch their own body where the arms bring them",
+        help="with --retarget: do not correct hands that touch their own body",
     )
     parser.add_argument(
         "--no-bridges",
         action="store_true",
-        help="leave stances that no clip leads to or from as they are, instead of blending to them",
+        help="do not blend to stances that no clip leads to or from",
     )
     parser.add_argument(
         "--play",
         type=float,
         default=60.0,
         metavar="SECONDS",
-        help="play the result for so many seconds, and each action once, and report what a viewer would "
-        "see go wrong; 0 to leave that out (default: 60)",
+        help="play the result for this many seconds and each action once, and report visible faults; 0 "
+        "skips this (default: 60)",
     )
-    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
+    parser.add_argument("--no-pictures", action="store_true", help="write the report without pictures")
 
 
 def run(options: Namespace) -> int:
@@ -85,13 +87,13 @@ def run(options: Namespace) -> int:
     from metagraph.formats.store import SUFFIX
 
     if not 0 <= options.play <= LONGEST:
-        raise ValueError(f"--play takes 0 to {LONGEST} seconds")
+        raise ValueError(f"--play must be 0 to {LONGEST} seconds")
     source: Path = options.folder
     if not source.exists():
         raise FileError(
             source,
             "there is no such folder or project",
-            "on labelling it",
+            "while labelling it",
             "Give a folder of clips, or a project.",
         )
     path = with_project_ending(
@@ -173,7 +175,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     for line in gaps:
         print(f"no bridge: {line}", file=sys.stderr)
     for why, clips in reasons(found.aside):
-        print(f"aside: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
+        print(f"skipped: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for why, clips in reasons(taken.left):
         print(f"left: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for message in errors:
@@ -210,7 +212,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
 
 
 def _exit_code(left: int, errors: int, faults: int) -> int:
-    """Return the exit code, and say on the terminal why it is not 0."""
+    """Return the exit code, and print why it is not 0."""
     from app.cli.command_output import explain_code_3
     from metagraph.formats.project.verified import count_in_words
 
@@ -226,7 +228,7 @@ def _exit_code(left: int, errors: int, faults: int) -> int:
 
 
 def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
-    """Return what became of a project that clips were added to, in words and as data."""
+    """Return words and data about a project to which clips were added."""
     counts = {
         "added": len(begun.clips or ()),
         "skipped": begun.skipped,
@@ -237,13 +239,15 @@ def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
     words = (
         f"added {counts['added']} clips to the project, which keeps its {counts['kept']} clips and {actions} "
     )
-    words += "actions as they were"
+    words += "unchanged actions"
     if begun.skipped:
-        words += f"; skipped {begun.skipped} clips that it has already"
+        words += f"; skipped {begun.skipped} clips that it already has"
     if begun.waiting:
-        words += f"; {begun.waiting} of its clips wait to be labelled: metagraph label {path}"
+        words += f"; {begun.waiting} of its clips have no label yet: metagraph label {path}"
     if not begun.clips:
-        words += "; nothing was changed. --overwrite makes the project anew and keeps this one as a version"
+        words += (
+            "; nothing was changed. Add --overwrite to make the project again and keep this one as a version"
+        )
     return words, counts
 
 
@@ -256,8 +260,8 @@ def _several(names: Sequence[str]) -> str:
 
 
 def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[LabelledExample]]:
-    """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that
-    a run is the same everywhere.
+    """Return the name patterns and the examples to learn from. Both are empty unless requested, so that a run
+    gives the same result everywhere.
     """
     from app.project.pattern_files import read_patterns
     from metagraph.suggest.words.names import merge_patterns
@@ -321,9 +325,9 @@ def _begun(options: Namespace, path: Path) -> Begun:
         contacts=not options.no_contacts,
     )
     if not result.loaded:
-        why = result.failures[0] if result.failures else "no clip was found in it"
+        why = result.failures[0] if result.failures else "has no clips"
         raise FileError(
-            source, why, "on importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
+            source, why, "while importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
         )
     known = {(x, entry.take) for entry in before.clips.values() for x in (entry.path, entry.digest)}
     fresh = replace(
@@ -362,7 +366,7 @@ def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Proj
 
 
 def _free_report(path: Path) -> Path:
-    """Return where the report goes: beside the project, and over nothing but an earlier report."""
+    """Return the path of the report: beside the project. It replaces nothing but an earlier report."""
     from metagraph.errors import FileError
     from metagraph.formats.outputs import claim
     from metagraph.formats.store import SUFFIX

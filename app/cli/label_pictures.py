@@ -1,4 +1,4 @@
-"""The pictures of the label report: each clip at its most telling pose, each stance as it rests."""
+"""Draw the pictures of the label report: each clip in its clearest pose, each stance at rest."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ SIZE = 192  # pixels
 
 
 def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[str, Any]:
-    """Return clip or stance -> `[H, W, 4]` uint8; none where nothing can be drawn here."""
+    """Return clip or stance -> `[H, W, 4]` uint8; none if nothing can be drawn here."""
     from app.cli.render_command import load_figure
     from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError
-    from preview.thumbnail import ThumbnailStyle, clip_thumbnail, thumbnail
+    from preview.thumbnail import ThumbnailStyle, draw_clip_thumbnail, thumbnail
 
     out: dict[str, Any] = {}
     style = ThumbnailStyle(SIZE, scale=1)
@@ -26,7 +26,7 @@ def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) ->
         with Offscreen(SIZE, SIZE) as stage:
             for clip in clips:
                 if (motion := project.clips[clip].motion) is not None:
-                    out[clip] = clip_thumbnail(stage, figure, motion, style)
+                    out[clip] = draw_clip_thumbnail(stage, figure, motion, style)
             for graph in project.graphs.values():
                 for stance in graph.stances:
                     rest = next(iter(graph.of(stance, "stance")), None)

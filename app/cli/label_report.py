@@ -1,6 +1,4 @@
-"""What was labelled and why, as one HTML file that needs nothing beside it: what needs a person first, then
-all the rest by stance.
-"""
+"""Write what was labelled and why into one HTML file: clips that need a look first, then the rest."""
 
 from __future__ import annotations
 
@@ -51,7 +49,7 @@ def format_label_report(
     ]
     parts = [
         f"<h1>{escape(project.name)}: {len(taken.placed)} of {len(found.proposals)} clips labelled</h1>",
-        f"<p class='dim'>{len(doubtful)} of them need a person's look. Each says what it was taken for, how "
+        f"<p class='dim'>{len(doubtful)} of them need a look. Each card shows the proposal, how "
         "sure that is, and why.</p>",
         f"<h2>Stances that no clip rests in</h2><ul>{''.join(held)}</ul>" if held else "",
         *(_list(title, lines) for title, lines in lists.items() if lines),
@@ -86,7 +84,7 @@ def _list(title: str, lines: Sequence[str]) -> str:
 
 
 def _aside(project: Project, found: Proposals) -> str:
-    """The clips that were left aside, by reason, the most frequent first."""
+    """Return the skipped clips by reason, the most frequent reason first."""
     lines = []
     for why, clips in reasons(found.aside):
         names = ", ".join(escape(project.clips[c].name) for c in clips)
@@ -94,7 +92,7 @@ def _aside(project: Project, found: Proposals) -> str:
         lines.append(f"<li>{count}: {escape(why)} <span class='dim'>({names})</span></li>")
     if not lines:
         return ""
-    return f"<h2 id='aside'>Left aside ({len(found.aside)})</h2><ul>{''.join(lines)}</ul>"
+    return f"<h2 id='aside'>Skipped ({len(found.aside)})</h2><ul>{''.join(lines)}</ul>"
 
 
 def _section(title: str, cards: str) -> str:
@@ -102,24 +100,24 @@ def _section(title: str, cards: str) -> str:
 
 
 def _bar() -> str:
-    """What filters and sorts."""
+    """Return the controls that filter and sort."""
 
     def options(first: str, values: Iterable[str]) -> str:
         return f"<option value=''>{first}</option>" + "".join(f"<option>{v}</option>" for v in values)
 
     return (
         "<h2>Clips</h2><div class='bar'><input id='find' type='search' placeholder='Filter by words' "
-        f"aria-label='Filter by words'><select id='kind' aria-label='Kind'>{options('Every kind', KINDS)}"
-        f"</select><select id='layer' aria-label='Layer'>{options('Every layer', LAYERS)}</select>"
+        f"aria-label='Filter by words'><select id='kind' aria-label='Kind'>{options('All kinds', KINDS)}"
+        f"</select><select id='layer' aria-label='Layer'>{options('All layers', LAYERS)}</select>"
         "<label><input id='look' type='checkbox'> needs a look</label><select id='sort' aria-label='Order'>"
-        "<option value=''>As found</option><option value='sure'>Least sure first</option>"
+        "<option value=''>As found</option><option value='sure'>Least certain first</option>"
         "<option value='name'>By name</option><option value='kind'>By kind</option></select>"
         "<button id='all'>Show all</button><span class='dim' id='count'></span></div>"
     )
 
 
 def _overview(project: Project, pictures: Mapping[str, Any]) -> str:
-    """Every stance: what it looks like, and what there is of it."""
+    """Return a button for every stance, with its picture and its numbers of clips."""
     out = []
     for layer in LAYERS:
         graph = project.graphs[layer]
@@ -161,7 +159,7 @@ def open_command(project: Project, clip: str, path: Path) -> str:
 
 
 def _data_of(project: Project, found: Proposals, p: Proposal, taken: AcceptedProposals) -> str:
-    """What the page's script filters and sorts a card by."""
+    """Return the attributes by which the page filters and sorts a card."""
     stance = f"{p.layer.value}/{found.places[p.stance.value].name}" if p.stance is not None else ""
     end = f"{p.layer.value}/{found.places[p.end_stance.value].name}" if p.end_stance is not None else ""
     values = {
@@ -269,7 +267,7 @@ def _said(name: str, value: Any) -> str:
 
 
 def _data(picture: Any) -> str:
-    """Return a picture as an address that holds it."""
+    """Return a picture as a data URL."""
     from PIL import Image
 
     out = BytesIO()

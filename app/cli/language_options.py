@@ -1,4 +1,4 @@
-"""What the commands that read words share: which language they are in."""
+"""Add the option of the language to commands that read words."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ def add_language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
     parser.add_argument(
         "--language",
         metavar="CODE",
-        help="what is spoken, by whose lists words are responses and hesitations: en, de, fr, es, it, pt, "
-        f"nl, ja, zh, hi, or auto for what the words tell (default: {usual})",
+        help="the spoken language, to identify responses and hesitations: en, de, fr, es, it, pt, "
+        f"nl, ja, zh, hi, or auto to detect it (default: {usual})",
     )
     parser.add_argument(
         "--words-list",
@@ -24,8 +24,8 @@ def add_language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help="a pack of words of your own, YAML or JSON, that is then the language unless --language says "
-        "so; may be given for several",
+        help="your own word list, YAML or JSON; it is the language unless --language names one; repeat "
+        "for more",
     )
 
 

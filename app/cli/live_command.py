@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli import live_graph_options
-from app.cli.kept_options import kept_name, kept_seed
+from app.cli.kept_options import check_kept_name, parse_kept_seed
 from app.cli.outputs import ProjectOutput
 from metagraph.live import OSC_PORT, PORT, VMC_PORT
 
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
     parser.add_argument(
-        "--port", type=int, help=f"of the WebSocket, 0 for any that is free (default: {PORT})"
+        "--port", type=int, help=f"the port of the WebSocket, 0 for any free port (default: {PORT})"
     )
     parser.add_argument("--osc-port", type=int, metavar="PORT",
-                        help=f"of OSC over UDP, 0 for any that is free (default: {OSC_PORT})")  # fmt: skip
+                        help=f"the UDP port of OSC, 0 for any free port (default: {OSC_PORT})")  # fmt: skip
     parser.add_argument(
         "--vmc", nargs="?", const="", metavar="[HOST:]PORT",
         help="send poses to a program that receives VMC, such as VSeeFace, VNyan or Warudo "
@@ -40,28 +40,41 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
     parser.add_argument(
-        "--no-stdin", action="store_true", help="do not read requests from standard input, nor end with it"
+        "--no-stdin",
+        action="store_true",
+        help="do not read requests from standard input, and keep running when it ends",
     )
     parser.add_argument(
         "--mcp", action="store_true",
-        help="speak the Model Context Protocol on standard input and output, for language models; nothing "
-        "else listens but on ports that are named",
+        help="speak the Model Context Protocol on standard input and output, for language models; "
+             "WebSocket and OSC listen only if a port is given",
     )  # fmt: skip
-    parser.add_argument("--host", default="", help="listen there, not on this machine alone; needs a token")
-    parser.add_argument("--token", help="what clients must say first (default: $METAGRAPH_TOKEN)")
     parser.add_argument(
-        "--origin", action="append", default=[], help='let web pages of this origin connect; "null" for files'
+        "--host",
+        default="",
+        help="the network address to listen on (default: this computer only); needs a token",
+    )
+    parser.add_argument("--token", help="the token that clients must send first (default: $METAGRAPH_TOKEN)")
+    parser.add_argument(
+        "--origin",
+        action="append",
+        default=[],
+        help='let web pages of this origin connect; "null" for pages opened from disk',
     )
     parser.add_argument(
-        "--seed", type=kept_seed, help="another performance of the same project (default: the project's seed)"
+        "--seed",
+        type=parse_kept_seed,
+        help="random seed; another seed gives another performance (default: the project's seed)",
     )
-    parser.add_argument("--no-idle", action="store_true", help="do nothing that is not asked for")
+    parser.add_argument(
+        "--no-idle", action="store_true", help="play only what is requested, without idle actions"
+    )
     parser.add_argument(
         "--keep",
         metavar="NAME",
-        type=kept_name,
-        help="keep what was asked in the project at the end, as a performance; and beside it what a motion "
-        "graph moved with",
+        type=check_kept_name,
+        help="save the requests as a performance of the project at the end, and the motion of a motion "
+        "graph in a file next to it",
     )
     live_graph_options.add_arguments(parser)
 
@@ -114,7 +127,7 @@ def run(options: Namespace) -> int:
 
 
 def _port(options: Namespace, none: bool, named: int | None, usual: int) -> int | None:
-    """Return the port to listen on, None for none."""
+    """Return the port to listen on, or None."""
     if none or (options.mcp and named is None):
         return None
     return usual if named is None else named
@@ -177,9 +190,7 @@ def _end_by_signals(server: Server) -> None:
 
 
 def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> None:
-    """Say where one can be reached: to programs with a line of JSON on standard output, to people in
-    words.
-    """
+    """Print the addresses: for programs as a line of JSON on standard output, for people in words."""
     if as_json and not options.mcp:
         import msgspec
 
@@ -195,16 +206,17 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     ways += [f"OSC on {ready.osc[0]}, port {ready.osc[1]}"] if ready.osc is not None else []
     sent = f" It sends VMC to {options.vmc[0]}:{options.vmc[1]}." if options.vmc is not None else ""
     token = "; clients need the token" if ready.token else ""
+    where = f": {', '.join(ways)}" if ways else " to no one"
     print(
-        f"The character listens{': ' + ', '.join(ways) if ways else ' to nobody'}{token}.{sent} Ctrl+C ends it.",
+        f"The character listens{where}{token}.{sent} Stop with Ctrl+C.",
         file=sys.stderr,
         flush=True,
     )
 
 
 def _keep(session: LiveSession, options: Namespace) -> None:
-    """Add the session to the project as it is saved now; where that cannot be, to a project beside it.
-    Raises FileError, which says where the session is.
+    """Add the session to the project as it is saved now; if that cannot be, to a project beside it. Raises
+    FileError, which says where the session is.
     """
     from metagraph.errors import FileError
     from metagraph.formats.store import open_project
@@ -220,15 +232,15 @@ def _keep(session: LiveSession, options: Namespace) -> None:
             output.save(project)
     except (FileError, ValueError, RuntimeError) as error:
         place = _kept_beside(session.project, played, options.project)
-        remedy = f"What was played is kept in '{place}', which can be opened." if place is not None else ""
+        remedy = f"The performance was saved in '{place}', which you can open." if place is not None else ""
         if place is None:
             import msgspec
 
             print(msgspec.json.encode(played).decode(), flush=True)
-            remedy = "What was played stands on standard output, since no file could be written."
+            remedy = "No file could be written, so the performance was printed to standard output."
         cause = error.cause if isinstance(error, FileError) else str(error)
         raise FileError(options.project, cause, getattr(error, "where", ""), remedy) from None
-    print(f"kept as '{project.performances[ident].name}'", file=sys.stderr)
+    print(f"saved as '{project.performances[ident].name}'", file=sys.stderr)
 
 
 def _kept_beside(project: Project, played: Performance, path: Path) -> Path | None:

@@ -1,4 +1,4 @@
-"""What `metagraph live` is told of a motion graph that moves the character, and of a voice that it plays."""
+"""Options of `metagraph live` for a motion graph that moves the character, and for a voice that it plays."""
 
 from __future__ import annotations
 
@@ -34,36 +34,38 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     add_speech_arguments(parser, required=False)
     parser.add_argument(
-        "--retarget", action="store_true", help="bring takes of another skeleton onto the character's"
+        "--retarget", action="store_true", help="retarget takes of another skeleton to the character's"
     )
     parser.add_argument(
         "--voice",
         type=Path,
         metavar="FILE",
-        help="a sound file that the character moves to from the start, heard as it plays; with --takes",
+        help="a sound file to which the character moves from the start, heard as it plays; with --takes",
     )
     parser.add_argument(
         "--announce",
         type=float,
         metavar="SECONDS",
-        help="tell the clauses of --voice so long before they begin (default: they are only heard)",
+        help="announce the clauses of --voice this many seconds ahead (default: not announced)",
     )
 
 
 def require_consistent_options(options: Namespace) -> None:
     """Raise ValueError for options that do not go together."""
     if options.takes and not options.speech:
-        raise ValueError("--takes needs --speech: what was said in each take, a file called as the take is")
+        raise ValueError(
+            "--takes needs --speech: a file for each take, with the same name, that has what was said"
+        )
     if not options.takes and (options.speech or options.retarget):
-        raise ValueError("--speech and --retarget need --takes, long takes to move with")
+        raise ValueError("--speech and --retarget need --takes")
     if options.announce is not None and options.voice is None:
-        raise ValueError("--announce needs --voice, whose clauses it tells")
+        raise ValueError("--announce needs --voice")
     if options.announce is not None and not 0 <= options.announce <= 60:
-        raise ValueError("--announce is 0 to 60 seconds")
+        raise ValueError("--announce must be 0 to 60 seconds")
 
 
 def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
-    """Return the motion graph of the takes that were given, else of the project's own, by name. Raises
+    """Return the motion graph of the given takes, or else of the project's own takes, by name. Raises
     FileError and ValueError.
     """
     from metagraph.live.graph_motion import list_recorded_takes, live_graph
@@ -76,18 +78,20 @@ def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
             graph = live_graph(own, told)
             graph.warm(project)
         except (ValueError, RuntimeError) as error:
-            print(f"note: the project's own takes make no motion graph: {error}", file=sys.stderr)
+            print(
+                f"note: no motion graph can be built from the project's own takes: {error}", file=sys.stderr
+            )
             return {}
         return {NAME: graph}
-    from app.cli.takes import pair_speech
+    from app.cli.takes import match_speech
 
-    clips, speech = pair_speech(options)
+    clips, speech = match_speech(options)
     graph = live_graph(_brought(clips, project, options.retarget), speech)
     kept, edges = graph.driver.graph.size
     if not graph.fits(project):
         raise ValueError(
             f"take '{clips[0].name}' has another skeleton than the character: bring the takes onto it with "
-            "--retarget, or give takes of its own"
+            "--retarget, or give takes of the character itself"
         )
     graph.warm(project)
     print(f"note: the motion graph has {kept:,} states and {edges:,} transitions", file=sys.stderr)
@@ -115,14 +119,14 @@ def read_live_voice(options: Namespace, graphs: Mapping[str, LiveGraph]) -> Play
     if options.voice is None:
         return None
     if NAME not in graphs:
-        raise ValueError("--voice needs --takes, long takes to move with, or a project that has its own")
+        raise ValueError("--voice needs --takes, or a project that has its own long takes")
     from metagraph.live.played_voice import read_played_voice
 
     return read_played_voice(options.voice, NAME, options.announce)
 
 
 def keep_motion(session: LiveSession, options: Namespace) -> None:
-    """Keep what the graph's motion can be made again of, in a file beside the project. Raises FileError."""
+    """Save data to make the graph's motion again, in a file beside the project. Raises FileError."""
     motions = session.generating.motions()
     if not motions:
         return
@@ -134,7 +138,6 @@ def keep_motion(session: LiveSession, options: Namespace) -> None:
     path = options.project.resolve().parent / f"{stem}{SUFFIX}"
     write_kept(path, motions)
     print(
-        f"what its motion can be made again of is kept in '{path}': metagraph motion-graph synthesize "
-        f"... --again",
+        f"saved '{path}'; make the motion again with: metagraph motion-graph synthesize ... --again",
         file=sys.stderr,
     )

@@ -19,22 +19,22 @@ from metagraph.graph.model import Project
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("base", nargs="?", type=Path, help="the project as it was before either changed it")
+    parser.add_argument("base", nargs="?", type=Path, help="the project before either side changed it")
     parser.add_argument(
         "ours", nargs="?", type=Path, help="the project with our changes; the result is written here"
     )
     parser.add_argument("theirs", nargs="?", type=Path, help="the project with their changes")
     parser.add_argument(
-        "--setup", action="store_true", help="print what sets this program up as Git's merge driver"
+        "--setup", action="store_true", help="print how to set up Metagraph as Git's merge driver"
     )
-    parser.add_argument("-o", "--output", type=Path, help="write the result here instead of over OURS")
+    parser.add_argument("-o", "--output", type=Path, help="write the result here, not over OURS")
     parser.add_argument(
         "--prefer",
         choices=("ours", "theirs"),
         default="ours",
-        help="whose value to keep where both changed the same (default: ours)",
+        help="the side that wins where both changed the same value (default: ours)",
     )
-    parser.add_argument("--name", help="what to call the project in reports (Git passes %%P)")
+    parser.add_argument("--name", help="the name of the project in messages (Git passes %%P)")
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.epilog = f"with Git:\n{SETUP.format(driver='metagraph', suffix=SUFFIX)}"
 
@@ -56,15 +56,15 @@ def run(options: Namespace) -> int:
         say(options, SETUP.format(driver=driver, suffix=SUFFIX), {"driver": driver})
         return 0
     if options.theirs is None:
-        print("metagraph merge: it takes three projects: BASE OURS THEIRS", file=sys.stderr)
+        print("metagraph merge: give three projects: BASE OURS THEIRS", file=sys.stderr)
         return 2
     for given in (options.base, options.ours, options.theirs):
         if not given.exists():
             raise FileError(
                 given,
-                phrase("is not there"),
+                phrase("does not exist"),
                 phrase("the project"),
-                phrase("Name three projects: BASE OURS THEIRS."),
+                phrase("Give three projects: BASE OURS THEIRS."),
             )
     path = options.output or options.ours
     if not (path.exists() and path.samefile(options.ours)):
@@ -94,7 +94,7 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
     except MergeError as error:
         raise FileError(
             options.theirs,
-            phrase("does not go together with ours: {error}", error=error),
+            phrase("cannot be merged with ours: {error}", error=error),
             phrase("the project"),
             phrase("Open one of the two and import the other into it (File > Import > Import project)."),
         ) from None
@@ -102,7 +102,7 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
     for line in found.kept:
         print(f"{name}: {line}", file=sys.stderr)
     count = len(found.kept)
-    words = f"{name}: merged" + (f"; {count} to look at, listed above" if count else "")
+    words = f"{name}: merged" + (f"; look at the {count} listed above" if count else "")
     say(options, words, {"output": str(output.path), "conflicts": list(map(str, found.kept))})
     return 3 if found.kept else 0
 

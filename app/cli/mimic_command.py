@@ -1,4 +1,4 @@
-"""`metagraph mimic`: what stances a person's keypoints show, and the character doing as they do."""
+"""`metagraph mimic`: recognise stances in a person's keypoints, and let the character mimic them."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         help=f"write it: a video, a contact sheet, motion, or the requests ({', '.join(OUT)})",
     )
-    parser.add_argument("--keep", metavar="NAME", help="keep it as a performance of the project")
+    parser.add_argument("--keep", metavar="NAME", help="save the result as a performance of the project")
     parser.add_argument(
         "--take",
         type=Path,
@@ -47,41 +47,41 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--no-mirror",
         action="store_true",
-        help="the character's left is the person's left, not as in a mirror",
+        help="match left with left, instead of mirroring the person",
     )
     parser.add_argument(
-        "--gaze", action="store_true", help="the character looks where the person's head is turned, too"
+        "--gaze", action="store_true", help="also make the character look where the person's head points"
     )
     parser.add_argument(
-        "--layer", action="append", choices=LAYERS, help="only this layer mimics; may be given several times"
+        "--layer", action="append", choices=LAYERS, help="mimic on this layer only; repeat for more"
     )
     parser.add_argument(
-        "--fps", type=float, help="frames a second of the keypoints, where they have no times (default: 30)"
+        "--fps", type=float, help="frames a second of keypoints that have no times (default: 30)"
     )
     parser.add_argument(
         "--picture",
         metavar="WxH",
-        help="the camera's picture, where coordinates are shares of it (default: 16:9)",
+        help="size of the camera's picture, for coordinates given as shares of it (default: 16:9)",
     )
     parser.add_argument(
-        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+        "--seed",
+        type=int,
+        help="random seed; another seed gives another performance (default: the project's seed)",
     )
     parser.add_argument(
-        "--size", default="960x540", help="width x height of pictures in pixels (default: 960x540)"
+        "--size", default="960x540", help="width x height of the pictures in pixels (default: 960x540)"
     )
 
 
 def run(options: Namespace) -> int:
-    """Tell what is seen in keypoints; with `out` write the character mimicking it, with `keep` keep it in the
-    project.
-    """
+    """Print the stances in keypoints; write the performance to `out`, and save it as `keep`, if given."""
     from app.cli.render_command import read_size
 
     if options.out is not None and options.out.suffix not in OUT:
         name = options.out.suffix or options.out.name
-        raise ValueError(f"it is written as {', '.join(OUT)}, not as '{name}'")
+        raise ValueError(f"the file can be {', '.join(OUT)}, not '{name}'")
     if options.take is not None and options.take.suffix not in TAKES:
-        raise ValueError(f"a take is written as {' or '.join(TAKES)}, not as '{options.take.suffix}'")
+        raise ValueError(f"a take can be written as {' or '.join(TAKES)}, not as '{options.take.suffix}'")
     picture = read_size(options.picture) if options.picture else None
     size = read_size(options.size)
     with ProjectOutput(options.project) if options.keep is not None else nullcontext() as output:
@@ -94,7 +94,7 @@ def _mimicked(
     size: tuple[int, int],
     output: ProjectOutput | None,
 ) -> int:
-    """output: where the project is saved, if it is."""
+    """output: the path at which the project is saved, or None."""
     from app.cli.command_output import open_for_command
     from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.graph.requests import Performance
@@ -135,7 +135,7 @@ def _take(options: Namespace, project: Project, seen: KeypointTrack) -> Path | N
     from metagraph.errors import FileError
     from metagraph.formats.bvh.file import write_bvh
     from metagraph.formats.gltf.writer import write_glb
-    from metagraph.mimicry.keypoint_take import KeypointTakeError, clip_from_keypoints
+    from metagraph.mimicry.keypoint_take import KeypointTakeError, make_clip_from_keypoints
 
     path: Path | None = options.take
     if path is None:
@@ -143,7 +143,7 @@ def _take(options: Namespace, project: Project, seen: KeypointTrack) -> Path | N
     if project.skeleton is None:
         raise ValueError("a project without clips has no skeleton to move: import clips first")
     try:
-        clip = clip_from_keypoints(
+        clip = make_clip_from_keypoints(
             seen if options.no_mirror else seen.mirrored(), project.skeleton, path.stem
         )
     except KeypointTakeError as error:
@@ -200,7 +200,7 @@ def _write(
 
 
 def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
-    """Return of each sighting what was seen and when, and from when to when the character goes there."""
+    """Return what was seen and when, and when the character goes there, for each sighting."""
     from metagraph.playback.planning.extend_performance import answer_ask
 
     rows = []
@@ -249,5 +249,5 @@ def _lines(
             f"{row['at']:8.2f}  {row['layer']:5} {row['name']:20} {when}{' (again)' if row['again'] else ''}"
         )
     if not rows:
-        out.append("no stance of the project was made out")
+        out.append("the keypoints match no stance of the project")
     return [*out, *(f"written {path}" for path in written)]

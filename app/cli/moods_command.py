@@ -17,16 +17,18 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar="MOOD",
         help=f"put the character in a mood: {', '.join(FEELINGS)}, or 'valence,arousal'",
     )
-    parser.add_argument("--intensity", type=float, help="how large gestures are played, 0 to 2; 1 as made")
+    parser.add_argument(
+        "--intensity", type=float, help="how large gestures play, 0 to 2; 1 is the size of the clips"
+    )
     parser.add_argument(
         "--from-voices",
         action="store_true",
-        help="give lines that say nothing of their mood the arousal that is heard in their sound",
+        help="set the arousal of lines without a mood from their sound",
     )
 
 
 def run(options: Namespace) -> int:
-    """Tell moods; set those that are asked for, and keep them in the project."""
+    """Print the moods; set the requested ones and save them in the project."""
     from metagraph.graph.editing.performances import set_life
     from metagraph.playback.planning.understand import read_mood
 
@@ -60,7 +62,7 @@ def _said(options: Namespace, project: Project) -> int:
 
 
 def _mood(word: str | None) -> str | tuple[float, ...] | None:
-    """Return the mood a word means. Raises ValueError where it means none."""
+    """Return the mood that a word stands for. Raises ValueError for an unknown word."""
     if word is None or word in FEELINGS:
         return word
     try:
@@ -68,5 +70,7 @@ def _mood(word: str | None) -> str | tuple[float, ...] | None:
     except ValueError:
         point = ()
     if len(point) != 2 or not all(-1 <= x <= 1 for x in point):
-        raise ValueError(f"there is no mood '{word}'; there are {', '.join(FEELINGS)}, and 'valence,arousal'")
+        raise ValueError(
+            f"there is no mood '{word}'; the moods are {', '.join(FEELINGS)}, and 'valence,arousal'"
+        )
     return point

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 from app.cli.motion_graph_soft import add_soft_arguments, read_soft_wish
 from app.cli.takes import (
     add_speech_arguments,
-    pair_speech,
-    pair_takes,
+    match_speech,
+    match_takes,
     read_given_files,
     read_side_speech,
     read_take_files,
@@ -48,122 +48,139 @@ def add_arguments(parser: ArgumentParser) -> None:
             "takes",
             type=Path,
             nargs="+",
-            help="clip files, folders of them, or projects; all of one skeleton",
+            help="clip files, folders of clips, or projects, all with the same skeleton",
         )
-        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.add_argument("--json", action="store_true", help="print JSON for programs")
         if speech is not False:  # None: it may be given, and then its changes are key states too
             add_speech_arguments(out, required=bool(speech))
         out.set_defaults(run=run)
         return out
 
-    built = action("build", "build the graph of takes, and tell what is in it", build_and_print, speech=None)
+    built = action("build", "build the graph of takes, and describe it", build_and_print, speech=None)
     _graph_options(built)
     built.add_argument(
         "--keep",
         type=Path,
         metavar="FOLDER",
-        help="keep what is finished there, to take up again after an end",
+        help="save finished parts here, so that a stopped run can continue",
     )
-    words = "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away"
+    words = "compare graphs for k = 2, 3 and 4, with and without parts that cannot be reached"
     _graph_options(action("table", words, print_states, speech=None), k=False)
-    _synthesize_options(action("synthesize", "make motion that goes with speech", synthesize, speech=True))
-    words = "hold out each take, search the others for its speech, and count what is found"
+    _synthesize_options(
+        action("synthesize", "make motion for speech from a motion graph", synthesize, speech=True)
+    )
+    words = "leave each take out once, make motion for its speech from the others, and count matches"
     _evaluate_options(action("evaluate", words, print_evaluation, speech=True))
-    words = "count how often hands and head move with what is said"
+    words = "count how often hands and head move with speech"
     action("co-occurrence", words, print_co_occurrence, speech=True)
 
 
 def _graph_options(out: ArgumentParser, k: bool = True) -> None:
-    """Add what the transitions of a graph may cost, and where they are."""
+    """Add the options of a graph's transitions."""
     if k:
         out.add_argument(
             "--k",
             type=int,
             default=3,
-            help="a transition may cost what frames so many apart differ by (default: 3)",
+            help="frames between two poses whose difference sets the threshold of transitions (default: 3)",
         )
     out.add_argument(
         "--level",
         type=float,
         default=0.95,
-        help="share of those it may be as dear as, 0 to 1 (default: 0.95)",
+        help="quantile of those differences that is the threshold, 0 to 1 (default: 0.95)",
     )
     out.add_argument(
         "--keys",
         type=float,
         default=0.2225,
-        help="share of frames transitions may leave and enter (default: 0.2225)",
+        help="share of frames that transitions may leave and enter (default: 0.2225)",
     )
     out.add_argument(
-        "--most", type=int, help="keep only so many of the cheapest transitions of a frame (default: all)"
+        "--most",
+        type=int,
+        help="keep only this many of the cheapest transitions of each frame (default: all)",
     )
 
 
 def _synthesize_options(made: ArgumentParser) -> None:
-    """Add for which speech motion is made, and how it is searched."""
+    """Add the options of the speech, and of the search."""
     _graph_options(made)
     wanted = made.add_mutually_exclusive_group(required=True)
     wanted.add_argument(
         "--take",
         metavar="N",
-        help="speech of this take, by number from 1 or by name, which is itself left out",
+        help="use the speech of this take (number from 1, or name) and leave its motion out",
     )
-    wanted.add_argument("--new", type=Path, metavar="FILE", help="speech of this file")
+    wanted.add_argument("--new", type=Path, metavar="FILE", help="use the speech of this file")
     wanted.add_argument(
-        "--again", type=Path, metavar="FILE", help="the motion of a live session again, kept by `live --keep`"
+        "--again",
+        type=Path,
+        metavar="FILE",
+        help="make the motion of a live session again, from the file of `live --keep`",
     )
     made.add_argument(
-        "--start", type=float, default=0.0, help="from this second of the speech on (default: 0)"
+        "--start", type=float, default=0.0, help="second of the speech to start at (default: 0)"
     )
     made.add_argument(
-        "-s", "--seconds", type=float, help="so long (default: 15, or to the end of a shorter speech)"
+        "-s",
+        "--seconds",
+        type=float,
+        help="length in seconds (default: 15, or to the end of a shorter speech)",
     )
     made.add_argument(
         "--search",
         choices=("exact", "greedy"),
         default="exact",
-        help="the cheapest path, or a quick one (default: exact)",
+        help="find the cheapest path, or a good one quickly (default: exact)",
     )
     made.add_argument(
         "--without",
         action="append",
         default=[],
         choices=(*SPOKEN, "idle", "peaks", "edges"),
-        help="leave a constraint out; edges: where segments begin and end, so that only kinds count",
+        help="drop a constraint; edges: where segments begin and end, so that only their kinds count",
     )
     made.add_argument(
-        "--strict", action="store_true", help="find nothing rather than give up constraints one by one"
+        "--strict",
+        action="store_true",
+        help="fail if the constraints cannot all be met, instead of dropping them one by one",
     )
     made.add_argument(
         "--free-jumps",
         action="store_true",
-        help="jump as often as it likes, and to where it stands, for what jumps look like alone",
+        help="put no limit on jumps, to study the jumps alone",
     )
     made.add_argument(
         "--tolerance",
         type=float,
         default=0.1,
-        help="seconds starts, ends and stresses may be off (default: 0.1)",
+        help="seconds by which starts, ends and stresses may be off (default: 0.1)",
     )
-    made.add_argument("--seed", type=int, default=1, help="another path of the greedy search (default: 1)")
-    made.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
+    made.add_argument("--seed", type=int, default=1, help="random seed of the greedy search (default: 1)")
+    made.add_argument("-o", "--out", type=Path, required=True, help="the .bvh or .glb file to write")
     add_soft_arguments(made)
 
 
 def _evaluate_options(tried: ArgumentParser) -> None:
-    """Add which searches are tried, and how."""
+    """Add the options of the searches."""
     _graph_options(tried)
-    tried.add_argument("-o", "--out", type=Path, help="write each case to a .csv file")
+    tried.add_argument("-o", "--out", type=Path, help="write every case to this .csv file")
     tried.add_argument(
-        "--search", action="append", choices=("exact", "greedy"), help="only this search (default: both)"
+        "--search",
+        action="append",
+        choices=("exact", "greedy"),
+        help="evaluate this search only (default: both)",
     )
-    tried.add_argument("--quick", action="store_true", help="all constraints only, without leaving any out")
+    tried.add_argument(
+        "--quick", action="store_true", help="evaluate with all constraints only, not with each left out"
+    )
     tried.add_argument(
         "--live",
         action="store_true",
-        help="instead: motion that is extended while it plays, for speech that is heard or announced",
+        help="evaluate motion that is extended while it plays, for heard and for announced speech, instead",
     )
-    tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
+    tried.add_argument("--seed", type=int, default=1, help="random seed of the greedy search (default: 1)")
     add_soft_arguments(tried)
 
 
@@ -181,7 +198,7 @@ def _heard(options: Namespace) -> tuple[States, list[int]]:
 
     if not options.speech:
         return _states([c for _, c in read_take_files(options.takes)]), []
-    clips, speech = pair_speech(options)
+    clips, speech = match_speech(options)
     states = _states(clips)
     return states, list(find_change_states(states, speech))
 
@@ -203,7 +220,7 @@ def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
 
 @contextmanager
 def _until_stopped() -> Iterator[Callable[[], bool]]:
-    """Yield what tells whether Ctrl+C was pressed, so that what is done by then is kept."""
+    """Yield a function that says whether Ctrl+C was pressed, so that finished work can be kept."""
     stopped: list[int] = []
     before = signal.signal(signal.SIGINT, lambda *_: stopped.append(1))
     try:
@@ -214,7 +231,7 @@ def _until_stopped() -> Iterator[Callable[[], bool]]:
 
 def _rates(clips: Sequence[Clip]) -> str:
     other = sum(abs(c.fps - 30) > 1e-6 for c in clips)
-    return f"{other} of {len(clips)} takes were brought to 30 frames a second" if other else ""
+    return f"{other} of {len(clips)} takes were resampled to 30 frames a second" if other else ""
 
 
 # --- what is done
@@ -230,13 +247,13 @@ def _states(clips: Sequence[Clip]) -> States:
 
 def _checked(options: Namespace) -> None:
     if not 0 < options.level < 1:
-        raise ValueError(f"--level is a share between 0 and 1, not {options.level:g}")
+        raise ValueError(f"--level must be between 0 and 1, not {options.level:g}")
     if not 0 < options.keys <= 1:
-        raise ValueError(f"--keys is a share above 0 and up to 1, not {options.keys:g}")
+        raise ValueError(f"--keys must be more than 0 and at most 1, not {options.keys:g}")
     if getattr(options, "k", 3) < 2:
-        raise ValueError("--k is at least 2: frames one apart differ by nothing that a transition could cost")
+        raise ValueError("--k must be at least 2, since consecutive frames set no useful threshold")
     if options.most is not None and options.most < 1:
-        raise ValueError("--most is at least 1")
+        raise ValueError("--most must be at least 1")
 
 
 def build_and_print(options: Namespace) -> int:
@@ -297,7 +314,7 @@ def _facts(whole: MotionGraph, kept: MotionGraph | None) -> dict[str, Any]:
 
 
 def _limits(limit: Threshold) -> dict[str, Any]:
-    by = "Johnson's S_B" if limit.distribution is not None else "what was observed"
+    by = "Johnson's S_B" if limit.distribution is not None else "the observed differences"
     return {"k": limit.k, "level": limit.level, "limit": limit.limit, "observed": limit.observed, "by": by}
 
 
@@ -360,10 +377,10 @@ def synthesize(options: Namespace) -> int:
     _checked(options)
     if options.out.suffix not in OUT:
         raise ValueError(
-            f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
+            f"motion can be written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
         )
     wish = read_soft_wish(options)
-    clips, spoken, names = pair_takes(options)
+    clips, spoken, names = match_takes(options)
     if options.again is not None:
         return _again(options, clips, [one.segments for one in spoken])
     held_out = _take_number(options.take, names) if options.take is not None else None
@@ -422,11 +439,11 @@ def synthesize(options: Namespace) -> int:
 
 
 def _take_number(take: str, names: list[str]) -> int:
-    """Return the place of a take among all, by name or number from 1. Raises ValueError."""
+    """Return the index of a take, given its name or its number from 1. Raises ValueError."""
     place = names.index(take) if take in names else int(take) - 1 if take.isdecimal() else -1
     if not 0 <= place < len(names):
         raise ValueError(
-            f"there is no take '{take}'; there are {', '.join(names[:10])}, or say 1 to {len(names)}"
+            f"there is no take '{take}'; the takes are {', '.join(names[:10])}, or 1 to {len(names)}"
         )
     return place
 
@@ -437,12 +454,12 @@ def _speech_of_file(options: Namespace, needs_sound: bool) -> SpokenTake:
         read_given_files(options, what).get(options.new.stem) for what in ("sounds", "transcripts")
     )
     if needs_sound and sound is None:
-        raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
+        raise ValueError(f"no sound for {options.new.name}: --sounds has none with this name")
     return read_side_speech(options.new, options.side, sound, transcript)
 
 
 def _seconds(options: Namespace, new: SpokenTake) -> float:
-    """Return how long the motion is to be. Raises FileError, ValueError."""
+    """Return the length of the motion in seconds. Raises FileError, ValueError."""
     from metagraph.errors import FileError
     from metagraph.research.motion_graph.search_evaluation import WINDOW
 
@@ -450,16 +467,19 @@ def _seconds(options: Namespace, new: SpokenTake) -> float:
     if options.start < 0 or (options.start >= end and options.seconds is None):
         place = options.new or Path(options.take)
         raise FileError(
-            place, f"its speech lasts from 0 to {end:.1f} s", "", "Let --start lie within, or give --seconds."
+            place,
+            f"its speech lasts from 0 to {end:.1f} s",
+            "",
+            "Choose a --start within the speech, or give --seconds.",
         )
     seconds: float = min(WINDOW, end - options.start) if options.seconds is None else options.seconds
     if not 0 < seconds <= 3600:
-        raise ValueError("--seconds is more than 0 and at most 3600")
+        raise ValueError("--seconds must be more than 0 and at most 3600")
     return seconds
 
 
 def _path_facts(found: RelaxedAnswer, states: States, looks: PathQuality) -> dict[str, Any]:
-    """Return what there is to tell a program about the path that was found."""
+    """Return data on a path that was found, for programs."""
     path = found.path
     return {
         "transitions": len(path.jumps),
@@ -503,16 +523,16 @@ def _again(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ..
 
 
 def print_evaluation(options: Namespace) -> int:
-    """Print, setting by setting, how much held-out speech finds motion."""
+    """Print for each setting how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
-    from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
+    from metagraph.research.motion_graph.evaluation_table import format_cases_as_csv, format_cases_as_text
     from metagraph.research.motion_graph.search_evaluation import SETTINGS, Beside, GraphMaking, Trials
     from metagraph.research.motion_graph.search_evaluation import evaluate_search as run
 
     _checked(options)
     wish = read_soft_wish(options)
-    clips, spoken, _ = pair_takes(options)
+    clips, spoken, _ = match_takes(options)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
     if options.live:
@@ -529,38 +549,38 @@ def print_evaluation(options: Namespace) -> int:
             Beside(wish, spoken),
         )
     if options.out is not None:
-        write_atomically(options.out, cases_as_csv(found.cases).encode())
+        write_atomically(options.out, format_cases_as_csv(found.cases).encode())
     data = {
         "rows": [asdict(r) for r in found.rows],
         "graphs": [asdict(g) for g in found.graphs],
         "cases": len(found.cases),
         "whole": found.whole,
     }
-    say(options, cases_as_text(found) + (f"\n{options.out}" if options.out is not None else ""), data)
+    say(options, format_cases_as_text(found) + (f"\n{options.out}" if options.out is not None else ""), data)
     return 0 if found.whole else 3
 
 
 def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
-    """Print how motion that is extended while it plays goes with speech that becomes known bit by bit."""
+    """Print how well motion that is extended while it plays follows speech that becomes known in pieces."""
     from app.cli.command_output import say
     from metagraph.research.motion_graph.extending_evaluation import (
+        format_rows_as_text,
         hold_out_takes,
-        rows_as_text,
         score_extending,
     )
 
     graphs = hold_out_takes(clips, speech, options.k, options.level, options.keys, options.most)
     rows = list(score_extending(graphs, seed=options.seed, progress=_telling(options, "drives")))
-    say(options, rows_as_text(rows), [asdict(r) for r in rows])
+    say(options, format_rows_as_text(rows), [asdict(r) for r in rows])
     return 0
 
 
 def print_co_occurrence(options: Namespace) -> int:
-    """Print how often each kind of segment goes with which movement, beside chance."""
+    """Print how often each kind of segment comes with which movement, and how often by chance."""
     from app.cli.command_output import say
     from metagraph.synthesis.cooccurrence import count_cooccurrence as count
 
-    clips, speech = pair_speech(options)
+    clips, speech = match_speech(options)
     rows = count(clips, speech)
     lines = [f"{'':<34}{'matched':>8}{'total':>7}{'rate':>7}  {'95 %':<13}{'chance':>7}"]
     for r in rows:

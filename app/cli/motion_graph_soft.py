@@ -14,15 +14,15 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 
 def add_soft_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    group = parser.add_argument_group("beside the constraints")
+    group = parser.add_argument_group("preferences beside the constraints")
     group.add_argument(
         "--sounds",
         type=Path,
         nargs="+",
         default=[],
         metavar="FILE",
-        help="sounds of the recordings, called as the takes are, and as the speech of --new; of one with two "
-        "channels each has its own",
+        help="sounds of the recordings, with the names of the takes and of the speech of --new; a "
+        "sound with two channels has a channel for each speaker",
     )
     group.add_argument(
         "--transcripts",
@@ -30,58 +30,62 @@ def add_soft_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="words with their times, called likewise, where the files of --speech hold none: .TextGrid, "
-        ".srt, .vtt, .json …",
+        help="transcripts with times, with the names of the takes, if the files of --speech have no "
+        "words: .TextGrid, .srt, .vtt, .json …",
     )
     group.add_argument(
         "--loudness",
         type=float,
         default=0.0,
         metavar="W",
-        help="what a second costs that was said louder or softer than it is now, by the speaker's spread, of "
-        "the threshold (default: 0; try 0.25)",
+        help="cost of a second whose loudness differs by one standard deviation of the speaker, as a "
+        "share of the threshold (default: 0; try 0.25)",
     )
     group.add_argument(
         "--rate",
         type=float,
         default=0.0,
         metavar="W",
-        help="the same of how fast it was said (default: 0; try 0.25)",
+        help="the same for the rate of speech (default: 0; try 0.25)",
     )
     group.add_argument(
         "--word",
         action="append",
         default=[],
         metavar="WORD",
-        help='a word that wants motion from where a take says it, or one alike: big, or "big = huge, tall"',
+        help='take the motion for this word from where a take says it or a similar word: big, or "big '
+        '= huge, tall"',
     )
     group.add_argument(
-        "--words", type=Path, metavar="FILE", help="a file of such words, a line each; # for what is none"
+        "--words",
+        type=Path,
+        metavar="FILE",
+        help="a file of such words, one on each line; lines that begin with # are comments",
     )
     group.add_argument(
         "--word-price",
         type=float,
         default=2.0,
         metavar="W",
-        help="what a word costs that is missed, of the threshold (default: 2)",
+        help="cost of each missed word, as a multiple of the threshold (default: 2)",
     )
     group.add_argument(
         "--words-must",
         action="store_true",
-        help="words have to be met, and are given up last but one",
+        help="treat words as constraints, and drop them last but one",
     )
     group.add_argument(
         "--retime",
         type=float,
         default=0.0,
         metavar="PERCENT",
-        help="play it faster and slower by up to so much, outside of strokes, steps and transitions, where "
-        "that brings starts, ends and stresses nearer (default: 0; try 15)",
+        help="change the speed by up to this much, outside strokes, steps and transitions, where that "
+        "improves the timing of starts, ends and stresses (default: 0; try 15)",
     )
 
 
 def read_soft_wish(options: Namespace) -> SoftWish:
-    """Return what is wished. Raises ValueError, and FileError for a file of words."""
+    """Return the preferences. Raises ValueError, and FileError for a file of words."""
     from metagraph.formats.word_lists import read_word_lists
     from metagraph.synthesis.iconic_words import word_wish
     from metagraph.synthesis.soft_constraints import SoftWish
@@ -90,10 +94,11 @@ def read_soft_wish(options: Namespace) -> SoftWish:
     if options.words is not None:
         words += read_word_lists(options.words)
     if options.words_must and not words:
-        raise ValueError("--words-must says that words have to be met: say which, with --word or --words")
+        raise ValueError("--words-must needs the words: give them with --word or --words")
     if options.loudness and not options.sounds:
         raise ValueError(
-            "--loudness compares sounds: give those of the recordings with --sounds, called as the takes are"
+            "--loudness needs the sounds of the recordings: give them with --sounds, with the names of "
+            "the takes"
         )
     return SoftWish(
         options.loudness, options.rate, words, options.word_price, options.words_must, options.retime / 100

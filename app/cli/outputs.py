@@ -1,5 +1,5 @@
-"""What every command of the command line keeps to when it writes: which options name outputs and which name
-inputs, `--overwrite`, and projects that are changed in place.
+"""Rules of writing for all commands: which options name outputs and which name inputs, `--overwrite`, and
+projects that are changed in place.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ NEVER = (("generate", "train"), ("generate", "planted"), ("study", "simulate"))
 PROJECTS = ("label", "contacts", "merge")
 # Actions that change a study's folder in place, with rules of their own for what is there.
 STUDIES = ("run", "freeze", "withdraw", "delete", "import", "plan", "collect", "serve")
-OVERWRITE = "also replace files that this command did not write, or that were changed since"
+OVERWRITE = "also replace files that this command did not write, or that someone changed since"
 
 
 def offer_overwrite(parser: ArgumentParser, command: str) -> None:
@@ -57,7 +57,7 @@ def offer_overwrite(parser: ArgumentParser, command: str) -> None:
 
 def claim_outputs(options: Namespace) -> Outputs:
     """Return the outputs of a command line, and claim what its options name. Raises FileError."""
-    from metagraph.formats.outputs import Outputs, data_folder, find_paths
+    from metagraph.formats.outputs import Outputs, find_data_folder, find_paths
 
     command, action = options.command, getattr(options, "step", None) or getattr(options, "action", None)
     name = " ".join(filter(None, (command, action)))
@@ -70,7 +70,7 @@ def claim_outputs(options: Namespace) -> Outputs:
             out += paths
         else:
             made.reads(*paths)
-    data = data_folder()
+    data = find_data_folder()
     if data is not None:
         made.keeps_up(data)
     if command == "study" and action in STUDIES:
@@ -84,10 +84,10 @@ def claim_outputs(options: Namespace) -> Outputs:
 
 
 class ProjectOutput:
-    """A project file that a command makes or changes: nobody else may have it open meanwhile.
+    """A project file that a command makes or changes. No other program may have it open at that time.
 
-    Enter it before the project is read. Raises FileError where a window or another command has it. versions:
-    how many earlier ones are kept, as the settings say when None.
+    Enter it before the project is read. Raises FileError if a window or another command has it. versions: how
+    many earlier ones are kept, as the settings say when None.
     """
 
     def __init__(self, path: Path, versions: int | None = None) -> None:
@@ -126,7 +126,7 @@ class ProjectOutput:
                 self.path,
                 "was written by another program while this command worked",
                 "",
-                "It is as that program left it. Run the command again.",
+                "That program's version was kept. Run the command again.",
             )
         if was_at is not None:
             project = move_project(project, was_at, self.path)

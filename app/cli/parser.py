@@ -50,24 +50,32 @@ exit codes: 0 done, 1 an error, 2 wrong usage, 3 done but with problems"""
 # what they do.
 COMMANDS: dict[str, tuple[str, bool, str]] = {
     "window": ("window_command", False, "open the window"),
-    "import": ("import_command", True, "add clips to a project, made if it is not there"),
-    "label": ("label_command", False, "label the clips of a folder by their names and motion, and say why"),
+    "import": ("import_command", True, "add clips to a project, and make the project if it does not exist"),
+    "label": (
+        "label_command",
+        False,
+        "label the clips of a folder by their names and motion, and explain each label",
+    ),
     "check": ("check_command", True, "list the problems of a project"),
-    "verify": ("verify_command", False, "tell whether a project or an export is whole, and what is not"),
+    "verify": (
+        "verify_command",
+        False,
+        "check that the files of a project or an export are intact, and list those that are not",
+    ),
     "merge": (
         "merge_command",
         False,
-        "merge what two people did to copies of a project; Git's merge driver",
+        "merge two people's changes to copies of a project; Git's merge driver",
     ),
     "contacts": (
         "contacts_command",
         True,
-        "find where hands touch the body, and keep them there: write it into the project",
+        "find where hands touch the body, and write these contacts into the project",
     ),
     "behaviour": (
         "behaviour_command",
         True,
-        "count what the character does by itself in an hour, next to what people do",
+        "count what the character does by itself in an hour, and compare it with people",
     ),
     "plan": ("plan_command", True, "plan a performance and print its actions"),
     "render": (
@@ -76,45 +84,49 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         "draw a performance, or one clip: a contact sheet (.png), a video (.mp4), or plain motion (.glb, "
         ".bvh)",
     ),
-    "annotate": ("annotate_command", True, "learn from an ELAN annotation what follows what, or perform it"),
+    "annotate": (
+        "annotate_command",
+        True,
+        "learn from an ELAN annotation which action follows which, or perform it",
+    ),
     "export": (
         "export_command",
         False,
-        "write what an engine plays: the graph for a runtime, or an engine's own format",
+        "export for an engine: the graph for a runtime, or the engine's own format",
     ),
-    "live": ("live_command", True, "play, and listen to what programs ask: JSON lines, WebSocket, OSC"),
+    "live": ("live_command", True, "play, and take requests from programs: JSON lines, WebSocket, OSC"),
     "mimic": (
         "mimic_command",
         True,
-        "tell what stances a person's keypoints show, and let the character do as they do",
+        "recognise stances in a person's keypoints, and let the character mimic them",
     ),
     "speech": ("speech_command", False, "read a conversation into clauses, responses and hesitations"),
-    "moods": ("moods_command", True, "tell or set the moods of a character and its lines"),
+    "moods": ("moods_command", True, "show or set the moods of a character and its lines"),
     "study": (
         "study_command",
         False,
-        "time people at work: reports, data for other tools, simulated studies",
+        "measure how fast people work: reports, data for other tools, simulated studies",
     ),
     "motion-graph": (
         "motion_graph_command",
         False,
-        "graphs over the frames of long takes, motion that goes with speech, and how well that works",
+        "build motion graphs from long takes, make motion for speech, and evaluate it",
     ),
     "generate": (
         "generate_command",
         False,
-        "motion for conversations, learned from takes: train, sample, judge",
+        "generate motion for conversations with learned models: train, sample, evaluate",
     ),
     "reproduce": (
         "reproduce_command",
         False,
-        "make the papers' tables and figures again, theirs and ours beside each other",
+        "make the papers' tables and figures again, next to the published ones",
     ),
-    "info": ("info_command", False, "tell what is in a project, an export or a clip file"),
+    "info": ("info_command", False, "describe a project, an export or a clip file"),
     "demo": (
         "demo_command",
         False,
-        "the main job without a window: sample project to performance, pictures, video and export",
+        "make a performance, pictures, a video and an export of the sample project, without a window",
     ),
 }
 GROUPS = ("study", "motion-graph", "generate")  # their own commands take --json
@@ -139,7 +151,7 @@ def _parser(chosen: str) -> argparse.ArgumentParser:
         if project:
             command.add_argument("project", type=Path, help="the project file")
         if name not in GROUPS:
-            command.add_argument("--json", action="store_true", help="print what a program can read")
+            command.add_argument("--json", action="store_true", help="print JSON for programs")
         _module(name).add_arguments(command)
         offer_overwrite(command, name)
     return parser
@@ -163,7 +175,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if given and not given[0].startswith("-") and "." not in given[0] and not Path(given[0]).exists():
             near = get_close_matches(given[0], COMMANDS, 1)
             hint = f"did you mean '{near[0]}'?" if near else f"the commands are {', '.join(COMMANDS)}"
-            parser.error(f"there is no command and no project '{given[0]}'; {hint}")
+            parser.error(f"'{given[0]}' is neither a command nor a project; {hint}")
         given = ["window", *given]
         parser = _parser("window")
     options = parser.parse_args(given)
@@ -182,10 +194,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         place = f"{error.filename}: " if error.filename else ""
         return _fail(
             options,
-            f"{place}{error.strerror or error}. Choose another place, or see whether you may write there.",
+            f"{place}{error.strerror or error}. Choose another place, or check that you may write there.",
         )
     except MemoryError:
-        return _fail(options, "there is not enough memory for that")
+        return _fail(options, "there is not enough memory for this")
     except KeyboardInterrupt:
         return _fail(options, "stopped")
 

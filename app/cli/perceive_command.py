@@ -11,7 +11,7 @@ from typing import Any
 from app.cli.perceive_planning import add_arguments as planning_arguments
 from app.cli.perceive_planning import require_empty
 
-NOTHING = 3  # exit code where nothing can be told
+NOTHING = 3  # exit code if nothing can be told
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -20,44 +20,56 @@ def add_arguments(parser: ArgumentParser) -> None:
 
     def action(name: str, words: str, run: Callable[[Namespace], int]) -> ArgumentParser:
         out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
-        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.add_argument("--json", action="store_true", help="print JSON for programs")
         out.set_defaults(run=run)
         return out
 
     made = action(
-        "make", "draw the videos of a study and write the page that shows them", make_perceptual_study
+        "make", "render the videos of a study and write the page that shows them", make_perceptual_study
     )
-    made.add_argument("plan", type=Path, help="a perceive.yaml")
+    made.add_argument("plan", type=Path, help="the perceive.yaml of the study")
     made.add_argument(
-        "--into", type=Path, required=True, metavar="FOLDER", help="a folder that is not there yet"
+        "--into",
+        type=Path,
+        required=True,
+        metavar="FOLDER",
+        help="the folder to make; it must not exist yet",
     )
     served = action(
-        "serve", "show the page to browsers, and keep what they answer, until stopped", serve_perceptual_study
+        "serve", "serve the page to browsers and save the answers, until you stop it", serve_perceptual_study
     )
     _study(served)
-    served.add_argument("--port", type=int, default=0, help="(default: any that is free)")
+    served.add_argument("--port", type=int, default=0, help="the port to listen on (default: any free port)")
     served.add_argument(
-        "--address", default="127.0.0.1", help="of the interface to listen on (default: this machine alone)"
+        "--address",
+        default="127.0.0.1",
+        help="the network address to listen on (default: this computer only)",
     )
-    brought = action("collect", "keep answers that the page has saved as files", print_perceptual_answers)
+    brought = action("collect", "add answers that the page has saved as files", print_perceptual_answers)
     _study(brought)
-    brought.add_argument("answers", type=Path, nargs="+", help="the files, or folders of them")
-    told = action("report", "write what the answers show: a page and tables as CSV", report_perceptual_study)
+    brought.add_argument("answers", type=Path, nargs="+", help="the files, or folders that have them")
+    told = action(
+        "report", "write a report of the answers: a page, and tables as CSV", report_perceptual_study
+    )
     _study(told)
     told.add_argument("--out", type=Path, help="where to write it (default: report, in the study's folder)")
     planning_arguments(action)
-    gone = action("withdraw", "leave somebody's answers out of all reports from now on", withdraw_person)
+    gone = action(
+        "withdraw",
+        "withdraw a participant: leave the answers out of all reports from now on",
+        withdraw_person,
+    )
     _study(gone)
-    gone.add_argument("participant", help="their code")
-    gone.add_argument("--why", default="", help="in words, kept in the log")
-    deleted = action("delete", "delete all answers of somebody, and note that it was done", delete_person)
+    gone.add_argument("participant", help="the participant's code")
+    gone.add_argument("--why", default="", help="the reason, which the log keeps")
+    deleted = action("delete", "delete all answers of a participant, and log the deletion", delete_person)
     _study(deleted)
-    deleted.add_argument("participant", help="their code")
-    deleted.add_argument("--yes", action="store_true", help="do not ask")
+    deleted.add_argument("participant", help="the participant's code")
+    deleted.add_argument("--yes", action="store_true", help="do not ask for confirmation")
 
 
 def _study(parser: ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, help="the folder that 'make' or 'simulate' wrote")
+    parser.add_argument("folder", type=Path, help="the study's folder, which 'make' or 'simulate' wrote")
 
 
 def make_perceptual_study(options: Namespace) -> int:
@@ -78,7 +90,7 @@ def make_perceptual_study(options: Namespace) -> int:
     require_empty(options.into)
     claim(*(options.into / name for name in ("show/index.html", FILE, KEY)))
     stimuli = Stimuli(path.resolve(), plan)
-    sounds = stimuli.sounds()  # what is missing is told before anything is drawn
+    sounds = stimuli.sounds()  # what is missing is reported before anything is drawn
     videos = options.into / "show" / "videos"
     videos.mkdir(parents=True, exist_ok=True)
     secret = make_secret(options.into)
@@ -111,7 +123,7 @@ def make_perceptual_study(options: Namespace) -> int:
         f"{study.show / 'index.html'}: {len(made.key.stimuli)} videos, {len(each)} participants of "
         f"{max(each)} trials",
         f"SHA-256 of the secret: {made.key.commitment}",
-        "Give people the folder 'show' and a code each, and nothing else of it; or serve it.",
+        "Give each participant a code and the folder 'show', and nothing else; or serve the page.",
     ]
     if len(each) % rounds:
         lines.append(
@@ -119,7 +131,8 @@ def make_perceptual_study(options: Namespace) -> int:
         )
     alike = [(a, b, i) for a, b in plan.pairs for i in items if shown[a, i] == shown[b, i]]
     lines += [
-        f"note: '{a}' and '{b}' show the very same in item '{i}': choose another stretch" for a, b, i in alike
+        f"note: '{a}' and '{b}' look exactly the same in item '{i}': choose other seconds"
+        for a, b, i in alike
     ]
     data = {
         "alike": alike,
@@ -154,10 +167,10 @@ def serve_perceptual_study(options: Namespace) -> int:
     try:
         served = begin(study, options.port, options.address)
     except (OSError, OverflowError) as error:
-        raise ValueError(f"{options.address}:{options.port} cannot be listened on ({error})") from None
+        raise ValueError(f"{options.address}:{options.port} is not available ({error})") from None
     try:
         with run_until_stopped():
-            print(f"the page is at {served.url}#CODE (Ctrl+C stops)", file=sys.stderr, flush=True)
+            print(f"the page is at {served.url}#CODE (stop with Ctrl+C)", file=sys.stderr, flush=True)
             while True:
                 time.sleep(3600)
     finally:
@@ -183,13 +196,13 @@ def print_perceptual_answers(options: Namespace) -> int:
         except FileError as error:
             failed.append(str(error))
         except SheetError as error:
-            failed.append(f"{path.name}: {error}. Nothing of it was kept; the file is left as it is.")
+            failed.append(f"{path.name}: {error}. Nothing was added; the file is unchanged.")
         else:
             done.append({"code": sheet.code, "kept": found.kept, "new": found.new, "file": str(path)})
     for words in failed:
         print(f"note: {words}", file=sys.stderr)
     lines = [f"{d['code']}: {d['new']} new events, {d['kept']} in all" for d in done]
-    say(options, "\n".join(lines) or "nothing was kept", {"collected": done, "failed": failed})
+    say(options, "\n".join(lines) or "nothing was added", {"collected": done, "failed": failed})
     return 0 if done and not failed else NOTHING
 
 
@@ -242,8 +255,8 @@ def withdraw_person(options: Namespace) -> int:
     new = note(study, options.participant, options.why)
     say(
         options,
-        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}; "
-        "write the report anew",
+        f"{options.participant}: {'left out from now on' if new else 'withdrawn earlier'}; "
+        "write the report again",
         {"participant": options.participant, "new": new},
     )
     return 0
@@ -262,7 +275,7 @@ def delete_person(options: Namespace) -> int:
     note = remove(study, options.participant)
     say(
         options,
-        f"{options.participant}: {note['files']} files deleted; write the report anew",
+        f"{options.participant}: {note['files']} files deleted; write the report again",
         {"deleted": note},
     )
     return 0

@@ -18,41 +18,85 @@ Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 def add_arguments(action: Action) -> None:
     """Add the actions."""
     planned = action(
-        "plan", "say how many answers, and how many people, a forced choice needs", write_perceptual_plan
+        "plan", "compute how many answers and people a forced choice needs", write_perceptual_plan
     )
-    planned.add_argument("--share", type=float, required=True, help="of choices that is expected, 0.5 to 1")
-    planned.add_argument("--smallest", type=float, help="the smallest share that would matter")
-    planned.add_argument("--items", type=int, default=10, help="stretches of motion in all (10)")
+    planned.add_argument("--share", type=float, required=True, help="expected share of choices, 0.5 to 1")
+    planned.add_argument("--smallest", type=float, help="the smallest share that matters")
+    planned.add_argument("--items", type=int, default=10, help="number of items (default: 10)")
     planned.add_argument(
-        "--each", type=int, help="answers of a person about the pair (default: one of each item)"
+        "--each", type=int, help="answers of each person about the pair (default: one for each item)"
     )
-    planned.add_argument("--people-differ", type=float, default=0.5, metavar="SD", help="log odds (0.5)")
-    planned.add_argument("--items-differ", type=float, default=0.3, metavar="SD", help="log odds (0.3)")
-    planned.add_argument("--chance", type=float, default=0.8, help="to show it (0.8)")
-    planned.add_argument("--tests", type=int, default=1, help="that share 0.05 (1)")
-    planned.add_argument("--participants", type=int, help="tell the chance with so many instead")
-    planned.add_argument("--studies", type=int, default=200, help="that are simulated (200)")
+    planned.add_argument(
+        "--people-differ",
+        type=float,
+        default=0.5,
+        metavar="SD",
+        help="standard deviation between people, in log odds (default: 0.5)",
+    )
+    planned.add_argument(
+        "--items-differ",
+        type=float,
+        default=0.3,
+        metavar="SD",
+        help="standard deviation between items, in log odds (default: 0.3)",
+    )
+    planned.add_argument(
+        "--chance", type=float, default=0.8, help="power: the chance to show the effect (default: 0.8)"
+    )
+    planned.add_argument(
+        "--tests", type=int, default=1, help="number of tests that share the level of 0.05 (default: 1)"
+    )
+    planned.add_argument(
+        "--participants", type=int, help="compute the power with this many participants instead"
+    )
+    planned.add_argument(
+        "--studies", type=int, default=200, help="number of simulated studies (default: 200)"
+    )
     planned.add_argument("--seed", type=int, default=1)
     faked = action(
         "simulate",
-        "write a study without videos, answered by people who do not exist",
+        "write a study without videos, answered by simulated people",
         simulate_perceptual_study,
     )
-    faked.add_argument("out", type=Path, help="a folder that is not there yet")
-    faked.add_argument("--like", type=Path, metavar="PLAN", help="a perceive.yaml of yours")
-    faked.add_argument("--participants", type=int, help="how many (default: the plan's)")
+    faked.add_argument("out", type=Path, help="the folder to make; it must not exist yet")
+    faked.add_argument("--like", type=Path, metavar="PLAN", help="use this perceive.yaml")
+    faked.add_argument("--participants", type=int, help="number of participants (default: the plan's)")
     faked.add_argument(
-        "--liked", action="append", default=[], metavar="CONDITION=LOGODDS", help="how much one is liked"
+        "--liked",
+        action="append",
+        default=[],
+        metavar="CONDITION=LOGODDS",
+        help="how much people prefer a condition, in log odds",
     )
-    faked.add_argument("--people-differ", type=float, default=0.4, metavar="SD", help="log odds (0.4)")
-    faked.add_argument("--items-differ", type=float, default=0.3, metavar="SD", help="log odds (0.3)")
-    faked.add_argument("--left", type=float, default=0.0, help="log odds the left side gains (0)")
     faked.add_argument(
-        "--lapses", type=float, default=0.02, help="share of answers given without looking (0.02)"
+        "--people-differ",
+        type=float,
+        default=0.4,
+        metavar="SD",
+        help="standard deviation between people, in log odds (default: 0.4)",
     )
-    faked.add_argument("--careless", type=float, default=0.0, help="share of people who never look (0)")
-    faked.add_argument("--unfinished", type=float, default=0.0, help="share of people who break off (0)")
-    faked.add_argument("--seed", type=int, default=1, help="other people (1)")
+    faked.add_argument(
+        "--items-differ",
+        type=float,
+        default=0.3,
+        metavar="SD",
+        help="standard deviation between items, in log odds (default: 0.3)",
+    )
+    faked.add_argument(
+        "--left", type=float, default=0.0, help="bias towards the left side, in log odds (default: 0)"
+    )
+    faked.add_argument(
+        "--lapses", type=float, default=0.02, help="share of answers given without looking (default: 0.02)"
+    )
+    faked.add_argument(
+        "--careless", type=float, default=0.0, help="share of people who never look (default: 0)"
+    )
+    faked.add_argument(
+        "--unfinished", type=float, default=0.0, help="share of people who break off (default: 0)"
+    )
+    faked.add_argument(
+        "--seed", type=int, default=1, help="random seed; another seed gives other people (default: 1)"
+    )
 
 
 def require_empty(folder: Path) -> None:
@@ -60,9 +104,9 @@ def require_empty(folder: Path) -> None:
     from metagraph.research.study.perceive.folder import KEY
 
     if (folder / KEY).exists() or (folder / "answers").exists():
-        raise ValueError(f"{folder} holds a study already, perhaps with answers: name another folder")
+        raise ValueError(f"{folder} has a study already, perhaps with answers: give another folder")
     if folder.exists() and not folder.is_dir():
-        raise ValueError(f"{folder} is a file: name a folder")
+        raise ValueError(f"{folder} is a file: give a folder")
 
 
 def write_perceptual_plan(options: Namespace) -> int:
@@ -76,13 +120,13 @@ def write_perceptual_plan(options: Namespace) -> int:
     )
 
     if options.tests < 1 or options.items < 1:
-        raise ValueError("tests and items are at least 1")
+        raise ValueError("--tests and --items must be at least 1")
     if not 0.5 < options.share < 1:
-        raise ValueError(f"--share is more than 0.5 and less than 1, not {options.share:g}")
+        raise ValueError(f"--share must be more than 0.5 and less than 1, not {options.share:g}")
     if not 0 < options.chance < 1:
-        raise ValueError(f"--chance is between 0 and 1, not {options.chance:g}")
+        raise ValueError(f"--chance must be between 0 and 1, not {options.chance:g}")
     if options.smallest is not None and not 0.5 < options.smallest < 1:
-        raise ValueError(f"--smallest is more than 0.5 and less than 1, not {options.smallest:g}")
+        raise ValueError(f"--smallest must be more than 0.5 and less than 1, not {options.smallest:g}")
     alpha, each = 0.05 / options.tests, options.each or options.items
     expected = Expected(options.share, options.people_differ, options.items_differ)
     answers = binomial.count_needed_answers(options.share, options.chance, alpha)
@@ -101,12 +145,12 @@ def write_perceptual_plan(options: Namespace) -> int:
         data["smallest"] = binomial.count_needed_answers(options.smallest, options.chance, alpha)
         data["equivalent"] = binomial.equivalence_needed(options.smallest - 0.5, options.chance, alpha)
         lines += [
-            f"  to show the smallest that matters, {options.smallest:.0%}: {_count(data['smallest'])}",
+            f"  to show the smallest share that matters, {options.smallest:.0%}: {_count(data['smallest'])}",
             f"  to show that a half is within {1 - options.smallest:.0%} and {options.smallest:.0%}: "
             f"{_count(data['equivalent'])}",
         ]
     lines.append(
-        f"answers of one person are alike: {data['design_effect']:.2f} times as many for {each} of each"
+        f"answers of one person are similar: {data['design_effect']:.2f} times as many for {each} of each"
     )
     rest = (options.items, each)
     if options.participants is not None:
@@ -127,9 +171,9 @@ def write_perceptual_plan(options: Namespace) -> int:
             data["power"] = {"chance": best.value, "low": best.low, "high": best.high}
         told = _chance(best) if best is not None else ""
         lines.append(
-            f"people, by {options.studies} simulated studies of the mixed model: {people}: {told}"
+            f"people, from {options.studies} simulated studies with the mixed model: {people}: {told}"
             if people is not None
-            else f"even 400 people are too few with {options.items} items that differ so much: {told}"
+            else f"even 400 people are too few with {options.items} items and these differences: {told}"
         )
     say(options, "\n".join(lines), data)
     return 0
@@ -145,7 +189,7 @@ def _chance(found: Any) -> str:
 
 EXAMPLE = """\
 perceive: 1
-title: A made-up study
+title: A simulated study
 participants: 24
 project: sample.metagraph.yaml
 conditions:
@@ -186,7 +230,7 @@ def simulate_perceptual_study(options: Namespace) -> int:
         raters = replace(raters, liked={"deaf": -0.8})
     if options.participants is not None:
         if not 1 <= options.participants <= 1000:
-            raise ValueError("a study has 1 to 1000 participants")
+            raise ValueError("--participants must be 1 to 1000")
         mine = changed(mine, participants=options.participants)
     strange = set(raters.liked) - set(mine.conditions)
     if strange:
@@ -210,7 +254,7 @@ def _raters(options: Namespace) -> Raters:
         except ValueError:
             found = ""
         if not found:
-            raise ValueError(f"what is liked is given as CONDITION=LOGODDS, not {words!r}")
+            raise ValueError(f"--liked takes CONDITION=LOGODDS, not {words!r}")
     return Raters(
         liked,
         options.people_differ,

@@ -1,5 +1,5 @@
 """The videos of a perceptual study, drawn as `render` draws: one camera for an item in all conditions, one
-length, one loudness; names that tell nothing.
+length, one loudness; names that reveal nothing.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Sounds = dict[tuple[str, str], np.ndarray | None]
 @dataclass(frozen=True)
 class StimulusSource:
     """What a condition shows of an item. seen: figures and what they play, or the video there is. start:
-    seconds into it. sound: of a moment on, so long, mono at RATE; None where nothing is heard.
+    seconds into it. sound: of a moment on, so long, mono at RATE; None if nothing is heard.
     """
 
     start: float
@@ -55,7 +55,7 @@ class Stimuli:
         self._plans = ConversationPlans()
 
     def source(self, name: str, item: Stretch) -> StimulusSource:
-        """Return what a condition shows of an item."""
+        """Return what a condition shows for an item."""
         made = self.plan.conditions[name]
         # Of what is not made for each item one whole is kept.
         apart = any("{item}" in p for p in _paths(made))
@@ -66,7 +66,7 @@ class Stimuli:
         if start + item.seconds > found.length + LATE:
             raise self._failure(
                 name,
-                f"lasts {found.length:.2f} s, and item '{item.id}' reaches to {start + item.seconds:.2f} s",
+                f"lasts {found.length:.2f} s, but item '{item.id}' ends at {start + item.seconds:.2f} s",
             )
         return replace(found, start=start)
 
@@ -85,7 +85,7 @@ class Stimuli:
         return {(c, i.id): levels.get(f"{c}\n{i.id}") for c in self.plan.conditions for i in items}
 
     def camera(self, item: Stretch) -> Any:
-        """Return the camera that sees an item in all conditions; None where nothing is drawn."""
+        """Return the camera that sees an item in all conditions; None if nothing is drawn."""
         from preview.camera import frame_whole_figure
 
         boxes, several = [], False
@@ -101,7 +101,7 @@ class Stimuli:
         return frame_whole_figure(box, look.width / look.height, ASIDE if several else 0.0)
 
     def pictures(self, name: str, item: Stretch, camera: Any) -> Iterator[np.ndarray]:
-        """Yield what a condition shows of an item."""
+        """Yield the pictures that a condition shows for an item."""
         from preview.video_reading import read_pictures
 
         look, found = self.plan.video, self.source(name, item)
@@ -119,7 +119,7 @@ class Stimuli:
             self.path,
             cause,
             f"conditions.{name}",
-            remedy or "Correct it; docs/researchers/perceptual-plan.md describes every field.",
+            remedy or "Correct it. docs/researchers/perceptual-plan.md describes every field.",
         )
 
     def _file(self, path: str, item: Stretch) -> Path:
@@ -147,7 +147,7 @@ class Stimuli:
         else:
             shown, folder = self._motion(name, made, item)
         if shown.skeleton is None:
-            raise self._failure(name, "its project has no clips; there is nothing to draw")
+            raise self._failure(name, "its project has no clips to draw")
         start = item.start if made.conversation is not None or not apart else 0.0
 
         def spoken(begin: float, seconds: float) -> np.ndarray | None:
@@ -164,7 +164,7 @@ class Stimuli:
         if ident is None:
             kept = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
             raise self._failure(
-                name, f"there is no conversation '{made.conversation}' in the project; it keeps {kept}"
+                name, f"there is no conversation '{made.conversation}' in the project; it has {kept}"
             )
         talk = project.conversations[ident]
         sides = []
@@ -178,9 +178,7 @@ class Stimuli:
             motion = side.motion
             if made.taken:
                 if side.take is None or side.take not in project.clips:
-                    raise self._failure(
-                        name, f"side {n + 1} of '{talk.name}' has no take that was recorded along with it"
-                    )
+                    raise self._failure(name, f"side {n + 1} of '{talk.name}' has no take recorded with it")
                 motion = side.take
             elif isinstance(made.motion, tuple):
                 path = made.motion[n]
@@ -194,7 +192,9 @@ class Stimuli:
         project = replace(project, conversations={**project.conversations, ident: talk})
         shown = self._plans.show(project, ident, folder)
         if shown.notes:
-            raise self._failure(name, shown.notes[0], "Mend it in the project: a study shows all or nothing.")
+            raise self._failure(
+                name, shown.notes[0], "Repair it in the project. A study cannot be made with missing files."
+            )
         return shown, folder
 
     def _performance(self, made: Condition) -> tuple[ShownPlayback, Path]:
@@ -237,17 +237,17 @@ class Stimuli:
             kept = ", ".join(f"'{c.name}'" for c in found[:8])
             raise FileError(
                 path,
-                f"holds no take '{take}'" if take else f"holds {len(found)} takes",
+                f"has no take '{take}'" if take else f"holds {len(found)} takes",
                 f"conditions.{name}",
-                f"Name one behind '#', as {path.name}#{found[0].name}; there are {kept}.",
+                f"Add its name after '#', as in {path.name}#{found[0].name}; it has {kept}.",
             )
         clip = clips[0]
         if project is not None and clip.skeleton != project.skeleton:
             raise FileError(
                 path,
-                "is of another skeleton than the project",
+                "has another skeleton than the project",
                 f"conditions.{name}",
-                "Import it and name it as a clip, or leave 'project' out for the default body.",
+                "Import it and give it as a clip, or remove 'project' to use the default body.",
             )
         return clip
 
@@ -260,7 +260,7 @@ class Stimuli:
         return lambda begin, seconds: _cut(whole, begin, seconds)
 
     def _video(self, name: str, made: Condition, item: Stretch, apart: bool) -> StimulusSource:
-        from preview.video_reading import read_video_sound, video_seconds
+        from preview.video_reading import measure_video_seconds, read_video_sound
 
         assert made.video is not None
         path = self._file(made.video, item)
@@ -269,7 +269,7 @@ class Stimuli:
         def sound(begin: float, seconds: float) -> np.ndarray | None:
             return None if whole is None else _cut(whole, begin, seconds)
 
-        return StimulusSource(0.0 if apart else item.start, video_seconds(path), sound, video=path)
+        return StimulusSource(0.0 if apart else item.start, measure_video_seconds(path), sound, video=path)
 
 
 def _paths(made: Condition) -> tuple[str, ...]:
@@ -288,13 +288,13 @@ def replace_struct(value: Any, **fields: Any) -> Any:
 
 
 def with_clip(project: Project, ident: str, clip: Clip) -> Project:
-    """Return a project that has a clip more; it is never saved."""
+    """Return a project with one more clip, which is never saved."""
     entry = ClipEntry(ident, ident, "", frames=clip.frames, fps=clip.fps, motion=clip)
     return replace(project, clips={**project.clips, ident: entry})
 
 
 def delay_clip(clip: Clip, seconds: float) -> Clip:
-    """Return a clip whose first frame stands for a while before it."""
+    """Return a clip that holds its first frame for a while before it plays."""
     count = round(seconds * clip.fps)
     if count <= 0:
         return clip

@@ -42,5 +42,8 @@ def run(options: Namespace) -> int:
     for row in sorted(rows, key=lambda r: (r["start"], r["layer"])):
         print(f"{row['start']:8.2f} {row['end']:8.2f}  {row['layer']:5} {row['kind']:11} {row['name']}")
     if not rows:
-        print("Nothing plays: no layer has a stance with a loop and actions around it.", file=sys.stderr)
+        print(
+            "Nothing plays, because no layer has a stance with a loop and actions. Label clips first.",
+            file=sys.stderr,
+        )
     return 0

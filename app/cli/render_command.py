@@ -15,7 +15,7 @@ from app.cli.command_output import add_performance_arguments, open_for_command, 
 from app.look.names import node_names
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.formats.outputs import claim, declare_inputs
-from metagraph.formats.store import files_of
+from metagraph.formats.store import list_project_files
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
@@ -34,52 +34,55 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     add_performance_arguments(parser, 10.0)
     parser.add_argument(
-        "-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb, .usda or .bvh file"
+        "-o", "--out", type=Path, required=True, help="the .png, .mp4, .glb, .usda or .bvh file to write"
     )
     parser.add_argument(
-        "--progress", action="store_true", help="tell after each picture of a video how many there are"
+        "--progress", action="store_true", help="report progress after each picture of a video"
     )
     parser.add_argument(
-        "--start", type=float, default=0.0, help="second of the performance to begin at (default: 0)"
+        "--start", type=float, default=0.0, help="second of the performance to start at (default: 0)"
     )
-    parser.add_argument("--clip", help="draw this clip of the project alone")
+    parser.add_argument("--clip", help="draw only this clip of the project")
     parser.add_argument(
-        "--conversation", metavar="NAME", help="draw all who talk in this conversation, with their sound"
+        "--conversation", metavar="NAME", help="draw this conversation: all its speakers, with their sound"
     )
     parser.add_argument(
         "--captions",
         action=BooleanOptionalAction,
-        help="show the words of who speaks (default: as the timeline says)",
+        help="show captions (default: as set in the timeline)",
     )
     parser.add_argument(
         "--cuts",
         action=BooleanOptionalAction,
-        help="cut a conversation as its camera lane says, or hold still (default: where there are cuts)",
+        help="follow the cuts of the conversation's camera lane, or keep one camera (default: follow "
+        "them, if there are any)",
     )
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
-    parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
-    parser.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")
+    parser.add_argument("--fps", type=float, default=30.0, help="frames a second of a video (default: 30)")
+    parser.add_argument(
+        "--frames", type=int, default=24, help="number of pictures on a contact sheet (default: 24)"
+    )
     parser.add_argument(
         "--sticks", action="store_true", help="draw a stick figure where a character has no mesh"
     )
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
     from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO
 
-    parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="what it is lit by")
-    parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="what is behind it")
+    parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="the light")
+    parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="the background")
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
-    """Return the figure that draws a project, and say where it is not its character's mesh. `sticks` draws a
-    stick figure in place of the default body. Raises FileError.
+    """Return the figure that draws a project, and print a note if it is not the character's mesh. `sticks`
+    draws a stick figure in place of the default body. Raises FileError.
     """
     from preview.character_file import figure_from_file as drawn
-    from preview.default_body.footing import footing_of
+    from preview.default_body.footing import choose_footing
     from preview.figure import StickFigure
 
     assert project.skeleton is not None
     path = folder / project.character if project.character is not None else None
-    footing = footing_of((entry.motion for entry in project.clips.values()), project.skeleton)
+    footing = choose_footing((entry.motion for entry in project.clips.values()), project.skeleton)
     figure = drawn(path, project.skeleton, project.hidden, footing, sticks)
     if figure.instead:
         kind = "a stick figure" if isinstance(figure, StickFigure) else "the default body"
@@ -91,9 +94,9 @@ def read_size(text: str) -> tuple[int, int]:
     try:
         width, height = (int(x) for x in text.lower().split("x"))
     except ValueError:
-        raise ValueError(f"a size is given as 960x540, not {text!r}") from None
+        raise ValueError(f"give --size as 960x540, not {text!r}") from None
     if not (16 <= width <= 7680 and 16 <= height <= 7680):
-        raise ValueError("a size lies between 16x16 and 7680x7680")
+        raise ValueError("--size must be between 16x16 and 7680x7680")
     return width, height
 
 
@@ -113,9 +116,9 @@ def render_pictures(
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Give one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, returns what
-    is filmed then; by default it sees all. into: an array that all come in, for who is done with one before
-    asking for the next.
+    """Yield one picture `[H, W, 4]` for each time. camera: a fixed camera, or a function from seconds to a
+    camera; by default it sees everything. into: an array in which all pictures come, for callers that finish
+    with one before they ask for the next.
     """
     from app.stage.cutting import Filmed
     from app.stage.stools import stools
@@ -164,12 +167,12 @@ def render_directed(
         return
     from app.cli.screenless import make_screenless_application
     from app.stage.caption_paint import add_captions
-    from metagraph.speech.captions import captions_at
+    from metagraph.speech.captions import find_captions_at
 
     # Text needs the fonts of an application, which a program without a window has not.
     application = make_screenless_application()
     for at, picture in zip(times, render_pictures(seen, times, size, look, camera, into), strict=True):
-        yield add_captions(picture, captions_at(captions, float(at)))
+        yield add_captions(picture, find_captions_at(captions, float(at)))
     del application
 
 
@@ -205,17 +208,17 @@ def _actor(figure: Any, shown: ShownPlayback, times: Any) -> Any:
 def run(options: Namespace) -> int:
     project = open_for_command(options.project)
     if project.skeleton is None:
-        raise ValueError("the project has no clips; there is nothing to draw")
+        raise ValueError("the project has no clips to draw")
     if not 1 <= options.fps <= 240:
-        raise ValueError("a video has 1 to 240 pictures a second")
+        raise ValueError("--fps must be 1 to 240")
     if not 2 <= options.frames <= 1000:
-        raise ValueError("a contact sheet has 2 to 1000 pictures")
+        raise ValueError("--frames must be 2 to 1000")
     if not 0 <= options.start <= 36000:
-        raise ValueError("a performance is written from 0 to 36000 seconds on")
+        raise ValueError("--start must be 0 to 36000 seconds")
     if options.out.suffix not in (".png", ".mp4", *MOTION):
         name = options.out.suffix or options.out.name
         raise ValueError(
-            f"pictures are written as .png, videos as .mp4, motion as .glb, .usda or .bvh, not as '{name}'"
+            f"pictures can be written as .png, videos as .mp4, motion as .glb, .usda or .bvh, not as '{name}'"
         )
     size, folder = read_size(options.size), options.project.resolve().parent
     clip = None
@@ -233,7 +236,7 @@ def run(options: Namespace) -> int:
             else ShownPlayback(project, stage_performance(project, options), options.start + options.seconds)
         )
     for one in shown.everyone:
-        declare_inputs(*files_of(one.project, one.folder or folder))
+        declare_inputs(*list_project_files(one.project, one.folder or folder))
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
@@ -259,9 +262,8 @@ Direction = tuple["tuple[Cut, ...]", "tuple[Caption, ...]"]  # where the camera 
 
 @dataclass(frozen=True)
 class Shot:
-    """How a performance is filmed: for how many seconds, in how many pixels, at how many frames a second of a
-    video or with how many pictures of a contact sheet. start: the second it begins at. direction: its cuts
-    and captions.
+    """How a performance is filmed: seconds, size in pixels, frames a second of a video or number of pictures
+    of a contact sheet. start: second of the performance. direction: cuts and captions.
     """
 
     seconds: float
@@ -276,7 +278,7 @@ class Shot:
 def _direction(
     project: Project, options: Namespace, shown: ShownPlayback, folder: Path, seen: Sequence[Seen]
 ) -> Direction:
-    """Return the cuts and captions of what is written, as the options or else the timeline's notes say."""
+    """Return the cuts and captions of a video, from the options or else from the timeline's notes."""
     from app.stage.cutting import list_captions
     from metagraph.graph.timeline_edits import timeline_of
 
@@ -301,9 +303,7 @@ def _talking(project: Project, options: Namespace, folder: Path) -> ShownPlaybac
     found = next((i for i, c in project.conversations.items() if options.conversation in (i, c.name)), None)
     if found is None:
         names = ", ".join(f"'{c.name}'" for c in project.conversations.values()) or "none"
-        raise ValueError(
-            f"there is no conversation '{options.conversation}' in the project; it keeps {names}"
-        )
+        raise ValueError(f"there is no conversation '{options.conversation}' in the project; it has {names}")
     shown = ConversationPlans().show(project, found, folder)
     for note in shown.notes:
         print(f"note: {note}", file=sys.stderr)
@@ -313,9 +313,7 @@ def _talking(project: Project, options: Namespace, folder: Path) -> ShownPlaybac
 
 
 def _outs(out: Path, shown: ShownPlayback) -> list[Path]:
-    """Return a file for each who is shown: all of a conversation have one each, in the character's own
-    space.
-    """
+    """Return one file for each character that is shown, in the character's own space."""
     count = len(shown.everyone)
     return [out] if count == 1 else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(count)]
 
@@ -323,7 +321,7 @@ def _outs(out: Path, shown: ShownPlayback) -> list[Path]:
 def mix_sound(
     shown: ShownPlayback, folder: Path, seconds: float, start: float = 0.0
 ) -> tuple[np.ndarray, int] | None:
-    """Return the sound of what is said from a start on, None where nothing is said at all."""
+    """Return the sound of the speech from a start on, or None if nobody speaks."""
     lines = {
         s.line: line
         for one in shown.everyone
@@ -332,9 +330,9 @@ def mix_sound(
     }
     if not lines:
         return None
-    from metagraph.speech.soundtrack import RATE, line_sounds, mix_track, place_lines
+    from metagraph.speech.soundtrack import RATE, mix_track, place_line_sounds, place_lines
 
-    sounds, notes = line_sounds(lines, folder)
+    sounds, notes = place_line_sounds(lines, folder)
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
     return mix_track(
@@ -419,8 +417,8 @@ def bake_to(
 
 
 def _doing(shown: ShownPlayback, seconds: float) -> str:
-    """Return what is played, as its node calls it; of who moves with a clip instead of the plan what the plan
-    has left to say.
+    """Return the name of what plays, as its node has it. For a character that a clip moves instead of the
+    plan, return what the plan still says.
     """
     layers: tuple[Layer, ...] = ("arms", "head", "body")
     if shown.motion is not None:

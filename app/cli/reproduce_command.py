@@ -1,4 +1,4 @@
-"""`metagraph reproduce`: the papers' tables and figures, made again beside what they print."""
+"""`metagraph reproduce`: make the papers' tables and figures again, next to the published ones."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         "exhibits",
         nargs="*",
         metavar="EXHIBIT",
-        help="exhibits by name, or papers with all of theirs (default: all; --list names them)",
+        help="tables and figures by name, or papers for all of theirs (default: all; --list shows the names)",
     )
     parser.add_argument("--into", type=Path, metavar="FOLDER", help="write report.html and report.json there")
     parser.add_argument(
-        "--list", action="store_true", help="say which exhibits there are and how long each takes"
+        "--list", action="store_true", help="list the tables and figures, and how long each takes"
     )
     parser.add_argument(
         "--project", type=Path, metavar="FILE", help="your project (default: the sample project)"
@@ -33,16 +33,19 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--takes",
         type=Path,
         metavar="FOLDER",
-        help="your recorded conversations: clips with sound, and words, beside them (default: made-up ones)",
+        help="your recorded conversations: clips with their sounds and transcripts in one folder "
+        "(default: synthetic ones)",
     )
     parser.add_argument(
         "--model",
         type=Path,
         metavar="FILE",
-        help="a learned generator (.mgmodel; default: the one that comes with the program)",
+        help="a learned model (.mgmodel; default: the one that comes with Metagraph)",
     )
     parser.add_argument(
-        "--full", action="store_true", help="as much made-up motion as the papers recorded, and more draws"
+        "--full",
+        action="store_true",
+        help="use as much synthetic motion as the papers recorded, and more bootstrap draws",
     )
 
 
@@ -53,13 +56,13 @@ def run(options: Namespace) -> int:
     from metagraph.formats.atomic import write_together
     from metagraph.formats.outputs import claim
     from metagraph.research.exhibits.exhibit import choose_exhibits
-    from metagraph.research.exhibits.page import exhibit_as_text, exhibits_as_data, format_exhibits
+    from metagraph.research.exhibits.page import encode_exhibits, exhibit_as_text, format_exhibits
 
     exhibits = choose_exhibits(options.exhibits)
     if options.list:
         return _list(options, exhibits)
     if options.into is None:
-        raise ValueError("say where the report goes: --into FOLDER; or --list for what there is")
+        raise ValueError("give a folder for the report with --into FOLDER, or use --list")
     claim(options.into / "report.html", options.into / "report.json")
     material = _material(options)
     made = []
@@ -69,11 +72,11 @@ def run(options: Namespace) -> int:
         shown, seconds = _made(exhibit, material)
         made.append((exhibit, shown, seconds))
     told = {"Metagraph": __version__, "project": material.project.name}
-    told["conversations"] = material.told or "made up"
+    told["conversations"] = material.told or "synthetic"
     content = {
         "report.html": format_exhibits(made, told),
         "report.json": json.dumps(
-            {**told, "exhibits": exhibits_as_data(made), "notes": material.notes}, indent=1
+            {**told, "exhibits": encode_exhibits(made), "notes": material.notes}, indent=1
         )
         + "\n",
     }
@@ -85,7 +88,7 @@ def run(options: Namespace) -> int:
     say(
         options,
         "\n\n".join([*words, "\n".join(written)]),
-        {"exhibits": exhibits_as_data(made), "written": written},
+        {"exhibits": encode_exhibits(made), "written": written},
     )
     return 3 if any(s.missing for _, s, _ in made) else 0
 
@@ -110,7 +113,7 @@ def _list(options: Namespace, exhibits: Sequence[Exhibit]) -> int:
 
 
 def _made(exhibit: Exhibit, material: ExhibitMaterial) -> tuple[MadeExhibit, float]:
-    """Return an exhibit and how long it took; one that cannot be made says why, and spoils no other."""
+    """Return an exhibit and the seconds it took. One that cannot be made has the reason instead."""
     from time import perf_counter
 
     from metagraph.errors import FileError
@@ -125,7 +128,7 @@ def _made(exhibit: Exhibit, material: ExhibitMaterial) -> tuple[MadeExhibit, flo
         told = (
             str(error)
             if known
-            else f"it failed ({type(error).__name__}: {error}); report it with the project"
+            else f"failed ({type(error).__name__}: {error}); report this together with the project"
         )
         shown = MadeExhibit(about, missing=told)
     return shown, perf_counter() - began

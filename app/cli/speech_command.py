@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "audio",
         type=Path,
         nargs="+",
-        help="a sound with one channel a speaker, or one file for each",
+        help="a sound with one channel per speaker, or one file per speaker",
     )
     parser.add_argument(
         "--words",
@@ -39,26 +39,26 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one for each "
-        "(default: loudness tells)",
+        help="transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one "
+        "per speaker (default: use loudness)",
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
-    add_language_arguments(parser, "as the project is set to, else auto")
+    add_language_arguments(parser, "the project's language, else auto")
     parser.add_argument(
         "--speakers",
         metavar="NAMES",
-        help="who of them takes part, in which order, with commas: 'Ann,Cleo', or numbers (default: all)",
+        help="the speakers who take part, in order: 'Ann,Cleo', or numbers (default: all)",
     )
-    parser.add_argument("--project", type=Path, help="keep it in this project")
-    parser.add_argument("--name", help="what the conversation is called (default: as the sound)")
+    parser.add_argument("--project", type=Path, help="save the conversation in this project")
+    parser.add_argument("--name", help="name of the conversation (default: the sound's name)")
 
 
 def run(options: Namespace) -> int:
-    """Read a conversation, tell what is in it; with `out` write it, with `project` keep it there."""
+    """Read a conversation and print what is in it; write it to `out`, and save it in `project`, if given."""
     words = [path for some in options.words for path in some]
     out: Path | None = options.out
     if out is not None and out.suffix.casefold() not in [s.casefold() for s in OUT]:
-        raise ValueError(f"it is written as {', '.join(OUT)}, not as '{out.suffix or out.name}'")
+        raise ValueError(f"the file can be {', '.join(OUT)}, not '{out.suffix or out.name}'")
     with ProjectOutput(options.project) if options.project is not None else nullcontext() as output:
         return _read(options, words, out, output)
 
@@ -102,13 +102,13 @@ def _read(options: Namespace, words: list[Path], out: Path | None, output: Proje
         parts = _performed(options.project, ident)
         for row, part in zip(rows, parts, strict=True):
             lines += [f"  {row['name']}: {t.words()}" for t in part.told if t.count]
-            lines += [f"  {row['name']}, {share.words()}" for share in part.looks]
+            lines += [f"  {row['name']}: {share.words()}" for share in part.looks]
         shares = join_shares([share for part in parts for share in part.looks])
-        lines += [f"  whoever is {share.words()}" for share in shares]
+        lines += [f"  all speakers: {share.words()}" for share in shares]
         name = open_for_command(options.project).conversations[ident].name
-        lines.append(f"kept in {options.project} as '{name}' ({ident})")
+        lines.append(f"saved in {options.project} as '{name}' ({ident})")
         if name != read.conversation.name:
-            lines.append(f"  there is a '{read.conversation.name}' already, which stays as it was")
+            lines.append(f"  there is a '{read.conversation.name}' already, which is unchanged")
     if out is not None:
         lines.append(f"written to {out}")
     data = {
@@ -162,7 +162,9 @@ def _keep(output: ProjectOutput, project: Project, read: Read) -> str:
 
 
 def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
-    """Return a conversation of those who are named, or numbered from 1, in that order. Raises ValueError."""
+    """Return a conversation with only the given speakers (names, or numbers from 1), in that order. Raises
+    ValueError.
+    """
     from metagraph.graph.conversation.model import side_name, with_sides
 
     names = [side_name(conversation, n) for n in range(len(conversation.sides))]
@@ -172,12 +174,12 @@ def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
     for name in asked:
         if name.casefold() not in known:
             there = ", ".join(f"'{x}'" for x in names)
-            raise ValueError(f"nobody is called '{name}'; there are {there}, or numbers from 1")
+            raise ValueError(f"there is no speaker '{name}'; the speakers are {there}, or numbers from 1")
     return with_sides(conversation, [known[name.casefold()] for name in asked])
 
 
 def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
-    """Return what all sides do, where the project's graph moves all of them."""
+    """Return what all sides do, with the project's graph moving all of them."""
     from app.cli.command_output import open_for_command
     from metagraph.speech.duet import duet
 
@@ -190,13 +192,13 @@ def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
 def _write(out: Path, read: Read, folder: Path | None) -> None:
     import msgspec
 
-    from metagraph.common.xml_text import replaced_note
+    from metagraph.common.xml_text import describe_replaced
     from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
 
     kind = out.suffix.casefold()
     if kind == ".eaf":
         write_elan(read.conversation, out, folder)
-        if (lost := replaced_note([msgspec.to_builtins(read.conversation)])) is not None:
+        if (lost := describe_replaced([msgspec.to_builtins(read.conversation)])) is not None:
             print(f"note: {lost}", file=sys.stderr)
     elif kind == ".json":
         write_json(read.conversation, out)

@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
     def action(name: str, words: str, run: Any) -> ArgumentParser:
         out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
-        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.add_argument("--json", action="store_true", help="print JSON for programs")
         out.set_defaults(run=run)
         return out
 
@@ -39,18 +39,18 @@ def add_arguments(parser: ArgumentParser) -> None:
         out.add_argument(
             "--no-jumps",
             action="store_true",
-            help="do not judge visible jumps, which needs the references' clips",
+            help="do not look for visible jumps, which needs the clips of the reference projects",
         )
 
-    run_arguments(action("run", "lead a participant through a sitting, in the window", run_study))
+    run_arguments(action("run", "guide a participant through a sitting, in the window", run_study))
     check_arguments(
-        action("check", "print who does what in which order, and what would hamper the study", check_study)
+        action("check", "print each participant's order of tasks, and problems of the plan", check_study)
     )
     reported = action(
-        "report", "write what a study found: a page (report/report.html) and tables as CSV", report_study
+        "report", "write the results of a study: a page (report/report.html), and tables as CSV", report_study
     )
     folder(reported)
-    reported.add_argument("others", type=Path, nargs="*", help="the same study at other sites")
+    reported.add_argument("others", type=Path, nargs="*", help="folders of the same study at other sites")
     reported.add_argument(
         "--out", type=Path, help="where to write it (default: report, in the study's folder)"
     )
@@ -62,25 +62,38 @@ def add_arguments(parser: ArgumentParser) -> None:
     plan_arguments(action)
     replay_arguments(action)
     watch_arguments(action)
-    words = "which of two videos people prefer, and how they rate one: stimuli, page, answers, report"
+    words = "studies of preferences and ratings of videos: stimuli, page, answers, report"
     perceive_arguments(actions.add_parser("perceive", help=words, description=f"W{words[1:]}."))
-    action("example", "recompute the comparison that was published with the meta-graph", print_example)
+    action("example", "recompute the comparison published with the meta-graph", print_example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate_study)
-    made.add_argument("out", type=Path, help="a folder that is not there yet")
+    made.add_argument("out", type=Path, help="the folder to make; it must not exist yet")
     made.add_argument(
-        "--like", type=Path, metavar="STUDY", help="a study of yours: its tasks, orders and questions"
+        "--like", type=Path, metavar="STUDY", help="use the tasks, orders and questions of this study"
     )
-    made.add_argument("--participants", type=int, default=24, help="how many (default: 24)")
-    made.add_argument("--seed", type=int, default=1, help="other people with the same effects (default: 1)")
-    made.add_argument("--ratio", type=float, default=7.9, help="times as long by hand (default: 7.9)")
+    made.add_argument("--participants", type=int, default=24, help="number of participants (default: 24)")
+    made.add_argument(
+        "--seed",
+        type=int,
+        default=1,
+        help="random seed; another seed gives other people with the same effects (default: 1)",
+    )
+    made.add_argument(
+        "--ratio",
+        type=float,
+        default=7.9,
+        help="how many times longer the work takes by hand (default: 7.9)",
+    )
     made.add_argument(
         "--learning", type=float, default=-0.25, help="slope of log seconds over log clips (default: -0.25)"
     )
     made.add_argument(
-        "--order", type=float, default=0.9, help="seconds of a second sitting beside a first (default: 0.9)"
+        "--order",
+        type=float,
+        default=0.9,
+        help="time of a second sitting as a share of the first (default: 0.9)",
     )
     made.add_argument(
-        "--spread", type=float, default=0.3, help="how much people's ratios differ, on logs (default: 0.3)"
+        "--spread", type=float, default=0.3, help="standard deviation of people's log ratios (default: 0.3)"
     )
     made.add_argument(
         "--slips",
@@ -88,7 +101,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs=2,
         default=(0.4, 3.0),
         metavar=("META", "MANUAL"),
-        help="mean mistakes a task",
+        help="mean number of mistakes in a task",
     )
     made.add_argument(
         "--sus", type=float, nargs=2, default=(78.0, 52.0), metavar=("META", "MANUAL"), help="mean SUS scores"
@@ -127,7 +140,7 @@ def export_study(options: Namespace) -> int:
     from metagraph.research.study.study_plan import read_study
 
     if options.bids is None and options.xes is None:
-        raise ValueError("say what to write: --bids OUT, --xes OUT")
+        raise ValueError("give at least one of --bids OUT and --xes OUT")
     study, lines = read_study(options.folder), []
     data: dict[str, Any] = {}
     if options.bids is not None:
@@ -141,7 +154,7 @@ def export_study(options: Namespace) -> int:
         count = write_xes(study, options.xes)
         lines.append(f"{options.xes}: {count} tasks")
         if INSTEAD in options.xes.read_text(encoding="utf-8"):
-            print(f"note: {INSTEAD} stands for what XML cannot hold", file=sys.stderr)
+            print(f"note: {INSTEAD} replaces characters that XML cannot have", file=sys.stderr)
         data |= {"xes": str(options.xes), "traces": count}
     say(options, "\n".join(lines), data)
     return 0

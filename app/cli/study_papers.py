@@ -8,8 +8,8 @@ EPOCH = b"19700101000000"
 
 
 def find_pdf_maker():
-    """Return what makes a PDF, a page as large as the drawing, of an SVG file's text; the same text gives the
-    same bytes.
+    """Return a function that turns the text of an SVG file into a PDF page of the same size. The same text
+    gives the same bytes.
     """
     from PySide6.QtCore import QBuffer, QByteArray, QIODevice, QMarginsF, QRectF, QSizeF
     from PySide6.QtGui import QPageSize, QPainter, QPdfWriter
@@ -39,7 +39,7 @@ def find_pdf_maker():
 
 
 def strip_pdf_dates(content: bytes) -> bytes:
-    """Return a PDF without when it was made and the numbers drawn by chance, as long as before."""
+    """Return a PDF without its date and its random numbers, with the same length."""
     content = re.sub(rb"D:\d{14}", b"D:" + EPOCH, content)
     content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d", b"1970-01-01T00:00:00", content)
     blank = lambda m: m[1] + re.sub(rb"[0-9a-fA-F]", b"0", m[2]) + m[3]  # noqa: E731

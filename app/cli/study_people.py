@@ -1,5 +1,5 @@
-"""`metagraph study freeze`, `withdraw`, `delete` and `gaze`: what a study is made of, who is in it no more,
-and where people looked.
+"""`metagraph study freeze`, `withdraw`, `delete` and `gaze`: record a study's files, withdraw or delete
+participants, and read where people looked.
 """
 
 from __future__ import annotations
@@ -15,42 +15,42 @@ Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 def add_arguments(action: Action) -> None:
     """Add the actions."""
     frozen = action(
-        "freeze", "write down by digest what the study is made of, or see whether it still is", freeze_study
+        "freeze", "record digests of the study's files, or check the files against them", freeze_study
     )
     frozen.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
-    frozen.add_argument("--force", action="store_true", help="freeze anew what has changed since")
+    frozen.add_argument(
+        "--force", action="store_true", help="record the digests again for files that changed"
+    )
     gone = action(
         "withdraw",
-        "leave a participant's data out of all reports and exports from now on",
+        "withdraw a participant: leave the data out of all reports and exports from now on",
         withdraw_participant,
     )
     _who(gone)
-    gone.add_argument("--why", default="", help="in words, kept in the log")
-    deleted = action(
-        "delete", "delete all data of a participant, and note that it was done", delete_participant
-    )
+    gone.add_argument("--why", default="", help="the reason, which the log keeps")
+    deleted = action("delete", "delete all data of a participant, and log the deletion", delete_participant)
     _who(deleted)
-    deleted.add_argument("--yes", action="store_true", help="do not ask")
+    deleted.add_argument("--yes", action="store_true", help="do not ask for confirmation")
 
     brought = action("import", "add a participant's log of tasks done in Unreal, Unity or Godot", merge_sites)
     _who(brought)
-    brought.add_argument("log", type=Path, help="as the script for the engine wrote it")
+    brought.add_argument("log", type=Path, help="the log file that the engine's script wrote")
     looked = action(
-        "gaze", "say which panels and nodes somebody looked at, from a recording of eyes", import_gaze
+        "gaze",
+        "list the panels and nodes that a participant looked at, from an eye-tracking recording",
+        import_gaze,
     )
     _who(looked)
     looked.add_argument(
         "recording", type=Path, help="an export of Tobii Pro Lab, Pupil Player or Pupil Cloud"
     )
-    looked.add_argument(
-        "--clap", type=float, help="when the recording shows the first clap, seconds of its own"
-    )
-    looked.add_argument("--out", type=Path, help="a table (default: gaze.csv beside the log)")
+    looked.add_argument("--clap", type=float, help="time of the first clap in the recording, in seconds")
+    looked.add_argument("--out", type=Path, help="the table to write (default: gaze.csv next to the log)")
 
 
 def _who(parser: ArgumentParser) -> None:
     parser.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
-    parser.add_argument("participant", help="the pseudonym")
+    parser.add_argument("participant", help="the participant's pseudonym")
 
 
 def freeze_study(options: Namespace) -> int:
@@ -80,7 +80,7 @@ def withdraw_participant(options: Namespace) -> int:
     new = note(study, options.participant, options.why)
     say(
         options,
-        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}",
+        f"{options.participant}: {'left out from now on' if new else 'withdrawn earlier'}",
         {"participant": options.participant, "new": new},
     )
     _told(mentions(study, options.participant))
@@ -105,9 +105,9 @@ def delete_participant(options: Namespace) -> int:
 
 
 def _told(paths: list[Path]) -> None:
-    """Tell what still holds the pseudonym."""
+    """Print the files that still have the pseudonym."""
     for path in paths[:10]:
-        print(f"note: {path} still names them; write it anew", file=sys.stderr)
+        print(f"note: {path} still has their name; write it again", file=sys.stderr)
     if len(paths) > 10:
         print(f"note: and {len(paths) - 10} more files", file=sys.stderr)
 

@@ -15,33 +15,37 @@ SMALLEST = 1.25
 
 def add_arguments(action: Action) -> None:
     """Add the action."""
-    made = action("plan", "say how many people a study needs; write its preregistration", print_study_plan)
+    made = action(
+        "plan", "compute how many people a study needs; write its preregistration", print_study_plan
+    )
     made.add_argument("study", type=Path, nargs="?", help="the study's folder, or its study.yaml")
+    made.add_argument("--pilot", type=Path, metavar="FOLDER", help="a pilot study whose ratios are used")
     made.add_argument(
-        "--pilot", type=Path, metavar="FOLDER", help="a study of yours whose people's ratios are taken"
+        "--ratio", type=float, help="assumed ratio: how many times longer the work takes by hand"
     )
-    made.add_argument("--ratio", type=float, help="times as long by hand, assumed")
-    made.add_argument(
-        "--spread", type=float, help="standard deviation of the logs of people's ratios, assumed"
-    )
+    made.add_argument("--spread", type=float, help="assumed standard deviation of people's log ratios")
     made.add_argument(
         "--smallest",
         type=float,
         help=f"the smallest ratio that matters (default: the study's, else {SMALLEST})",
     )
     made.add_argument(
-        "--within", type=float, default=1.25, help="how wide the interval may be, a factor (1.25)"
-    )
-    made.add_argument("--chance", type=float, default=0.8, help="of each aim (0.8)")
-    made.add_argument(
-        "--tests", type=int, help="that share 0.05 (default: time, F1 and the study's questionnaires)"
+        "--within", type=float, default=1.25, help="the widest interval, as a factor (default: 1.25)"
     )
     made.add_argument(
-        "--dropouts", type=float, default=0.0, help="the share of people who will not finish (0)"
+        "--chance", type=float, default=0.8, help="power: the chance to reach each aim (default: 0.8)"
     )
-    made.add_argument("--allocate", action="store_true", help="make the secret of a concealed order")
+    made.add_argument(
+        "--tests",
+        type=int,
+        help="tests that share the level of 0.05 (default: time, F1 and the study's questionnaires)",
+    )
+    made.add_argument(
+        "--dropouts", type=float, default=0.0, help="share of people who will not finish (default: 0)"
+    )
+    made.add_argument("--allocate", action="store_true", help="make the secret for a concealed order")
     made.add_argument("--preregister", action="store_true", help="write the forms of OSF and AsPredicted")
-    made.add_argument("--force", action="store_true", help="write them anew")
+    made.add_argument("--force", action="store_true", help="write the forms again")
 
 
 def print_study_plan(options: Namespace) -> int:
@@ -55,11 +59,11 @@ def print_study_plan(options: Namespace) -> int:
 
     study = read_study(options.study) if options.study is not None else None
     if study is None and (options.allocate or options.preregister):
-        raise ValueError("name the study that is to be preregistered or allocated")
+        raise ValueError("give the study to preregister or allocate")
     if (options.pilot is None) == (options.ratio is None or options.spread is None):
         raise ValueError("give a --pilot, or assume both --ratio and --spread")
     if not 0 <= options.dropouts < 1:
-        raise ValueError(f"dropouts are a share from 0 to less than 1, not {options.dropouts:g}")
+        raise ValueError(f"--dropouts must be 0 or more and less than 1, not {options.dropouts:g}")
     found = (
         _pilot(options.pilot)
         if options.pilot is not None
@@ -71,21 +75,23 @@ def print_study_plan(options: Namespace) -> int:
     aims = Aims(found, needed, smallest, options.within, options.chance, families=tests)
     data = {"assumed": asdict(found), "needed": asdict(needed), "smallest": smallest, "tests": tests}
     lines = [
-        f"ratio {found.ratio:.2f}, deviation of log ratios {found.spread:.2f}, reckoned with "
+        f"ratio {found.ratio:.2f}, deviation of log ratios {found.spread:.2f}, planned with "
         f"{found.worst:.2f} "
         f"({found.source})",
-        f"people, for a chance of {options.chance:.0%}" + (f", {tests} tests" if tests > 1 else "") + ":",
+        f"people needed, for a power of {options.chance:.0%}"
+        + (f", {tests} tests" if tests > 1 else "")
+        + ":",
     ]
     for what, count in (
         (f"to show a ratio of {found.ratio:.2f}", needed.show),
-        (f"to show the smallest that matters, {smallest:g}", needed.smallest),
-        (f"for an interval within {options.within:g} times either way", needed.precise),
-        (f"to show that 1 is equivalent, within {smallest:g} times either way", needed.equivalent),
+        (f"to show the smallest ratio that matters, {smallest:g}", needed.smallest),
+        (f"for an interval no wider than a factor of {options.within:g} either way", needed.precise),
+        (f"to show equivalence: a ratio within a factor of {smallest:g} of 1", needed.equivalent),
     ):
         more = f", {ceil(count / (1 - options.dropouts))} with dropouts" if count and options.dropouts else ""
         lines.append(f"  {what}: {count if count is not None else 'more than 10,000'}{more}")
     lines.append(
-        "Two conditions are balanced for every even number, and each order should have as many people."
+        "Two conditions are balanced with any even number of people. Give each order the same number."
     )
     if study is not None and options.allocate:
         data["commitment"] = prepare_allocation(study)

@@ -14,16 +14,22 @@ def add_arguments(action: Action) -> None:
     """Add the action."""
     made = action("replay", "play a sitting again in the window, or as a video, from its log", replay)
     made.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
-    made.add_argument("participant", help="whose sitting")
-    made.add_argument("--task", help="which task (default: the first part)")
-    made.add_argument("--condition", help="with which condition")
-    made.add_argument("--speed", type=float, default=1.0, help="times as fast as it was (1)")
+    made.add_argument("participant", help="the participant's pseudonym")
+    made.add_argument("--task", help="the task (default: the first part)")
+    made.add_argument("--condition", help="the condition")
+    made.add_argument("--speed", type=float, default=1.0, help="speed of the replay (default: 1)")
     made.add_argument(
-        "--from", dest="start", type=float, default=0.0, help="seconds from the part's begin (0)"
+        "--from",
+        dest="start",
+        type=float,
+        default=0.0,
+        help="seconds after the start of the part (default: 0)",
     )
-    made.add_argument("--until", type=float, help="seconds from the part's begin (its end)")
-    made.add_argument("--video", type=Path, metavar="OUT.mp4", help="write a video instead of playing")
-    made.add_argument("--fps", type=float, default=10.0, help="pictures a second of the video (10)")
+    made.add_argument("--until", type=float, help="seconds after the start of the part (default: its end)")
+    made.add_argument(
+        "--video", type=Path, metavar="OUT.mp4", help="write a video, instead of playing in the window"
+    )
+    made.add_argument("--fps", type=float, default=10.0, help="frames a second of the video (default: 10)")
 
 
 def replay(options: Namespace) -> int:
@@ -33,7 +39,7 @@ def replay(options: Namespace) -> int:
     study = read_study(options.study)
     study.plan.known(options.participant)
     if not options.speed > 0 or not 0 < options.fps <= 60:
-        raise ValueError("a speed is greater than 0, and a video has at most 60 pictures a second")
+        raise ValueError("--speed must be more than 0, and --fps at most 60")
     from app.main import make_window, prepare_application
 
     app = prepare_application()

@@ -12,19 +12,23 @@ PROBLEMS = 3
 def run_arguments(parser: ArgumentParser) -> None:
     """Add the options of `run`."""
     parser.add_argument("study", type=Path, help="a study file, or the folder it is in")
-    parser.add_argument("--participant", metavar="ID", help="who takes part (default: it is asked)")
     parser.add_argument(
-        "--experimenter", action="store_true", help="notes are the experimenter's, not the participant's"
+        "--participant", metavar="ID", help="the participant's pseudonym (default: the window asks)"
+    )
+    parser.add_argument(
+        "--experimenter",
+        action="store_true",
+        help="record notes as the experimenter, not as the participant",
     )
 
 
 def run(options: Namespace) -> int:
-    """Open the window and lead a participant through. Raises FileError, ValueError."""
+    """Open the window and guide a participant through the sitting. Raises FileError, ValueError."""
     from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     if options.participant is not None:
-        study.plan.known(options.participant)  # a stranger is told before a window is opened
+        study.plan.known(options.participant)  # a stranger is reported before a window is opened
     from PySide6.QtCore import QTimer
 
     from app.main import make_window, prepare_application
@@ -46,7 +50,7 @@ def check_arguments(parser: ArgumentParser) -> None:
 
 
 def check_study(options: Namespace) -> int:
-    """Print who does what in which order, and what would hamper the study. Raises FileError."""
+    """Print each participant's order of tasks, and problems of the plan. Raises FileError."""
     from metagraph.research.study.sitting import describe_standing
     from metagraph.research.study.study_plan import read_study
 
@@ -71,7 +75,7 @@ def check_study(options: Namespace) -> int:
         print(study.plan.title)
         for who, blocks, stands in rows:
             order = "; ".join(f"{condition}: {', '.join(tasks)}" for condition, tasks in blocks)
-            order = order or "drawn when they begin"
+            order = order or "drawn at the start"
             print(f"  {who}  {order}  ({stands})")
         for problem in problems:
             print(f"problem: {problem}")
@@ -79,7 +83,7 @@ def check_study(options: Namespace) -> int:
 
 
 def _order(study, participant):
-    """Return a participant's conditions with their tasks; nothing where they are not drawn yet."""
+    """Return a participant's conditions with their tasks; nothing if they are not drawn yet."""
     try:
         return study.blocks(participant)
     except ValueError:
@@ -94,7 +98,10 @@ def _promised(study):
 
     before = frozen(study)
     out = (
-        [f"{name} is not as it was frozen" for name in find_changed_names(before, study_manifest(study))]
+        [
+            f"{name} has changed since it was frozen"
+            for name in find_changed_names(before, study_manifest(study))
+        ]
         if before
         else []
     )

@@ -13,10 +13,10 @@ Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 
 def add_arguments(action: Action) -> None:
     """Add the action."""
-    made = action("watch", "show who of a study is where just now, on this machine", watch_study)
+    made = action("watch", "show the progress of participants on this computer, as they work", watch_study)
     made.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
-    made.add_argument("--once", action="store_true", help="show it once, and end")
-    made.add_argument("--every", type=float, default=2.0, help="seconds between two looks (2)")
+    made.add_argument("--once", action="store_true", help="show it once and stop")
+    made.add_argument("--every", type=float, default=2.0, help="seconds between updates (default: 2)")
 
 
 def watch_study(options: Namespace) -> int:

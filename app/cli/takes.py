@@ -1,4 +1,4 @@
-"""Long takes and what was said during them, as commands are given them."""
+"""Read long takes, and what was said during them, from the options of commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KEPT = 16000  # samples a second that are kept of one
 
 
 def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
-    """Add the options that tell what was said during takes, and by whom."""
+    """Add the options of the speech during takes, and of the speaker."""
     parser.add_argument(
         "--speech",
         type=Path,
@@ -26,19 +26,18 @@ def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
         required=required,
         default=[],
         metavar="FILE",
-        help="what was said in each take: .eaf, .TextGrid or a conversation's .json, called as the take is",
+        help="what was said in each take: .eaf, .TextGrid or a conversation's .json, with the take's name",
     )
     parser.add_argument(
         "--side",
         default="1",
-        help="whose motion the takes are: a number in the files' order, or a name (default: 1)",
+        help="the speaker whose motion the takes are: a number in the order of the files, or a name "
+        "(default: 1)",
     )
 
 
 def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
-    """Return takes under the names of their files; of files with several takes, or projects, under the takes'
-    own.
-    """
+    """Return takes by the names of their files, or by their own names if a file has several."""
     from app.cli.command_output import open_for_command
     from metagraph.errors import FileError
     from metagraph.formats.clips import read_clips
@@ -50,7 +49,7 @@ def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
             raise FileError(
                 path,
                 "there is no such file or folder",
-                "on reading takes",
+                "while reading takes",
                 "Give clip files, folders of them, or projects.",
             )
         if path.suffix in (".yaml", ".yml"):
@@ -66,13 +65,13 @@ def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
     if not out:
         raise FileError(
             paths[0],
-            "it holds no clips",
-            "on reading takes",
+            "has no clips",
+            "while reading takes",
             "Give clip files, folders of them, or projects.",
         )
     twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
     if twice is not None:
-        raise ValueError(f"two takes are called '{twice}', so speech cannot be told apart: rename one")
+        raise ValueError(f"two takes are called '{twice}': rename one")
     return out
 
 
@@ -95,7 +94,7 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
     if made is None:
         told = read_transcript(path)
         if not any(told.segments.values()):
-            raise FileError(path, "it holds no clauses, responses and hesitations", "", _SAVED)
+            raise FileError(path, "has no clauses, responses or hesitations", "", _SAVED)
         names = [
             n
             for n in dict.fromkeys((*told.speakers, *told.segments))
@@ -114,9 +113,9 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
     if side not in (*numbers, *names):
         raise FileError(
             path,
-            f"nobody is called '{side}'",
+            f"has no speaker '{side}'",
             "its speakers",
-            f"They are {', '.join(f'{n!r}' for n in names)}; or say a number from 1 to {len(names)}.",
+            f"They are {', '.join(f'{n!r}' for n in names)}; or give a number from 1 to {len(names)}.",
         )
     return made, names.index(side) if side in names else int(side) - 1
 
@@ -124,9 +123,9 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
 def read_side_speech(
     path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
 ) -> SpokenTake:
-    """Return what one of those in a file moves with, `segments_heard_by`, with its words; and how it is
-    said. sound: of the recording, None where there is none; where it has a channel for each of them, of its
-    own. transcript: where its words are, None where they are in the file itself. Raises FileError.
+    """Return the segments that one speaker of a file moves with (`segments_heard_by`) with its words, and how
+    they are said. sound: of the recording, None if there is none; where it has a channel for each of them, of
+    its own. transcript: where its words are, None if they are in the file itself. Raises FileError.
     """
     from metagraph.graph.conversation.model import segments_heard_by
     from metagraph.speech.prosody import prosody
@@ -144,8 +143,8 @@ def read_side_speech(
 
 
 def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
-    """Return the words of one of those in a transcript: who is called so, else whose number it is; those of
-    the only one. Raises FileError.
+    """Return the words of one speaker in a transcript, found by name, else by number; or those of the only
+    speaker. Raises FileError.
     """
     from metagraph.errors import FileError
     from metagraph.formats.transcripts.reader import read_transcript
@@ -155,28 +154,28 @@ def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
         return speakers[name] if name in speakers else next(iter(speakers.values()))
     if number < len(speakers):
         return list(speakers.values())[number]
-    raise FileError(path, "it holds no words", "", "Give a transcript with words and their times.")
+    raise FileError(path, "has no words", "", "Give a transcript with words and their times.")
 
 
-def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
-    """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
+def match_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
+    """Return takes, the speech of each, and their names. Raises ValueError if files do not go together."""
     takes = read_take_files(options.takes)
     files = {path.stem: path for path in options.speech}
     if len(files) < len(options.speech):
-        raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
+        raise ValueError("two speech files have the same name: rename one")
     missing = [n for n, _ in takes if n not in files]
     left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
     if missing or left:
         words = [f"no speech for {', '.join(missing[:5])}"] if missing else []
         words += [f"no take for {', '.join(left[:5])}"] if left else []
         raise ValueError(
-            f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
+            f"{' and '.join(words)}: give a speech file the name of its take, as in take1.bvh and take1.eaf"
         )
     sounds, transcripts = read_given_files(options, "sounds"), read_given_files(options, "transcripts")
     for some, what, ending in ((sounds, "sound", "wav"), (transcripts, "transcript", "srt")):
         if some and (without := [n for n, _ in takes if n not in some]):
             raise ValueError(
-                f"no {what} for {', '.join(without[:5])}: it is called as the take is, take1.bvh and "
+                f"no {what} for {', '.join(without[:5])}: give it the name of its take, as in take1.bvh and "
                 f"take1.{ending}"
             )
     return (
@@ -187,17 +186,17 @@ def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[s
 
 
 def read_given_files(options: Namespace, what: str) -> dict[str, Path]:
-    """Return the sounds or transcripts that were given, under the names of their files; none where there is
-    no such option. Raises ValueError where two have one name.
+    """Return the sounds or transcripts that were given, under the names of their files; none if there is no
+    such option. Raises ValueError if two have one name.
     """
     given = getattr(options, what, [])
     out = {path.stem: path for path in given}
     if len(out) < len(given):
-        raise ValueError(f"two {what} have one name, so takes cannot be told apart: rename one")
+        raise ValueError(f"two {what} have the same name: rename one")
     return out
 
 
-def pair_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
-    """Return takes, and what was heard during each. Raises ValueError where files do not go together."""
-    clips, spoken, _ = pair_takes(options)
+def match_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
+    """Return takes, and what was heard during each. Raises ValueError if files do not go together."""
+    clips, spoken, _ = match_takes(options)
     return clips, [one.segments for one in spoken]

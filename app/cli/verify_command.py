@@ -1,4 +1,4 @@
-"""`metagraph verify`: whether a project or an export is whole, and what is not."""
+"""`metagraph verify`: check that the files of a project or an export are intact."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def run(options: Namespace) -> int:
 
 
 def format_verification(found: Sequence[Verified]) -> list[str]:
-    """Return what is said of each project and export: a heading, and a line for each part."""
+    """Return the report on each project and export: a heading, and a line for each part."""
     lines = []
     for one in found:
         lines.append(f"{one.file} ({one.kind})")
@@ -63,7 +63,7 @@ def format_verification(found: Sequence[Verified]) -> list[str]:
 
 
 def format_verdict(count: int) -> str:
-    """Return what is said of all of it."""
+    """Return the last line, on everything."""
     return (
-        f"{count_in_words(count, 'thing is', 'things are')} not whole." if count else "Everything is whole."
+        f"{count_in_words(count, 'thing is', 'things are')} not whole." if count else "Everything is intact."
     )

@@ -1,6 +1,4 @@
-"""`metagraph window`: the window, on a project if one is named; where there is no screen, the same job
-without it.
-"""
+"""`metagraph window`: the window, on a project if one is given. Without a screen, the demo runs instead."""
 
 from __future__ import annotations
 
@@ -14,9 +12,9 @@ from metagraph.errors import FileError
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("project", type=Path, nargs="?", help="a project file")
+    parser.add_argument("project", type=Path, nargs="?", help="the project to open")
     parser.add_argument("--sample", action="store_true", help="open the sample project")
-    parser.add_argument("--clip", metavar="NAME", help="select this clip of the project, and play it alone")
+    parser.add_argument("--clip", metavar="NAME", help="select this clip of the project, and play it")
 
 
 def has_screen() -> bool:
@@ -31,12 +29,12 @@ def run(options: Namespace) -> int:
         raise FileError(
             options.project,
             "there is no such project",
-            "on opening it",
+            "while opening it",
             "Give a file ending in .metagraph.yaml.",
         )
     if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
         if not options.json:
-            print("There is no screen here, so the same job runs without a window.\n")
+            print("There is no screen, so Metagraph runs the demo without a window.\n")
         from app.cli.demo_command import run as demo
 
         return demo(

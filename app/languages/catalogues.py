@@ -75,7 +75,7 @@ def collect_texts(every: Iterable[Marked]) -> Catalog:
     return out
 
 
-def new_catalogue(code: str) -> Catalog:
+def make_catalogue(code: str) -> Catalog:
     """Return a catalogue without texts."""
     name = Locale.parse(code).english_name
     return Catalog(
@@ -136,7 +136,7 @@ def main(arguments: list[str]) -> int:
     if arguments[:1] == ["new"] and len(arguments) == 2:
         path = HERE / arguments[1] / "LC_MESSAGES" / "metagraph.po"
         if not path.exists():
-            write_catalogue(new_catalogue(arguments[1]), path)
+            write_catalogue(make_catalogue(arguments[1]), path)
     elif arguments:
         print(__doc__)
         return 2

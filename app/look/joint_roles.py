@@ -1,4 +1,4 @@
-"""What joints are in a body, as the window says it."""
+"""Names of the roles of joints, as the window shows them."""
 
 from __future__ import annotations
 

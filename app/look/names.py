@@ -107,7 +107,7 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
 
 
 def names_in_tooltip(words: str, name: str) -> str:
-    """Return what a tooltip says of something called `words` in its place: that, and its name where that is
+    """Return what a tooltip says of something called `words` in its place: that, and its name if that is
     another.
     """
     return words if words == name else f"{words}\n{name}"
@@ -126,7 +126,7 @@ _KEPT: dict[tuple[Layer, str, Kind], _Kept] = {}
 
 
 def node_names(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[str, str]:
-    """Return `row_names` of a node, made anew only where what is called there is."""
+    """Return `row_names` of a node, made again only where what is called there is."""
     graph, key = project.graphs[layer], (layer, stance, kind)
     kept = _KEPT.get(key)
     if kept is not None and kept.graph is graph:

@@ -19,7 +19,7 @@ def shorten_middle(
     text: str, width: float, measure: Callable[[str], float], others: Iterable[str] = (), sure: bool = False
 ) -> str:
     """Return as much of a text as a width has room for, its middle left out, or both ends. others: what
-    stands beside it; what is left is to be none of theirs, where that can be. sure: "" where it cannot.
+    stands beside it; what is left is to be none of theirs, if that can be. sure: "" if it cannot.
     """
     if measure(text) <= width:
         return text
@@ -109,8 +109,8 @@ def break_at_words(
 def shorten_to_lines(
     text: str, width: float, lines: int, measure: Callable[[str], float], others: Iterable[str] = ()
 ) -> tuple[str, ...]:
-    """Return `break_at_words`, else the beginning of a word that begins no word of the others; () where
-    nothing of a text tells it apart.
+    """Return `break_at_words`, else the beginning of a word that begins no word of the others; () if nothing
+    of a text tells it apart.
     """
     return break_at_words(text, width, lines, measure, others) or _beginning(
         text, width, measure, _rivals(text, others)
@@ -148,7 +148,7 @@ def _holds(words: Sequence[str], run: Sequence[str]) -> bool:
 
 
 def _broken(text: str, width: float, lines: int, measure: Callable[[str], float]) -> tuple[str, ...] | None:
-    """Return a text in as few lines as take it whole, broken between words; None where none do."""
+    """Return a text in as few lines as take it whole, broken between words; None if none do."""
     if measure(text) <= width:
         return (text,)
     if lines < 2:

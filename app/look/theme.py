@@ -41,7 +41,7 @@ class WindowTheme:
     fills: Mapping[str, str]  # areas
     sounds: Mapping[
         str, str
-    ]  # areas of what is said; told apart by colour-blind people by their lightness, too
+    ]  # areas of what is said; distinguished by colour-blind people by their lightness, too
 
     def kind(self, kind: Kind | str) -> QColor:
         return QColor(self.kinds[kind])
@@ -132,7 +132,7 @@ def palette(look: WindowTheme) -> QPalette:
 MARKS = (Path(__file__).parent / "marks").as_posix()  # pictures a style sheet names by their files
 
 
-def style_sheet(look: WindowTheme) -> str:
+def make_style_sheet(look: WindowTheme) -> str:
     """Return the style of the whole window; 8 px grid, 6 px radius, no gradients.
 
     Labels, message boxes and tooltips show text as it is: a name from a stranger's file may look like HTML,
@@ -227,7 +227,7 @@ def style_sheet(look: WindowTheme) -> str:
     """
 
 
-def window_font() -> QFont:
+def make_window_font() -> QFont:
     """Return the typeface of the window, the same on every system: Source Sans Pro, and the system's own for
     letters that it does not have.
     """
@@ -240,14 +240,14 @@ def window_font() -> QFont:
 
 def apply_theme(app: QApplication, look: WindowTheme) -> None:
     """Give the application a theme's style."""
-    if not app.property("styled"):  # once: each of these polishes every widget anew
+    if not app.property("styled"):  # once: each of these polishes every widget again
         app.setProperty("styled", True)
         app.setStyle("Fusion")
-        app.setFont(window_font())
+        app.setFont(make_window_font())
     if app.property("look") != look.name:
         app.setProperty("look", look.name)
         app.setPalette(palette(look))
-        app.setStyleSheet(style_sheet(look))
+        app.setStyleSheet(make_style_sheet(look))
 
 
 def strengthen(button: QPushButton) -> None:

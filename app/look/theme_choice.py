@@ -8,7 +8,7 @@ from PySide6.QtCore import QObject, Signal
 
 
 class ThemeChoice(QObject):
-    """changed: dark became light, or the other way round."""
+    """The chosen theme. changed: signals a switch between dark and light."""
 
     changed = Signal()
 

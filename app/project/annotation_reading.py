@@ -13,7 +13,7 @@ from metagraph.graph import edits
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.learning.annotation import SPEECH, Annotation, Label, guess_roles, labels
-from metagraph.playback.learning.learn import Act, act_sequences, as_performance, learn_model
+from metagraph.playback.learning.learn import Act, as_performance, find_act_sequences, learn_model
 from metagraph.playback.planning.markov import DEFAULTS
 from metagraph.playback.planning.mode_shares import with_modes
 from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
@@ -41,7 +41,7 @@ class AnnotationReading:
     @cached_property
     def observed(self) -> dict[Layer, tuple[Act, ...]]:
         """Return for each layer what it was seen to do. Layers without a tier are left out."""
-        found = act_sequences(self.annotation, self.roles, self.labels)
+        found = find_act_sequences(self.annotation, self.roles, self.labels)
         return {layer: found[layer] for layer in LAYERS if layer in found}
 
     @cached_property

@@ -50,7 +50,7 @@ class Autosave:
 
     @property
     def register(self) -> JournalRegister:
-        return JournalRegister(journal_shelter(self.folder))
+        return JournalRegister(find_journal_shelter(self.folder))
 
     @property
     def place(self) -> Path:
@@ -126,7 +126,7 @@ class Autosave:
     ) -> Journal | None:
         """Return a journal in the user's own folder with everything unsaved; None if that is impossible."""
         document = self.document
-        folder = journal_shelter(self.folder)
+        folder = find_journal_shelter(self.folder)
         if document.path is None or (self.journal is not None and self.journal.path.parent == folder):
             return None
         place = journal_path(folder / document.path.name, document.owner.sitting)
@@ -188,7 +188,7 @@ class Autosave:
         self._abandoned.clear()
 
 
-def journal_shelter(folder: Path) -> Path:
+def find_journal_shelter(folder: Path) -> Path:
     """Return the folder of the list of journals, and of journals that cannot be elsewhere."""
     return folder / "journals"
 

@@ -20,7 +20,7 @@ from app.project.change_words import describe_edit
 from app.project.opening import with_motion_of
 from app.project.version_count import version_count
 from app.project.writing import Writing, move_steps
-from app.translation import in_english, tr
+from app.translation import get_english, tr
 from metagraph.errors import FileError
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.new_file import Access, access_of
@@ -46,7 +46,7 @@ class _Change(QUndoCommand):
     ) -> None:
         super().__init__(describe_edit(text, before, after))
         self.command = text  # without what it changed
-        self.english = in_english(text)  # its name in logs
+        self.english = get_english(text)  # its name in logs
         self.document, self.before, self.after, self.merge = document, before, after, merge
         self.cancelled = False
         self._how: How = "done"

@@ -119,7 +119,7 @@ class Learned(QObject):
         """
         if not self.on or document.path is None or document.dirty:
             return
-        project, key = document.project, memory_key(document)
+        project, key = document.project, make_memory_key(document)
         if jobs is not None:
             self._due += 1
             jobs.start(
@@ -217,7 +217,7 @@ class Learned(QObject):
         self.changed.emit()
 
 
-def memory_key(document: Document) -> str:
+def make_memory_key(document: Document) -> str:
     """Return the key under which a project is remembered: its file, "" for none."""
     return _key(document.path)
 

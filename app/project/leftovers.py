@@ -10,14 +10,14 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.project.autosave import journal_shelter, state_folder
+from app.project.autosave import find_journal_shelter, state_folder
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import sweep
 from metagraph.formats.locking import Holder, Lock, Owner
 from metagraph.formats.new_file import access_of
 from metagraph.formats.project.journal_register import JournalRegister
-from metagraph.formats.project.journal_search import find_all_journals, journals_for, project_of
+from metagraph.formats.project.journal_search import find_all_journals, find_journals_for, project_of
 from metagraph.formats.recovery import DAMAGED, Left, find_journals_in, order_journals, read_journal, retire
 from metagraph.formats.store import SUFFIX, load_returned, save_project
 from metagraph.graph.model import Project
@@ -46,14 +46,14 @@ class FoundJournal:
 
 def register() -> JournalRegister:
     """Return the list of all journals of this user."""
-    return JournalRegister(journal_shelter(state_folder()))
+    return JournalRegister(find_journal_shelter(state_folder()))
 
 
 def look_beside(path: Path, owner: Owner) -> FoundJournal:
     """Take the lock of a project file, and read the journals that belong to it, wherever they are.
     Half-written files are removed. A missing project file can have journals, too.
     """
-    journals = journals_for(path, register())
+    journals = find_journals_for(path, register())
     if not is_file(path) and not (journals and path.parent.is_dir()):
         return FoundJournal(None, None, (), ())
     sweep(path.resolve().parent)

@@ -36,10 +36,10 @@ def is_conversation(paths: Sequence[Path]) -> bool:
     if len(sounds) > 2:
         lasts = [read_sound_seconds(p) for p in sounds]
         return max(lasts) - min(lasts) <= UNLIKE and min(lasts) >= LONG
-    return len(sounds) == 2 or bool(transcripts) or 2 <= channels_of(sounds[0]) <= MOST_SPEAKERS
+    return len(sounds) == 2 or bool(transcripts) or 2 <= count_channels(sounds[0]) <= MOST_SPEAKERS
 
 
-def channels_of(path: Path) -> int:
+def count_channels(path: Path) -> int:
     """Return how many channels a sound file has, from its header; 0 if that cannot be read."""
     import soundfile
 
@@ -59,7 +59,7 @@ def read_sound_seconds(path: Path) -> float:
         return 0.0
 
 
-def facts_of(path: Path) -> str:
+def describe_sound_file(path: Path) -> str:
     """Return a sound file's name with its channels and length, from its header; only the name if that cannot
     be read.
     """

@@ -61,7 +61,7 @@ class Writing:
     number of earlier ones that are kept. `home` identifies the folder of its own file. `access` says who may
     read it. `steps` led to the project; `replaces` is the digest of the file as it was. After writing:
     `after` is the project as in the file, `digest` the file's SHA-256, `note` the reason if its earlier
-    version could not be kept, and `anew` whether its own file had been missing.
+    version could not be kept, and `again` whether its own file had been missing.
     """
 
     project: Project

@@ -44,7 +44,7 @@ SUBMENUS: dict[str, dict[str, str]] = {
         "character": tr_noop("C&haracter"),
     },
     "&Graph": {"layers": tr_noop("&Go to"), "stances": tr_noop("&Go to")},
-    "C&lips": {"rating": tr_noop("&Rating"), "labels": tr_noop("&Label"), "groups": tr_noop("&Group")},
+    "C&lips": {"rating": tr_noop("&Rating"), "labels": tr_noop("&Colour label"), "groups": tr_noop("&Group")},
     "&Play": {
         "range": tr_noop("Loop &range"),
         "markers": tr_noop("&Markers"),

@@ -28,7 +28,7 @@ from metagraph.formats.atomic import write_atomically
 CHILDREN = 5000  # ms between two checks for what processes have written
 
 
-def fault_folder() -> Path:
+def find_fault_folder() -> Path:
     """Return the folder for reports of crashes."""
     return state_folder() / "faults"
 
@@ -48,7 +48,7 @@ class FaultTeller(QObject):
         document.saved.connect(lambda: faults.note("saved"))
         document.undo_stack.indexChanged.connect(self._note_step)
         self._timer = QTimer(self, interval=CHILDREN)
-        self._timer.timeout.connect(lambda: faults.read_child_faults(fault_folder()))
+        self._timer.timeout.connect(lambda: faults.read_child_faults(find_fault_folder()))
         self._timer.start()
 
     def _note_step(self, index: int) -> None:
@@ -76,7 +76,7 @@ class FaultTeller(QObject):
 
     def offer_left(self) -> None:
         """Offer the report of a crash that ended the program last time."""
-        left = faults.read_crash_reports(fault_folder())
+        left = faults.read_crash_reports(find_fault_folder())
         if left:
             faults.note("started after it had ended by itself")
             dialog = FaultDialog(self.window)

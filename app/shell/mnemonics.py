@@ -15,12 +15,12 @@ def with_distinct_keys(texts: tuple[str, ...]) -> tuple[str, ...]:
     """
     taken: dict[str, int] = {}  # key -> index of its text
     for place, text in enumerate(texts):
-        key = mnemonic_key(text)
+        key = read_mnemonic_key(text)
         if key:
             taken.setdefault(key, place)
     out = []
     for place, text in enumerate(texts):
-        key = mnemonic_key(text)
+        key = read_mnemonic_key(text)
         if not key or taken[key] == place:
             out.append(text)
             continue
@@ -34,7 +34,7 @@ def with_distinct_keys(texts: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def mnemonic_key(text: str) -> str:
+def read_mnemonic_key(text: str) -> str:
     """Return the key that a text marks, in lower case; "" if it marks none."""
     place = _marked(text)
     return text[place + 1].lower() if place is not None else ""

@@ -16,11 +16,11 @@ from metagraph.graph.timeline import Cut
 from metagraph.speech.automatic_cuts import cut_at
 from metagraph.speech.captions import (
     Caption,
-    captions_of,
-    captions_of_text,
-    conversation_captions,
     describe_line,
     list_timed_words,
+    make_captions,
+    make_captions_of_text,
+    make_conversation_captions,
 )
 from preview.camera import Camera
 from preview.scene import LampTurn
@@ -120,7 +120,7 @@ def list_captions(
             Caption(
                 c.start, c.end, f"{side_name(conversation, c.side)}: {c.text}" if named else c.text, c.side
             )
-            for c in conversation_captions(conversation)
+            for c in make_conversation_captions(conversation)
         )
     out: list[Caption] = []
     for speech in shown.plan.track.speeches:
@@ -130,5 +130,5 @@ def list_captions(
             known[str(speech.line)] = describe_line(line, shown.folder or folder)
         words = list_timed_words(speech, known)
         text = speech.text or (line.text if line is not None else "")
-        out += captions_of(words) if words else captions_of_text(speech, text)
+        out += make_captions(words) if words else make_captions_of_text(speech, text)
     return tuple(sorted(out, key=lambda c: c.start))

@@ -17,7 +17,7 @@ from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
 from preview.character_file import figure_from_file
-from preview.default_body.footing import Footing, footing_of
+from preview.default_body.footing import Footing, choose_footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
@@ -84,7 +84,7 @@ class Figures(QObject):
     def footing(self, skeleton: Skeleton, project: Project) -> Footing | None:
         """Return how a skeleton stands, told once by the first of the project's clips that is on it."""
         if skeleton.fingerprint not in self._footings:
-            found = footing_of((entry.motion for entry in project.clips.values()), skeleton)
+            found = choose_footing((entry.motion for entry in project.clips.values()), skeleton)
             if found is None:
                 return None
             self._footings[skeleton.fingerprint] = found

@@ -1,4 +1,4 @@
-"""Draw the picture of the character: one painter for two widgets, an OpenGL widget and, where there is no
+"""Draw the picture of the character: one painter for two widgets, an OpenGL widget and, if there is no
 OpenGL, an image.
 """
 
@@ -124,13 +124,13 @@ class GLView(CameraMouse, QOpenGLWidget):
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
 
     def initializeGL(self) -> None:
-        from preview.offscreen import no_opengl_error
+        from preview.offscreen import describe_missing_opengl
 
         try:
             self._ctx = moderngl.create_context(require=330)
             self._renderer = Renderer(self._ctx)
         except Exception as error:
-            self._cannot_draw(no_opengl_error(str(error)))
+            self._cannot_draw(describe_missing_opengl(str(error)))
             return
         self.context().aboutToBeDestroyed.connect(self._lost)
 
@@ -155,7 +155,7 @@ class ImageView(CameraMouse, QWidget):
     """Draws the same picture through an offscreen context, for platforms without OpenGL widgets.
 
     `coarse` is how many times wider and higher the picture's pixels are than the widget's; it is more than 1
-    where nobody looks. `beside` is another view of the same scenes, which is painted first and lives longer.
+    if nobody looks. `beside` is another view of the same scenes, which is painted first and lives longer.
     """
 
     coarse = 1

@@ -85,9 +85,9 @@ class Sound(QObject):
         folder = self.document.folder or Path()
 
         def work(_: object) -> Any:
-            from metagraph.speech.soundtrack import line_sounds
+            from metagraph.speech.soundtrack import place_line_sounds
 
-            return line_sounds(lines, folder)
+            return place_line_sounds(lines, folder)
 
         self.jobs.start(
             tr("Reading sounds"), work, self._read, lambda error: self.told.emit(tr_error(error)), quick=True

@@ -46,7 +46,7 @@ NAVIGATIONS: Mapping[str, Navigation] = {
     for one in (
         Navigation(
             "usual",
-            tr_noop("Usual"),
+            tr_noop("Default"),
             tr_noop("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame"),
             {
                 (_LEFT, _NONE): "orbit",

@@ -271,7 +271,7 @@ class StagePerformance(QObject):
             self.changed.emit()
 
     def show_moment(self, seconds: float) -> None:
-        """Stop a little before a second of the performance that plays by itself; nothing where another
+        """Stop a little before a second of the performance that plays by itself; nothing if another
         performance, a conversation or a live session is on stage.
         """
         if self.live.stage is not None or self.conversation is not None or self.requests.kept is not None:

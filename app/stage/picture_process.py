@@ -61,11 +61,11 @@ _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 def draw_clip_pictures(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     """Return a clip's pictures `[H, W, 4]`: one typical pose, or its whole loop."""
     from preview.scene import THEMES
-    from preview.thumbnail import ThumbnailStyle, telling_frame, thumbnail, thumbnails
+    from preview.thumbnail import ThumbnailStyle, find_telling_frame, thumbnail, thumbnails
 
     motion = order.clip
     if order.what in FRAMED:
-        frames = np.array([telling_frame(motion)])
+        frames = np.array([find_telling_frame(motion)])
         if order.what == "scrub":
             count = max(2, min(SCRUB, motion.frames))
             frames = np.linspace(0, motion.frames - 1, count).round().astype(int)

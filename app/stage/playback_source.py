@@ -184,7 +184,7 @@ def play_in_context(
     """Return the playback of stance, action, and back to the stance, with the other layers resting in theirs.
 
     `ident` is an action, or a clip; a clip that is not placed yet is tried as a gesture of the current
-    stance. `anew` also tries one that is placed, unless it is on that stance.
+    stance. `again` also tries one that is placed, unless it is on that stance.
     """
     action = project.action(ident)
     if action is None and ident in project.clips:

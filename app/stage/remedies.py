@@ -110,7 +110,7 @@ def _length(project: Project, action: Action) -> float:
 
 
 def _blend_over(project: Project, action: Action, edge: str) -> tuple[str, float] | None:
-    """Return the field and the seconds of a blend that covers the gap at an edge; None where its part has no
+    """Return the field and the seconds of a blend that covers the gap at an edge; None if its part has no
     room for it.
     """
     graph, skeleton = project.graphs[action.layer], project.skeleton

@@ -1,4 +1,4 @@
-"""Drags of the mouse as objects: from a press to the release, or to what breaks them off."""
+"""Drags of the mouse as objects, from the press to the release or to an interruption."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PointerDrag(Protocol):
 
     @property
     def cursor(self) -> Qt.CursorShape | None:
-        """The mouse's shape while it lasts; None where it has none of its own."""
+        """The mouse's shape while it lasts; None if it has none of its own."""
         return None
 
     def begin(self, at: QPointF) -> None: ...
@@ -70,7 +70,7 @@ class PointerHand:
 
     @property
     def cursor(self) -> Qt.CursorShape | None:
-        """The mouse's shape that the gesture wants; None where there is none, or it wants none."""
+        """The mouse's shape that the gesture wants; None if there is none, or it wants none."""
         return self.gesture.cursor if self.gesture is not None else None
 
     def take(self, gesture: PointerDrag, at: QPointF) -> None:

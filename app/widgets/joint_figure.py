@@ -1,5 +1,5 @@
-"""A skeleton's joints as a figure seen from the front: clicked, or circled by a drag, to say which move, and
-how far.
+"""Show a skeleton's joints as a figure from the front. A click or a drag sets which joints move, and how
+much.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ NUMBERS = 8.0  # points
 class JointFigure(QWidget):
     """clicked: the joint that was clicked. circled: the joints within a drag's rectangle, and whether they
     are to move: by the left button, or, with Alt or the right one, not. turned: the joint under the pointer,
-    "" where there is none, and by how many notches the wheel was turned there.
+    "" if there is none, and by how many notches the wheel was turned there.
     """
 
     clicked = Signal(str)
@@ -34,7 +34,7 @@ class JointFigure(QWidget):
     def __init__(self, skeleton: Skeleton, look: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._skeleton, self._look = skeleton, theme(look)
-        self._seen = front_positions(skeleton)
+        self._seen = measure_front_positions(skeleton)
         self._helpers = [is_control(name) for name in skeleton.names]  # no bone leads to them
         self._weights: Mapping[str, float] = {}
         self._wheel = 0  # eighths of a degree that are no whole notch yet
@@ -189,7 +189,7 @@ def _between(low: QColor, high: QColor, share: float) -> QColor:
     )
 
 
-def front_positions(skeleton: Skeleton) -> np.ndarray:
+def measure_front_positions(skeleton: Skeleton) -> np.ndarray:
     """Return `[J, 2]` where joints are, right and up, metres, of somebody in the rest pose who is looked at
     from the front.
     """

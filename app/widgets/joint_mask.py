@@ -38,7 +38,7 @@ JOINT = Qt.ItemDataRole.UserRole
 NOTCH = 0.05  # weight a notch of the wheel, and a press of + and -, stand for
 
 
-def joint_tree(tree: QTreeWidget, project: Project) -> dict[str, QTreeWidgetItem]:
+def fill_joint_tree(tree: QTreeWidget, project: Project) -> dict[str, QTreeWidgetItem]:
     """Fill a tree with the skeleton's joints; return joint name -> item."""
     items: dict[str, QTreeWidgetItem] = {}
     skeleton = project.skeleton
@@ -70,7 +70,7 @@ class MaskDialog(QDialog):
         layout = QVBoxLayout(self)
         words = QLabel(
             tr(
-                "The action moves only the ticked joints, as far as their weights say. All other joints "
+                "The action moves only the ticked joints, by their weights. All other joints "
                 "follow the stance. Click a joint to give it and its children the strength below, or to "
                 "clear them. Drag to set all joints in a rectangle; Alt+drag or right-drag clears them. "
                 "The wheel, + and - change a weight."
@@ -109,7 +109,7 @@ class MaskDialog(QDialog):
         self.tree.setColumnCount(2)
         self.tree.setHeaderHidden(True)
         self.tree.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
-        self.items = joint_tree(self.tree, self.document.project)
+        self.items = fill_joint_tree(self.tree, self.document.project)
         header = self.tree.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)

@@ -206,8 +206,8 @@ def _in_the_clear(
     width: float,
     spans: Sequence[tuple[float, float]],
 ) -> None:
-    """Write a stance's name on its band where nothing plays over it: where it first has room, else where it
-    has most.
+    """Write a stance's name on its band if nothing plays over it: where it first has room, else where it has
+    most.
     """
     at, gaps = max(rect.left(), LEFT), []
     end = min(rect.right(), width)
@@ -235,7 +235,7 @@ def describe_cue(project: Project, action: Action) -> str:
 def _bar(
     painter: QPainter, t: WindowTheme, rect: QRectF, fill: QColor, selected: bool, width: float = 1e6
 ) -> QRectF:
-    """Paint a bar; return where in it words have room, empty where they have none."""
+    """Paint a bar; return where in it words have room, empty if they have none."""
     if rect.width() <= PLAIN and not selected:
         painter.fillRect(rect, fill)
         return QRectF()
@@ -249,8 +249,9 @@ def _bar(
 def _chip(
     painter: QPainter, ink: str, inner: QRectF, sign: str, words: str, beside: tuple[str, ...] = ()
 ) -> None:
-    """Write a sign and, as far as they have room, words that are told apart from those `beside`: in a line,
-    else in the small font in as many as the bar is high, else what tells them apart; else the sign alone.
+    """Write a sign and, as far as they have room, words that are distinguished from those `beside`: in a
+    line, else in the small font in as many as the bar is high, else what tells them apart; else the sign
+    alone.
     """
     painter.setPen(QColor(ink))
     lead = painter.fontMetrics().horizontalAdvance(f"{sign} ") if sign else 0

@@ -41,7 +41,7 @@ def load_of(data: QMimeData) -> Load:
 
 
 def sounds_of(data: QMimeData) -> tuple[Path, ...]:
-    """Return the sounds that mime data carries, and their transcripts after them; nothing where no sound is
+    """Return the sounds that mime data carries, and their transcripts after them; nothing if no sound is
     among them.
     """
     sounds, transcripts = sort_speech_files([Path(u.toLocalFile()) for u in data.urls() if u.isLocalFile()])

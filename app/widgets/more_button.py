@@ -1,4 +1,4 @@
-"""The button with three dots, behind which a panel has what is wanted rarely."""
+"""The button with three dots, for the rarer commands of a panel."""
 
 from __future__ import annotations
 

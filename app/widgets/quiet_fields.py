@@ -18,8 +18,8 @@ _Base: Any = QWidget if TYPE_CHECKING else object
 
 
 class OneStep(_Base):
-    """Before a field of numbers: its value is told once, when what changes it is over: a key or a button held
-    down, a run of the wheel.
+    """Before a field of numbers: its value is reported once, when what changes it is over: a key or a button
+    held down, a run of the wheel.
 
     Without the focus it lets the wheel pass.
     """
@@ -33,7 +33,7 @@ class OneStep(_Base):
         self._rest.timeout.connect(self.tell_value)
 
     def tell_value(self) -> None:
-        """Tell what the value is now, if that was held back."""
+        """Report what the value is now, if that was held back."""
         self._rest.stop()
         self._held = False
         before, self._before = self._before, None
@@ -41,7 +41,7 @@ class OneStep(_Base):
             self.valueChanged.emit(self.value())
 
     def quietly(self, change: Any, *arguments: Any) -> None:
-        """Let something change the value, which is told later."""
+        """Let something change the value, which is reported later."""
         if self._before is None:
             self._before = self.value()
         blocked = self.blockSignals(True)

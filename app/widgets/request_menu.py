@@ -1,4 +1,4 @@
-"""Asks in words, and the menus they are chosen from."""
+"""Describe requests in words, and make the menus to choose them from."""
 
 from __future__ import annotations
 

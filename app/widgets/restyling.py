@@ -1,5 +1,5 @@
-"""Style sheets of single widgets, set only where they are others: even the same one makes Qt polish a widget
-again, lay out what is round it, and paint all of that.
+"""Set style sheets of widgets only when they change: even the same sheet makes Qt polish the widget, lay out
+its surroundings and paint them again.
 """
 
 from __future__ import annotations
@@ -8,6 +8,6 @@ from PySide6.QtWidgets import QWidget
 
 
 def set_sheet(widget: QWidget, sheet: str) -> None:
-    """Give a widget a style sheet of its own; "" takes that away."""
+    """Set the style sheet of a widget; "" removes it."""
     if widget.styleSheet() != sheet:
         widget.setStyleSheet(sheet)

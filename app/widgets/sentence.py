@@ -1,4 +1,4 @@
-"""Sentences that give way where there is no room for them."""
+"""Sentences that give way if there is no room for them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.look.shortening import shorten_middle
 
 
 class OneLine(QLabel):
-    """A line whose middle gives way where there is no room for it; a tooltip then tells all of it. more: what
+    """A line whose middle gives way if there is no room for it; a tooltip then tells all of it. more: what
     the tooltip says besides.
     """
 
@@ -38,8 +38,8 @@ class OneLine(QLabel):
 
 
 class Sentence(QLabel):
-    """A line, or two where it is narrow, that gives way where there is no room for it, and then tells all of
-    it in a tooltip.
+    """A line, or two where it is narrow, that gives way if there is no room for it, and then tells all of it
+    in a tooltip.
     """
 
     def __init__(self, parent: QWidget) -> None:

@@ -1,4 +1,4 @@
-"""Doing something once for all that asks for it in one go."""
+"""Call a function once for several requests in one pass of the event loop."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ class Soon(QObject):
         self._asked.connect(self.now, Qt.ConnectionType.QueuedConnection)
 
     def ask(self) -> None:
-        """Let it be called before long."""
+        """Request a call soon."""
         if not self._waiting:
             self._waiting = True
             self._asked.emit()
 
     def now(self) -> None:
-        """Call it at once if it was asked to and has not been called since."""
+        """Call the function now, if a call was requested."""
         if self._waiting:
             self._waiting = False
             self.call()
 
     def done(self) -> None:
-        """Forget that it was asked to: it has been done."""
+        """Drop the request for a call."""
         self._waiting = False

@@ -1,4 +1,4 @@
-"""Two stick figures side by side, a clip on its own skeleton and brought onto another: painted, no OpenGL."""
+"""Paint two stick figures side by side, without OpenGL: a clip on its own skeleton, and retargeted."""
 
 from __future__ import annotations
 

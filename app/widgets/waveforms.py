@@ -34,7 +34,7 @@ class Envelope:
 
     def fill(self, first: int, values: Array, each: float = 1.0) -> None:
         """Fill bins from the `first` on from values `[N]`, `each` of them a bin; nan is nothing."""
-        self.put(first, *bin_values(values, each))
+        self.put(first, *measure_bins(values, each))
 
     def put(self, first: int, lows: Array, highs: Array) -> None:
         """Fill bins from the `first` on with their least and greatest values `[N]`; quick, for the window's
@@ -90,7 +90,7 @@ class Envelope:
         return np.minimum(low[:-1], low[1:]), np.maximum(high[:-1], high[1:])
 
 
-def bin_values(values: Array, each: float = 1.0) -> tuple[Array, Array]:
+def measure_bins(values: Array, each: float = 1.0) -> tuple[Array, Array]:
     """Return the least and greatest `[B]` of bins of `each` values `[N]`; nan is nothing. For a thread: it
     takes what the values take.
     """
@@ -119,8 +119,8 @@ def join_columns(low: Array, high: Array, least: float) -> tuple[Array, Array]:
 
 
 def paint_columns(low: Array, high: Array, height: int, color: QColor) -> QImage:
-    """Return a picture of columns from `low` to `high` `[W]`, pixels from the top; nothing where low is
-    greater.
+    """Return a picture of columns from `low` to `high` `[W]`, pixels from the top; nothing if low
+    is greater.
     """
     rows = np.arange(height, dtype=np.float32)[:, None]
     top, bottom = (

@@ -12,7 +12,7 @@ import wave
 from websockets.sync.client import connect
 
 from metagraph.formats.store import open_project
-from metagraph.speech.text_gestures import gesture_requests, propose_gestures, timed_words
+from metagraph.speech.text_gestures import make_gesture_requests, propose_gestures, timed_words
 
 project = open_project(sys.argv[1]).project
 tags = {layer: {t for x in graph.actions.values() for t in x.tags} for layer, graph in project.graphs.items()}
@@ -38,6 +38,7 @@ with connect("ws://127.0.0.1:8765") as line:
         told = [ask(do="say", id=said, audio=piece, rate=rate) for piece in pieces]
         words = timed_words(text, seconds=len(samples) / 2 / rate)
         made = [
-            ask(**request) for request in gesture_requests(propose_gestures(words, tags), told[0]["at"], said)
+            ask(**request)
+            for request in make_gesture_requests(propose_gestures(words, tags), told[0]["at"], said)
         ]
         print(text, *(x.get("actions", x.get("why")) for x in made), sep="\n  ", flush=True)

@@ -1,10 +1,11 @@
-"""Let scripted experts do the labelling task in both conditions: `python docs/researchers/participant.py`, under Xvfb.
+"""Let scripted experts do the labelling task in both conditions: `python docs/researchers/participant.py`,
+under Xvfb.
 
-With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with real
-events (needs xdotool; half an hour for all), each in the quickest way known; ways that nobody would go who knows
-the tool are counted with the real edits, without the window. Writes the tables of docs/researchers/experts-paths.md,
-experts-paths-tables.md and experts-paths-search.md, and docs/images/participant.svg.
-A run that was interrupted goes on where it was; `--anew` begins again.
+With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with
+real events (needs xdotool; half an hour for all), each in the quickest way known; ways that nobody would go
+who knows the tool are counted with the real edits, without the window. Writes the tables of
+docs/researchers/experts-paths.md, experts-paths-tables.md and experts-paths-search.md, and
+docs/images/participant.svg. A run that was interrupted goes on where it was; `--again` begins again.
 """
 
 from __future__ import annotations

@@ -16,9 +16,7 @@ _LENGTH = struct.Struct("<q")
 
 
 class ChildChannel:
-    """One end. Raises OSError where the other has ended. Sends and receives may be on threads of their
-    own.
-    """
+    """One end. Raises OSError if the other has ended. Sends and receives may be on threads of their own."""
 
     def __init__(self, incoming: IO[bytes], outgoing: IO[bytes]) -> None:
         self._in, self._out = incoming, outgoing
@@ -57,12 +55,12 @@ class Child(ChildChannel):
         super().__init__(self.process.stdout, self.process.stdin)
 
     def close(self, patience: float) -> None:
-        """Tell it that nothing more comes, and wait until it has ended, as `end` does."""
+        """Signal the end of the messages, and wait until the child has ended, as `end` does."""
         self._shut(self._out)
         self.end(patience)
 
     def end(self, patience: float) -> None:
-        """Wait until it ends; after `patience` seconds it is made to."""
+        """Wait until the child ends, and kill it after `patience` seconds."""
         import subprocess
 
         for ask in (self.process.terminate, self.process.kill):

@@ -85,7 +85,7 @@ def _install() -> None:
     print(
         "Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True
     )
-    retries = os.environ.get("PIP_RETRIES", "2")  # where there is no network that is told in seconds
+    retries = os.environ.get("PIP_RETRIES", "2")  # if there is no network that is given in seconds
     code, words = run_program(
         [sys.executable, "-I", str(setup), "install"], cwd=ROOT, env={"PIP_RETRIES": retries}
     )

@@ -28,7 +28,7 @@ def csv_text(rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
 
 
 def escape_cell(value: Any) -> Any:
-    """Return a cell that no spreadsheet reckons with."""
+    """Return a cell that no spreadsheet computes with."""
     if isinstance(value, str) and _FORMULA.match(value) and not _NUMBER.fullmatch(value):
         return f"'{value}"
     return value

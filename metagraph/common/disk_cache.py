@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from metagraph.common.user_folders import user_folder
+from metagraph.common.user_folders import find_user_folder
 
 LEFT = 0.8  # of what a cache may hold, after a clearing
 SEEN = 3600.0  # seconds after which the use of a file is written down again
@@ -16,9 +16,9 @@ SEEN = 3600.0  # seconds after which the use of a file is written down again
 
 def cache_folder(name: str) -> Path | None:
     """Return the folder below the system's for caches in which such things are kept, which may not be there
-    yet; None where nobody's home is known.
+    yet; None if nobody's home is known.
     """
-    caches = user_folder("caches")
+    caches = find_user_folder("caches")
     return caches / "metagraph" / name if caches is not None else None
 
 
@@ -33,7 +33,7 @@ class DiskCache:
         self._bytes: int | None = None  # of all files there, once it was looked
 
     def read(self, key: str) -> bytes | None:
-        """Return what was kept; None where nothing is."""
+        """Return what was kept; None if nothing is."""
         path = self._path(key)
         if path is None:
             return None

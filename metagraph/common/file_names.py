@@ -40,7 +40,7 @@ def fold_file_name(name: str) -> str:
     return unicodedata.normalize("NFC", unicodedata.normalize("NFD", name).casefold())
 
 
-def file_stems(texts: Iterable[str], otherwise: str = "unnamed") -> list[str]:
+def make_file_stems(texts: Iterable[str], otherwise: str = "unnamed") -> list[str]:
     """Return a name for each text, no two the same on any system: the first keeps its own, others get
     numbers.
     """

@@ -67,13 +67,13 @@ def open_file(path: str | Path, most: int) -> Iterator[BufferedReader]:
     try:
         file = _handle(path)
     except (OSError, ValueError) as error:
-        raise unreadable_error(path, error) from None
+        raise describe_unreadable_error(path, error) from None
     try:
         with file:
             _checked(path, os.fstat(file.fileno()), most)
             yield file
     except OSError as error:
-        raise unreadable_error(path, error) from None
+        raise describe_unreadable_error(path, error) from None
 
 
 def read_file(path: str | Path, most: int) -> bytes:
@@ -96,7 +96,7 @@ def check_file(path: str | Path, most: int) -> Path:
         return Path(path)
 
 
-def unreadable_error(path: Path, error: OSError | ValueError) -> FileError:
+def describe_unreadable_error(path: Path, error: OSError | ValueError) -> FileError:
     """Return the error that says why a file cannot be read."""
     words = (error.strerror or str(error)) if isinstance(error, OSError) else "its path is none"
     return FileError(path, phrase("cannot be read ({words})", words=words), phrase("on opening it"), _THERE)
@@ -153,14 +153,14 @@ def guard_reader(read: Callable[P, R]) -> Callable[P, R]:
 
 
 def unforeseen_error(path: str | Path, error: Exception) -> FileError:
-    """Return what to tell of a file on which a reader failed in a way that nobody foresaw."""
+    """Return what to report a file on which a reader failed in a way that nobody foresaw."""
     if isinstance(error, FileError):
         return error
     if isinstance(error, MemoryError):
         remedy = phrase("Close other programs, or split the file.")
         return FileError(path, phrase("there is not enough memory for it"), phrase("on reading it"), remedy)
     if isinstance(error, OSError):
-        return unreadable_error(Path(path), error)
+        return describe_unreadable_error(Path(path), error)
     said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     remedy = phrase(
         "Export it again; if that does not help, report it with the file (docs/animators/safety.md)."

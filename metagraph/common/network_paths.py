@@ -114,12 +114,12 @@ def is_allowed() -> bool:
 
 
 def find_refusal(name: str, folder: Path | None = None) -> str | None:
-    """Return why a name that a file in a folder gives is not opened now; None where it may be."""
+    """Return why a name that a file in a folder gives is not opened now; None if it may be."""
     return None if _allowed[0] else explain_refusal(name, folder)
 
 
 def close_path(name: str) -> str:
-    """Return a path that a file gives, or one that leads nowhere in its place where that is not allowed."""
+    """Return a path that a file gives, or one that leads nowhere in its place if that is not allowed."""
     return path_to_nowhere(name) if find_refusal(name) is not None else name
 
 

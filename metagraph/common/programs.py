@@ -54,14 +54,14 @@ _BEGIN = (
 def start(command: Sequence[str], **options: Any) -> subprocess.Popen[Any]:
     """Start a program; options as for `subprocess.Popen`. command: its first word is the whole path of a
     program. env: variables besides those of `environment`. cwd: another folder than the empty one, of
-    Metagraph's own. Raises OSError where it cannot be started, ValueError for a program without its folder.
+    Metagraph's own. Raises OSError if it cannot be started, ValueError for a program without its folder.
     """
     import subprocess
 
     if not Path(command[0]).is_absolute():
         raise ValueError(f"the program '{command[0]}' has no folder: anybody's could be meant")
-    options["env"] = program_environment(options.get("env") or {})
-    options["cwd"] = options.get("cwd") or working_folder()
+    options["env"] = make_program_environment(options.get("env") or {})
+    options["cwd"] = options.get("cwd") or find_working_folder()
     return subprocess.Popen(command, **options)
 
 
@@ -110,7 +110,7 @@ def _search_path() -> list[str]:
     return out
 
 
-def program_environment(more: dict[str, str] | None = None) -> dict[str, str]:
+def make_program_environment(more: dict[str, str] | None = None) -> dict[str, str]:
     """Return the variables that a program is given. more: others, which are ours."""
     out = {}
     for name, value in os.environ.items():
@@ -151,9 +151,7 @@ def _system_places() -> Iterator[Path]:
 
 
 def system_program(name: str) -> str | None:
-    """Return the path of one of the system's programs; None where it has none, or one that others can
-    change.
-    """
+    """Return the path of one of the system's programs; None if it has none, or one that others can change."""
     for place in _system_places():
         for ending in (".exe", ".cmd") if sys.platform == "win32" else ("",):
             path = place / (name + ending)
@@ -162,7 +160,7 @@ def system_program(name: str) -> str | None:
     return None
 
 
-def working_folder() -> Path:
+def find_working_folder() -> Path:
     """Return the folder that programs begin in: an empty one of the user's, or else the package's own."""
     from metagraph.common.disk_cache import cache_folder
 

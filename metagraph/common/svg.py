@@ -23,7 +23,7 @@ def svg_line(x1: float, y1: float, x2: float, y2: float, css: str = "") -> str:
     )
 
 
-def svg_dot(x: float, y: float, r: float) -> str:
+def draw_svg_dot(x: float, y: float, r: float) -> str:
     return f"<circle cx='{format_px(x)}' cy='{format_px(y)}' r='{format_px(r)}'/>"
 
 

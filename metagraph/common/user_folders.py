@@ -1,4 +1,4 @@
-"""The folders in which the system has programs keep a user's files, found without Qt."""
+"""Find the system's folders for a user's files, without Qt."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _PLACES = {
 }
 
 
-def user_folder(kind: Literal["caches", "data"]) -> Path | None:
-    """Return the user's folder for caches or for what programs remember; None where nobody's home is known.
-    It may not be there yet.
+def find_user_folder(kind: Literal["caches", "data"]) -> Path | None:
+    """Return the user's folder for caches or for what programs remember; None if nobody's home is known. It
+    may not be there yet.
     """
     try:
         home = Path.home()

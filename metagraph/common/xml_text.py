@@ -31,9 +31,9 @@ def quote_xml(text: str) -> str:
     return f'"{kept}"'
 
 
-def replaced_note(values: Iterable[Any]) -> Phrase | None:
-    """Return what to say where texts lose characters in XML; None where none does. values: texts, and
-    mappings and lists of them.
+def describe_replaced(values: Iterable[Any]) -> Phrase | None:
+    """Return what to say where texts lose characters in XML; None if none does. values: texts, and mappings
+    and lists of them.
     """
     lost = sum(_CANNOT.search(text) is not None for text in _texts(values))
     if not lost:

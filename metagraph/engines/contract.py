@@ -109,8 +109,8 @@ class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
     beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast. prominence: how
     much it stands out, 0 hardly .. 1 much, which says how soon it is done again; own_prominence: as the user
     set it, null if measured. contacts: where its hands stay. joint_weights: how far joints move that move in
-    part; 1 for those not listed. repeat: for how many seconds a gesture or fidget repeats its part where
-    nobody says how long, left out of those that play once; its blends may be longer than the part.
+    part; 1 for those not listed. repeat: for how many seconds a gesture or fidget repeats its part if nobody
+    says how long, left out of those that play once; its blends may be longer than the part.
     """
 
     id: Id

@@ -79,7 +79,7 @@ class Machine:
         return name_apart({ident: write_word(name) or write_word(ident) for ident, name in names.items()})
 
     def hop(self, here: str, goal: str) -> EngineState | None:
-        """Return the first transition of the shortest way between two stances, None where there is none."""
+        """Return the first transition of the shortest way between two stances, None if there is none."""
         way = chain(self.graph, here, goal)
         actions = (s for s in self.states if s.action.kind == "transition" and s.action.stance == here)
         return next((s for s in actions if s.action.end_stance == way[0]), None) if way else None

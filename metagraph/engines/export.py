@@ -11,7 +11,7 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.common.budgets import SOUND_FILE
-from metagraph.common.file_names import file_stem, file_stems
+from metagraph.common.file_names import file_stem, make_file_stems
 from metagraph.common.files import is_inside, read_file, unforeseen_error
 from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
@@ -31,7 +31,7 @@ from metagraph.graph.model import (
 from metagraph.motion.character_mesh import CharacterMesh, bind_character, explain_no_character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
-from metagraph.speech.sound import sound_ending
+from metagraph.speech.sound import guess_sound_ending
 
 # Endings that engines import: of each, the containers that libsndfile names, and codings.
 Imported = dict[str, tuple[tuple[str, ...], tuple[str, ...]]]
@@ -168,12 +168,12 @@ def _sounds(document: c.Export, folder: Path, voices: LineSounds) -> tuple[tuple
     is missing, in words.
     """
     lines = [(ident, line) for ident, line in document.lines.items() if line.audio]
-    names = file_stems(Path(str(line.audio)).stem for _, line in lines)
+    names = make_file_stems(Path(str(line.audio)).stem for _, line in lines)
     files, missing = [], []
     for (ident, line), name in zip(lines, names, strict=True):
         source = voices.base / str(line.audio)
         try:
-            ending = sound_ending(source)
+            ending = guess_sound_ending(source)
             if not is_inside(source, voices.base) and not voices.chosen(source):
                 remedy = "Move it there, or choose the line's sound by hand."
                 raise FileError(
@@ -245,13 +245,13 @@ def _write_glb(
             phrase("creating the folder"),
             phrase("Choose a folder that you can write to."),
         ) from None
-    shown, notes = mesh_on(skeleton, character, project.hidden)
+    shown, notes = place_mesh_on(skeleton, character, project.hidden)
     presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}
     write_glb(path, clips, shown, engine=ForEngine(expressions=presets), compress=compress)
     return notes
 
 
-def mesh_on(
+def place_mesh_on(
     skeleton: Skeleton, given: Path | CharacterMesh | None, hidden: Collection[str] = ()
 ) -> tuple[CharacterMesh | None, list[str]]:
     """Return the mesh that is written for clips of a skeleton, without hidden meshes, and notes about it. A

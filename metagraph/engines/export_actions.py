@@ -7,7 +7,7 @@ from typing import Any
 from msgspec import UNSET
 
 from metagraph.engines import contract as c
-from metagraph.engines.export_contacts import contacts_of
+from metagraph.engines.export_contacts import export_contacts
 from metagraph.graph.model import MetaGraph, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.playback.planning.prominence import prominence
@@ -17,7 +17,7 @@ from metagraph.playback.timing.phases import find_phases_within
 NONE: list[Any] = []  # as most have it: an export is made to be written, and nothing is added to it
 
 
-def actions_of(project: Project, graph: MetaGraph) -> list[c.ExportedAction]:
+def list_exported_actions(project: Project, graph: MetaGraph) -> list[c.ExportedAction]:
     """Return a layer's actions as they are exported, in the order they were placed."""
     span, clips, make = project.span, project.clips, c.ExportedAction
     out: list[c.ExportedAction] = []
@@ -63,7 +63,7 @@ def actions_of(project: Project, graph: MetaGraph) -> list[c.ExportedAction]:
                 own_phases,
                 cooldown if cooldown > 0.0 else 0.0,
                 action.spacing,
-                contacts_of(action) if action.contacts else NONE,
+                export_contacts(action) if action.contacts else NONE,
                 0.0,
                 dict(action.joint_weights) if action.joint_weights else {},
                 timing.repeat if cycle_of(action.kind, timing, start, end) > 0.0 else UNSET,

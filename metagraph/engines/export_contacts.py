@@ -15,7 +15,7 @@ from metagraph.playback.posing.contacts import has_contacts
 from metagraph.playback.posing.rigs import rigs_of
 
 
-def contacts_of(action: Action) -> list[c.ExportedContact]:
+def export_contacts(action: Action) -> list[c.ExportedContact]:
     """Return an action's contacts as they are exported."""
     return [
         c.ExportedContact(
@@ -49,8 +49,8 @@ def read_contacts(contacts: Sequence[c.ExportedContact]) -> tuple[ContactSpan, .
     )
 
 
-def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
-    """Return what runtimes need for contacts and the guard, None where neither does anything."""
+def export_contact_rig(project: Project) -> c.ExportedContactRig | None:
+    """Return what runtimes need for contacts and the guard, None if neither does anything."""
     rig = rigs_of(project).contacts if has_contacts(project) else None
     if rig is None:
         return None
@@ -68,8 +68,8 @@ def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
 
 
 def read_contact_rig(rig: c.ExportedContactRig, skeleton: Skeleton) -> ContactRig:
-    """Return an exported contact rig as the player takes it. Raises DataError where it does not fit the
-    joints.
+    """Return an exported contact rig as the player takes it. Raises DataError if it does not fit
+    the joints.
     """
     count = len(rig.joints)
     places = [

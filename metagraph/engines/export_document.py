@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from metagraph.engines import contract as c
-from metagraph.engines.export_actions import NONE, actions_of
-from metagraph.engines.export_contacts import contact_rig_of
+from metagraph.engines.export_actions import NONE, list_exported_actions
+from metagraph.engines.export_contacts import export_contact_rig
 from metagraph.engines.export_listing import ListedExport, list_machine
 from metagraph.engines.export_rig import export_rig, list_export_voices
-from metagraph.engines.export_weight import arms_of, feet_of, weight_rig_of
+from metagraph.engines.export_weight import export_weight_rig, feet_of, find_arm_rows
 from metagraph.graph import anatomy
 from metagraph.graph.model import KINDS, LAYERS, REACH, ClipEntry, MetaGraph, Project, Settings
 from metagraph.motion.dense_keys import count_steps
@@ -55,7 +55,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
     steps = {e.id: _steps(e) for e in list_used_clips(project)}
     frame = project.base.frame * steps.get(project.base.clip or "", 1)
     base = c.Base(project.base.clip, frame, pose.rotations.tolist(), pose.translations.tolist())
-    arms, feet = arms_of(project), feet_of(project)
+    arms, feet = find_arm_rows(project), feet_of(project)
     clips = [
         c.ExportedClip(
             e.id,
@@ -104,8 +104,8 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         rig=export_rig(project),
         voices=list_export_voices(project),
         touch=project.touch,
-        contact_rig=contact_rig_of(project),
-        weight_rig=weight_rig_of(project),
+        contact_rig=export_contact_rig(project),
+        weight_rig=export_weight_rig(project),
     )
     return out
 
@@ -139,7 +139,7 @@ def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
         weights={part: graph.weight(part) for part in REACH[graph.layer]},
         own_weights=list(graph.weights),
         stances=[c.ExportedStance(s.id, s.name) for s in graph.stances.values()],
-        actions=actions_of(project, graph),
+        actions=list_exported_actions(project, graph),
         index=index,
         transitions=[c.Transition(a, b, ids) for (a, b), ids in ways.items()],
         markov=c.ExportedMarkov(

@@ -1,7 +1,7 @@
 """The expanded state machine in an export: millions of numbers, which are written as text at once.
 
-A column repeats what its source has as often as the source has targets, or holds what its node leads to but
-for one place: all are pieces of text that were made once.
+A column repeats what its source has as often as the source has targets, or holds what its node leads to
+except for one place: all are pieces of text that were made once.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ STEPS = 1e4  # a mouth shape's weight is written in steps of this part of one
 
 
 def export_rig(project: Project) -> c.Rig | None:
-    """Return the resolved body of a project, None where nothing of it can live."""
+    """Return the resolved body of a project, None if nothing of it can live."""
     body = rigs_of(project).body
     if body.empty:
         return None

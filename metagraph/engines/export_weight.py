@@ -13,11 +13,17 @@ from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.playback.posing.weight import Weight, arm_track_rows, foot_rows_of, has_planted_feet, has_sway
+from metagraph.playback.posing.weight import (
+    Weight,
+    find_arm_track_rows,
+    find_foot_rows,
+    has_planted_feet,
+    has_sway,
+)
 
 
-def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
-    """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None where none
+def export_weight_rig(project: Project) -> c.ExportedWeightRig | None:
+    """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None if none
     does.
     """
     weight = rigs_of(project).weight
@@ -40,13 +46,15 @@ def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
     )
 
 
-def arms_of(project: Project) -> dict[str, list[list[int]]]:
+def find_arm_rows(project: Project) -> dict[str, list[list[int]]]:
     """Return the rows of the clips that the arms' layer plays, none where no body answers its arms."""
     weight = rigs_of(project).weight
     if weight.rig is None or not _sways(project, weight.rig):
         return {}
     clips = {action.clip for action in project.graphs["arms"].actions.values()}
-    return {clip: [[int(x) for x in row] for row in arm_track_rows(weight, project, clip)] for clip in clips}
+    return {
+        clip: [[int(x) for x in row] for row in find_arm_track_rows(weight, project, clip)] for clip in clips
+    }
 
 
 def feet_of(project: Project) -> dict[str, list[list[int]]]:
@@ -55,7 +63,7 @@ def feet_of(project: Project) -> dict[str, list[list[int]]]:
     if weight.feet_layer is None or not _plants(project):
         return {}
     clips = {action.clip for action in project.graphs[weight.feet_layer].actions.values()}
-    return {clip: [[int(x) for x in row] for row in foot_rows_of(weight, project, clip)] for clip in clips}
+    return {clip: [[int(x) for x in row] for row in find_foot_rows(weight, project, clip)] for clip in clips}
 
 
 def _sways(project: Project, rig: WeightRig) -> bool:
@@ -69,7 +77,7 @@ def _plants(project: Project) -> bool:
 def read_weight(
     rig: c.ExportedWeightRig | None, clips: Sequence[c.ExportedClip], skeleton: Skeleton
 ) -> Weight:
-    """Return an exported weight rig as the player takes it. Raises DataError where it does not fit the
+    """Return an exported weight rig as the player takes it. Raises DataError if it does not fit the
     joints.
     """
     rows: Mapping[str, list[list[int]]] = {clip.id: clip.arms for clip in clips}

@@ -1,4 +1,4 @@
-"""Reading an export back: into the project it came from, or resolved, as a runtime plays it."""
+"""Read an export back, into a project or in the resolved form that a runtime plays."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from metagraph.engines.export_rig import read_rig, read_voices
 from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
 from metagraph.formats.clips import digest
-from metagraph.formats.project.data import markov_from, skeleton_from
+from metagraph.formats.project.data import decode_markov, decode_skeleton
 from metagraph.formats.project.fields import DataError
 from metagraph.graph.face.rig import CHANNELS
 from metagraph.graph.model import (
@@ -50,7 +50,7 @@ from metagraph.playback.posing.rigs import ResolvedProject
 def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
     """Read an export back into a project with the same graph, ids and constants. motions: load the clips from
     its GLB. resolved: take gestures' phases, the base pose and the rig as the export has them, as a runtime
-    does, instead of finding them anew.
+    does, instead of finding them again.
 
     Raises FileError naming the field that is wrong as a path into the JSON.
     """
@@ -63,8 +63,8 @@ def read_export(path: str | Path, motions: bool = True, resolved: bool = False) 
 
 
 def glb_of(path: Path) -> Path:
-    """Return the GLB of an export's JSON. Raises FileError as `read_export` and `glb_beside`."""
-    return glb_beside(path, _decoded(path))
+    """Return the GLB of an export's JSON. Raises FileError as `read_export` and `find_glb_beside`."""
+    return find_glb_beside(path, _decoded(path))
 
 
 def _decoded(path: Path) -> c.Export:
@@ -111,7 +111,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         base=base,
         roles=dict(document.roles),
         parts=dict(document.parts),
-        markov={  # what is told is played; `own_markov` says that it was edited
+        markov={  # what is reported is played; `own_markov` says that it was edited
             layer: model
             for layer in LAYERS
             if (model := _markov(layer, document.layers[layer].markov)) != DEFAULTS[layer]
@@ -140,7 +140,7 @@ def _clips(
     if motions:
         from metagraph.formats.gltf.reader import read_gltf_clips
 
-        takes = read_gltf_clips(glb_beside(path, document))
+        takes = read_gltf_clips(find_glb_beside(path, document))
     # Clips of one frame are read behind the longer ones.
     every = [x.animation for x in document.clips]
     longer = sorted(x.animation for x in document.clips if x.frames > 1) or every
@@ -173,10 +173,9 @@ def _clips(
     return clips
 
 
-def glb_beside(path: Path, document: c.Export) -> Path:
-    """Return the GLB of an export's JSON. Raises FileError where it is not the one that the JSON was written
-    with: an export that was interrupted, or files copied one by one, leave two that do not belong
-    together.
+def find_glb_beside(path: Path, document: c.Export) -> Path:
+    """Return the GLB of an export's JSON. Raises FileError if it is not the one that the JSON was written
+    with: an export that was interrupted, or files copied one by one, leave two that do not belong together.
     """
     glb = path.parent / document.glb
     if document.glb_sha256 is not None and is_file(glb) and digest(glb) != document.glb_sha256:
@@ -205,7 +204,7 @@ def _base(document: c.Export, skeleton: Skeleton) -> ClipEntry:
 
 
 def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
-    """Return the body of an export's rig. Raises DataError where it does not fit the joints."""
+    """Return the body of an export's rig. Raises DataError if it does not fit the joints."""
     faces = {len(rig.face.joints)} | {len(row) for row in (*rig.face.turns, *rig.face.shifts)}
     joints = [
         *rig.chain,
@@ -231,7 +230,7 @@ def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
 def _skeleton(joints: list[c.Joint]) -> Skeleton:
     rows = [{"name": j.name, "parent": j.parent, "at": j.translation, "turn": j.rotation} for j in joints]
     try:
-        found = skeleton_from(rows, "$.joints")
+        found = decode_skeleton(rows, "$.joints")
     except DataError as error:
         where = error.where.replace(".at", ".translation").replace(".turn", ".rotation")
         raise DataError(where, str(error)) from None
@@ -256,7 +255,9 @@ def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
         "lengths": model.lengths,
         "modes": model.modes,
     }
-    return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
+    return decode_markov(
+        layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov"
+    )
 
 
 def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:

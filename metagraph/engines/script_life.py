@@ -11,7 +11,7 @@ ALIVE = (True,)  # the life layers are on
 
 
 def _timed_lines() -> Iterator[ScriptCase]:
-    """Yield lines whose words and mouth shapes are told with their times."""
+    """Yield lines whose words and mouth shapes are given with their times."""
     words = [["Hello", 0.1, 0.45], ["there", 1.5, 1.9], {"word": "friend", "start": 1.9, "end": 2.4}]
     polly = [
         {"time": 0, "type": "sentence", "start": 0, "end": 7, "value": "Mapped."},

@@ -12,7 +12,7 @@ from metagraph.engines.script_parts import ScriptCase, ScriptStep, ask, list_som
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.life.line_timing import AZURE, OCULUS, POLLY
 
-AT = 6.0  # seconds at which what is asked for begins
+AT = 6.0  # seconds at which what is requested begins
 SHORT = 0.05  # seconds of the shortest shapes
 
 _SAID: dict[str, Any] = {"words": [["one", 0.0, 0.4], ["two", 0.9, 1.4]]}

@@ -12,7 +12,7 @@ from metagraph.speech.language_packs import list_language_packs
 from metagraph.speech.text_gestures import words_for_gesture
 from metagraph.speech.word_gestures import GestureAsk, ToldWord, gesture_asks, proposed_for, sentence_end
 
-# Language, text, seconds it takes where that is told, and whether a synthesiser tells when its words come.
+# Language, text, seconds it takes if that is reported, and whether a synthesiser tells when its words come.
 TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
     ("en", "Hello! I don't know. You could go there, but first we need a plan?\nNo.", None, False),
     ("en", "Yes, absolutely: it costs 3.5 times as much as the old one. It's huge", 9.0, False),

@@ -130,7 +130,7 @@ _one = threading.Lock()
 
 
 def _shrunk(path: Path) -> bytes | None:
-    """Return a file made smaller, kept until it changes; None where that does not pay or cannot be."""
+    """Return a file made smaller, kept until it changes; None if that does not pay or cannot be."""
     with _one:
         try:
             told = path.stat()

@@ -1,4 +1,4 @@
-"""What may be asked of a character as tools for a language model, in a file beside its export."""
+"""Write the requests to a character as tools for a language model, in a file beside the export."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from metagraph.graph.model import Project
 from metagraph.graph.offered import tools
 
 
-def tools_name(stem: str) -> str:
-    """Return what the file is called beside an export that is called so."""
+def name_tools_file(stem: str) -> str:
+    """Return the name of the tools file beside an export of this name."""
     return f"{stem}.tools.json"
 
 
 def write_tools(project: Project, folder: Path) -> Path:
-    """Write `offered.tools` as JSON into a folder; return the file. Raises FileError where it cannot be
-    written.
+    """Write `offered.tools` as JSON into a folder; return the file. Raises FileError if it cannot
+    be written.
     """
-    path = folder / tools_name(stem_of(project))
+    path = folder / name_tools_file(stem_of(project))
     write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
     return path

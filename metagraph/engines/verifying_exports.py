@@ -40,7 +40,7 @@ HEAD = 1 << 16
 
 
 def verify(path: Path) -> list[Verified]:
-    """Look at a project, an export, or at all that lie in a folder. Raises FileError where there is none."""
+    """Look at a project, an export, or at all that lie in a folder. Raises FileError if there is none."""
     if path.is_dir():
         projects = sorted(p for p in path.iterdir() if p.name.endswith(SUFFIX) and is_file(p))
         found = [*(verify_project(p) for p in projects), *_exports_in(path)]
@@ -82,7 +82,7 @@ def _is_pair(path: Path) -> bool:
 
 
 def _root_of(path: Path) -> Path | None:
-    """Return the folder of the export that a file is recorded in; None where none is."""
+    """Return the folder of the export that a file is recorded in; None if none is."""
     whole = path.absolute()
     if whole.name == RECORD:
         return path.parent
@@ -106,7 +106,7 @@ def _is_export(path: Path) -> bool:
 
 
 def _json_of(path: Path) -> Path:
-    """Return the JSON of an export's JSON or GLB. Raises FileError where it is none."""
+    """Return the JSON of an export's JSON or GLB. Raises FileError if it is none."""
     if path.suffix.lower() == ".json":
         if _is_export(path) or is_file(path.with_suffix(".glb")):
             return path

@@ -3,8 +3,8 @@
 A JSON object `{"labels": 1, "actions": [...]}`. Each row names a clip, among those that come in with it or
 the project's, and says what it is; what a row does not say stays as it is, or as a dropped clip gets it.
 `action` is the id of one that is there already and is changed; without it that is the one of the same name,
-kind, layer and stance, and where there is none a new one is placed. Stances are called by their names, and
-made where a layer has none of that name.
+kind, layer and stance, and if there is none a new one is placed. Stances are called by their names, and made
+where a layer has none of that name.
 """
 
 from __future__ import annotations

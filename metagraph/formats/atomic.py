@@ -20,7 +20,7 @@ from metagraph.formats.outputs import claim, claim_output
 from metagraph.formats.replacing import replace_file, sync_folder
 
 FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
-# Unfinished files. Those being written say by whom; the others are of before they did, or stay a moment.
+# Unfinished files. Those being written say by whom; the others are from before they did, or stay a moment.
 _UNFINISHED = re.compile(
     r"\.saving-(?P<mark>[0-9a-f]{8}-\d{1,10}-[0-9A-Za-z]*)-[0-9a-f]{12}|\.saving-[0-9a-f]{32}"
     r"|\.clock-\w{8}|\..+\.lock\.[0-9a-f]{12}|\..+\.[0-9a-f]{12}\.journal\.new"
@@ -33,8 +33,8 @@ _SWEPT: set[str] = set()  # folders this process has looked through
 def write_atomically(path: Path, content: bytes, like: Access | None = None) -> None:
     """Write a file whole or not at all; a link is kept, its target written. Raises FileError.
 
-    like: who may read it where there is none yet (`new_file.access_of` another file); what is replaced keeps
-    its own mode. When it returns, the file survives a power cut, as far as the system keeps its word. What
+    like: who may read it if there is none yet (`new_file.access_of` another file); what is replaced keeps its
+    own mode. When it returns, the file survives a power cut, as far as the system keeps its word. What
     processes that are gone have left half-written in that folder is swept, once a process.
     """
     try:

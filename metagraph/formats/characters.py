@@ -1,4 +1,4 @@
-"""Which file a project's character is drawn from, and what of it: stand-ins are told from characters, and
+"""Which file a project's character is drawn from, and what of it: stand-ins are given from characters, and
 what is carried in the hands by the dozen is hidden at first.
 """
 
@@ -27,7 +27,7 @@ SAME = 0.8  # share of a skeleton's joints that a file without motion must name 
 @dataclass(frozen=True)
 class CharacterFile:
     """`path`: as the project keeps it. `morphs`: its morph targets. `hidden`: meshes that are not drawn at
-    first. `why_not`: why its mesh is no character, in words that follow "its mesh"; None where it is one.
+    first. `why_not`: why its mesh is no character, in words that follow "its mesh"; None if it is one.
     `roles`: role -> joint name, those that a VRM file states and names and shape do not tell.
     """
 
@@ -110,11 +110,11 @@ def find_held_meshes(body: CharacterMesh) -> tuple[str, ...]:
     return tuple(mesh for mesh in body.meshes if mesh in some)
 
 
-def character_among(
+def find_character_among(
     clips: Iterable[str], still: Iterable[str], folder: Path | None, skeleton: Skeleton
 ) -> tuple[CharacterFile | None, tuple[CharacterFile, ...]]:
-    """Return the first file with a character for a skeleton, and those whose mesh is none where there is no
-    such file.
+    """Return the first file with a character for a skeleton, and those whose mesh is none if there is no such
+    file.
 
     clips: files of clips on that skeleton. still: files without motion, which may hold another character.
     """
@@ -132,8 +132,8 @@ def character_among(
 
 
 def _look(name: str, folder: Path | None, skeleton: Skeleton, same: float = 0.0) -> CharacterFile | None:
-    """Look at a file that may hold a character; None where it holds no mesh on a skeleton, or names less than
-    a share `same` of the joints.
+    """Look at a file that may hold a character; None if it holds no mesh on a skeleton, or names less than a
+    share `same` of the joints.
     """
     path = (folder or Path()) / name
     try:

@@ -45,17 +45,17 @@ class _Clip(NamedTuple):
     digest: str
 
 
-def without_clip_identities(data: Data) -> Data:
+def remove_clip_identities(data: Data) -> Data:
     """Return the data of a project file as it was before `with_clip_identity`."""
     clips = {clip["id"]: _Clip(clip["name"], clip.get("sha256", "")) for clip in data["clips"]}
     layers = {
-        layer: {**graph, "actions": [without_clip_identity(action, clips) for action in graph["actions"]]}
+        layer: {**graph, "actions": [remove_clip_identity(action, clips) for action in graph["actions"]]}
         for layer, graph in data["layers"].items()
     }
     return {**data, "layers": layers}
 
 
-def without_clip_identity(action: Data, clips: Mapping[str, Any]) -> Data:
+def remove_clip_identity(action: Data, clips: Mapping[str, Any]) -> Data:
     """Return an action's data without the name and the digest of its clip, unless they contradict the clip
     its id leads to.
 

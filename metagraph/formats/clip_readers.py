@@ -80,13 +80,13 @@ READERS = [
 ]
 
 
-def reader_of(head: bytes) -> ClipReader | None:
+def find_reader(head: bytes) -> ClipReader | None:
     """Return the reader of files with this beginning; None if there is none."""
     text = head.lstrip(b"\xef\xbb\xbf \t\r\n")
     return next((reader for reader in READERS if reader.begins(head, text)), None)
 
 
-def reader_for(suffix: str) -> ClipReader | None:
+def find_reader_for(suffix: str) -> ClipReader | None:
     """Return the reader of files with this extension, in lower case; None if there is none."""
     return next((reader for reader in READERS if suffix in reader.suffixes), None)
 

@@ -19,8 +19,8 @@ from metagraph.formats.clip_readers import (
     LIVE_LINK,
     ClipReader,
     clip_suffixes,
-    reader_for,
-    reader_of,
+    find_reader,
+    find_reader_for,
 )
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, note_repair
@@ -52,7 +52,7 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     the same. Raises FileError.
     """
     path = Path(path)
-    wanted, found = reader_for(path.suffix.lower()), _reader(path)
+    wanted, found = find_reader_for(path.suffix.lower()), _reader(path)
     remedy = phrase("Clips are read from {endings}.", endings=", ".join(clip_suffixes()))
     if wanted is None:
         raise FileError(
@@ -118,7 +118,7 @@ def _reader(path: Path) -> ClipReader | str:
         head = file.read(HEAD)
     if not head:
         return phrase("an empty file")
-    found = reader_of(head)
+    found = find_reader(head)
     if found is not None:
         return found
     if head.startswith(b"version https://git-lfs"):

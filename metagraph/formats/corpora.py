@@ -48,8 +48,8 @@ UNREAD = {".npz": "SMPL-X parameters (BEAT2)", ".c3d": "markers", ".asf": "Accla
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """A conversation, and how each side moved, None where nobody knows. samples: `[2, N]` of both voices at
-    `generation.features.RATE`, None where they are in the conversation's files. notes: what there is to know
+    """A conversation, and how each side moved, None if nobody knows. samples: `[2, N]` of both voices at
+    `generation.features.RATE`, None if they are in the conversation's files. notes: what there is to know
     about how it was read. files: what it was read from.
     """
 
@@ -91,7 +91,7 @@ def read_corpus(
     progress: Callable[[int, int], None] | None = None,
 ) -> CorpusReading:
     """Read every conversation of a folder and below; one that cannot be read fails alone. layout: as told
-    above, else what most files look like. Raises FileError where there is no folder, or nothing in it can be
+    above, else what most files look like. Raises FileError if there is no folder, or nothing in it can be
     read.
     """
     folder = Path(folder)
@@ -151,7 +151,7 @@ def _hands(path: Path) -> Place | None:
 
 
 def _placed(path: Path, layout: Layout) -> Place | None:
-    """Return where a file belongs, None where nothing tells."""
+    """Return where a file belongs, None if nothing tells."""
     if layout == "genea":
         told = _GENEA.fullmatch(path.stem)
         return None if told is None else (told[1], "2" if told[2] == "interloctr" else "1")

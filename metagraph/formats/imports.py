@@ -11,7 +11,7 @@ from metagraph.common.files import unforeseen_error
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError, describe_error
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.store import path_for_project, relative
+from metagraph.formats.store import make_path_for_project, relative
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import add_clips
 from metagraph.graph.face.curves import describe_unused_curves
@@ -161,7 +161,7 @@ def import_files(
         try:
             if path not in digests:
                 digests[path] = digest(path)
-            name = path_for_project(path, folder)
+            name = make_path_for_project(path, folder)
         except FileError as error:
             failures.append(error.words)
             continue
@@ -189,10 +189,10 @@ def import_files(
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
     if project.character is None and skeleton is not None:
-        from metagraph.formats.characters import character_among
+        from metagraph.formats.characters import find_character_among
 
         still = {_name(e.path, folder): e for e in report.failures}
-        character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
+        character, stand_ins = find_character_among([name for name, *_ in loaded], still, folder, skeleton)
         if character is not None and character.path in still:  # it is useful without a motion
             failures.remove(still[character.path].words)
     notes = (*_together(report.clips), *_together(lost), *_other_bones(list(apart.values())))
@@ -232,13 +232,21 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
     if known is not None or (retarget == "yes" and not strangers.joint_map.missing):
         brought = bring_over(bringing, strangers, known or strangers.joint_map)
         count, first = len(strangers.clips), Path(strangers.clips[0][0]).name
-        how = "as before" if known is not None else f"from a skeleton of {len(strangers.skeleton)} joints"
-        whose = f"{count} clips ({first} …) were" if count > 1 else f"{first}: its clip was"
+        whose = phrase("{count} clips ({first} …)", count=count, first=first) if count > 1 else first
+        note = (
+            phrase("{whose}: retargeted with the joint map of the project", whose=whose)
+            if known is not None
+            else phrase(
+                "{whose}: retargeted from a skeleton of {joints} joints",
+                whose=whose,
+                joints=len(strangers.skeleton),
+            )
+        )
         return replace(
             result,
             loaded=(*result.loaded, *brought.loaded),
             failures=(*result.failures, *brought.failures),
-            notes=(*result.notes, f"{whose} retargeted {how}") if brought.loaded else result.notes,
+            notes=(*result.notes, note) if brought.loaded else result.notes,
             joint_maps={**result.joint_maps, **brought.joint_maps},
             retargeted=result.retargeted + brought.retargeted,
         )
@@ -247,7 +255,12 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
     failures = strangers.failures
     if retarget == "yes":
         failures = tuple(
-            f"{text[: text.index(_ALONE)]}It cannot be retargeted: {strangers.joint_map.missing[0]}. {_ALONE}"
+            phrase(
+                "{file}It cannot be retargeted: {missing}. {remedy}",
+                file=text[: text.index(_ALONE)],
+                missing=strangers.joint_map.missing[0],
+                remedy=_ALONE,
+            )
             for text in failures
         )
     return replace(
@@ -347,7 +360,10 @@ def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
     out = []
     for note, names in files.items():
         first = next(iter(names))
-        out.append(f"{first if len(names) == 1 else f'{len(names)} files ({first} ...)'}: {note}")
+        if len(names) == 1:
+            out.append(phrase("{file}: {note}", file=first, note=note))
+        else:
+            out.append(phrase("{count} files ({first} …): {note}", count=len(names), first=first, note=note))
     return tuple(out)
 
 
@@ -357,11 +373,24 @@ def _other_bones(groups: Sequence[tuple[float, list[str]]]) -> tuple[str, ...]:
     names = [name for _, some in odd for name in some]
     if not names:
         return ()
-    whose = f"'{names[0]}' has" if len(names) == 1 else f"{len(names)} clips ('{names[0]}' ...) have"
-    most = max(share for share, _ in odd)
+    most = 100 * max(share for share, _ in odd)
+    if len(names) == 1:
+        return (
+            phrase(
+                "'{name}' keeps its bones, which are up to {most:.0f} % longer or shorter than those of the "
+                "project's character. Retarget it if hands or feet miss their places.",
+                name=names[0],
+                most=most,
+            ),
+        )
     return (
-        f"{whose} bones up to {most:.0%} longer or shorter than the project's character, and keep "
-        "them. Retarget them if hands or feet miss their places.",
+        phrase(
+            "{count} clips ('{name}' …) keep their bones, which are up to {most:.0f} % longer or shorter "
+            "than those of the project's character. Retarget them if hands or feet miss their places.",
+            count=len(names),
+            name=names[0],
+            most=most,
+        ),
     )
 
 

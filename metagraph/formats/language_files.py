@@ -1,4 +1,4 @@
-"""Language packs of one's own, from files."""
+"""Read the user's own language packs from files."""
 
 from __future__ import annotations
 

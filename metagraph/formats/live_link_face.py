@@ -34,7 +34,7 @@ RATES = (24, 25, 30, 48, 50, 60)
 USUAL_RATE = 60
 FASTEST = 240
 SPARSE = 20  # frames for each row, in all
-HOLE = 0.5  # seconds without a face from which on it is told
+HOLE = 0.5  # seconds without a face from which on it is reported
 _REMEDY = "Take the CSV file of a recording of Live Link Face as the app wrote it."
 _TIME = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2})([:;])(\d{1,3})(?:\.(\d{1,9}))?$")
 _SEMICOLONS = ("semicolons separate its columns; its decimal commas were read as points",)
@@ -243,7 +243,7 @@ def _clip(
 def _turned(of: dict[str, Array], turns: dict[str, Array]) -> tuple[Array, list[str]]:
     """Return the rotations of head and eyes `[F, 3, 4]`, and what is to be told.
 
-    Which way an angle of an eye goes is told by the shapes that say where it looks; the head's goes the same
+    Which way an angle of an eye goes is given by the shapes that say where it looks; the head's goes the same
     way. Where they do not tell, as Unreal turns: yaw to its own right, pitch up. The head's usual direction
     is straight ahead: a telephone seldom is.
     """

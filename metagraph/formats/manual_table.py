@@ -44,7 +44,7 @@ class TableRow:
 
 @dataclass(frozen=True)
 class Filled:
-    """What came of a table. links: how many were drawn; changed: how many were there, and are set anew.
+    """What came of a table. links: how many were drawn; changed: how many were there, and are set again.
     problems: rows that were left out, in words.
     """
 
@@ -249,7 +249,7 @@ def _number(word: str, column: str, least: float = 0.0) -> float:
     return value
 
 
-def machine_as_table(manual: Manual) -> str:
+def encode_machine_as_table(manual: Manual) -> str:
     """Return a machine's links as a table with commas, which `parse_manual_table` reads."""
     rows: list[Sequence[str]] = [COLUMNS]
     for x in manual.links.values():

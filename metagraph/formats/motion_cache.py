@@ -2,8 +2,8 @@
 tenth of the time, whatever the files' format.
 
 Kept under what a file holds, its name, what was left as it is, and the programs that read it: when any of
-these is another, it is read anew. What cannot be read back, whatever is wrong with it, is read anew as well,
-so losing it costs time alone. METAGRAPH_MOTION_CACHE names another folder; empty, nothing is kept.
+these is another, it is read again. What cannot be read back, whatever is wrong with it, is read again as
+well, so losing it costs time alone. METAGRAPH_MOTION_CACHE names another folder; empty, nothing is kept.
 """
 
 from __future__ import annotations
@@ -74,10 +74,10 @@ class KeptFile(msgspec.Struct, array_like=True):
 
 
 def read_or_kept(path: Path, digest: str, as_is: Collection[str]) -> list[Clip]:
-    """Return what `read_clips` does, from what is kept where that is of the same content. digest: of the
-    file. Raises FileError as `read_clips` does.
+    """Return what `read_clips` does, from what is kept if that is of the same content. digest: of the file.
+    Raises FileError as `read_clips` does.
     """
-    kept, key = _cache(motion_cache_folder()), _key(path, digest, as_is)
+    kept, key = _cache(find_motion_cache_folder()), _key(path, digest, as_is)
     content = kept.read(key)
     if content is not None:
         with suppress(Exception):  # whatever is wrong with it, the file itself is there
@@ -93,8 +93,8 @@ def _cache(folder: Path | None) -> DiskCache:
     return DiskCache(folder, MOST, ".motion")
 
 
-def motion_cache_folder() -> Path | None:
-    """Return the folder it is kept in, None where nothing is."""
+def find_motion_cache_folder() -> Path | None:
+    """Return the folder it is kept in, None if nothing is."""
     told = os.environ.get("METAGRAPH_MOTION_CACHE")
     return cache_folder("motion") if told is None else Path(told) if told else None
 

@@ -1,4 +1,4 @@
-"""Making files that no more people may read than may read another file."""
+"""Make files that have the access rights of another file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PRIVATE = Access(0o600, -1)  # for what lies in the user's own folders
 
 
 def access_of(path: Path | None) -> Access | None:
-    """Return who may read and write a file; None where there is none, or its folder is not to be reached."""
+    """Return who may read and write a file; None if there is none, or its folder is not to be reached."""
     if path is None:
         return None
     try:
@@ -33,9 +33,9 @@ def access_of(path: Path | None) -> Access | None:
 def open_new(path: Path, like: Access | None = None) -> int:
     """Make a file that is not there yet, and return a handle to write to it. Raises OSError.
 
-    like: who may read and write it, from its first moment on; without it, the system's default (its umask).
-    A file of another group gets that group before the group may read it; where that is not allowed, the group
-    may do no more than everybody.
+    like: who may read and write it, from its first moment on; without it, the system's default (its umask). A
+    file of another group gets that group before the group may read it; if that is not allowed, the group may
+    do no more than everybody.
     """
     flags = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
     if like is None or os.name == "nt":

@@ -21,7 +21,7 @@ import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import read_file
-from metagraph.common.user_folders import user_folder
+from metagraph.common.user_folders import find_user_folder
 from metagraph.errors import FileError
 from metagraph.formats.locking import holder, lock_path
 from metagraph.formats.replacing import replace_file
@@ -38,13 +38,13 @@ class _Written(msgspec.Struct, frozen=True):
     command: str
 
 
-def data_folder() -> Path | None:
+def find_data_folder() -> Path | None:
     """Return the user's folder for what the program remembers, METAGRAPH_DATA if that is set; None if the
     home folder is unknown.
     """
     if "METAGRAPH_DATA" in os.environ:
         return Path(os.environ["METAGRAPH_DATA"])
-    base = user_folder("data")
+    base = find_user_folder("data")
     return base / "Metagraph" / "Metagraph" if base is not None else None
 
 
@@ -62,7 +62,7 @@ class Outputs:
         self._made: list[Path] = []  # folders that are written
         self._claimed: list[Path] = []  # files that will be written
         self._own: list[Path] = []  # files and folders that the command updates itself
-        data = data_folder()
+        data = find_data_folder()
         self._notes = data / "written" if data is not None else None
 
     def reads(self, *paths: Path) -> None:

@@ -16,7 +16,7 @@ import msgspec
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import is_file, read_file
 from metagraph.errors import FileError
-from metagraph.formats.clip_identity import without_clip_identities
+from metagraph.formats.clip_identity import remove_clip_identities
 from metagraph.formats.locking import Owner, is_gone
 from metagraph.formats.project.appended_file import Identity
 from metagraph.formats.project.canonical_text import canonical
@@ -141,7 +141,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
         journal,
         project,
         before + max(1, sum(record.get("how") != "merged" for record in good)) if good else before,
-        journal_owner(head),
+        read_journal_owner(head),
         written,
         head.get("saved") if behind else now,
         behind,
@@ -240,7 +240,7 @@ def _saved_data(saved: Path | None, as_opened: bool) -> Data:
         with suppress(UnicodeDecodeError, KeyError, TypeError, AttributeError):
             data = canonical(read_file(saved, TEXT_FILE).decode("utf-8-sig"))
             if data is not None and data["metagraph"] == FORMAT:
-                data = without_clip_identities(data)
+                data = remove_clip_identities(data)
                 Replay(data)  # has all that edits change, even if written by hand
                 return data
     return to_data(read_project(saved, []))
@@ -273,7 +273,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int)
 
 
-def journal_owner(head: Data) -> Owner | None:
+def read_journal_owner(head: Data) -> Owner | None:
     """Return whose journal it is, from its beginning; None if that does not say it."""
     try:
         return msgspec.convert(head.get("owner"), Owner)
@@ -326,7 +326,7 @@ def is_left(journal: Path) -> bool:
     """Return whether no process writes to a journal any more. Journals without an owner are older than the
     owner field.
     """
-    owner = journal_owner(read_journal_head(journal))
+    owner = read_journal_owner(read_journal_head(journal))
     return owner is None or is_gone(owner, journal)
 
 

@@ -135,8 +135,8 @@ def _loaded(
     folder: Path | None,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[dict[str, ClipEntry], list[str]]:
-    """Return entries with their motion, on the project's skeleton where that can be, and what there is to
-    say.
+    """Return entries with their motion, on the project's skeleton if that can be, and what there is
+    to say.
     """
     if not entries:
         return {}, []

@@ -297,7 +297,7 @@ def _each_path(project: Project, renew: Callable[[str], str]) -> Project:
     )
 
 
-def files_of(project: Project, folder: Path) -> tuple[Path, ...]:
+def list_project_files(project: Project, folder: Path) -> tuple[Path, ...]:
     """Return every file that a project in a folder names: clips, the character, sounds, other projects."""
     found: dict[Path, None] = {}
 
@@ -351,7 +351,7 @@ def absolute(project: Project, folder: Path) -> Project:
     return _with_paths(project, renew)
 
 
-def path_for_project(path: Path, folder: Path | None) -> str:
+def make_path_for_project(path: Path, folder: Path | None) -> str:
     """Return a file's path as a project in `folder` keeps it; absolute if `folder` is None. Raises FileError
     for a name that is not text, because it could not be written.
     """
@@ -462,7 +462,7 @@ def load_motions(
     return _load(
         project,
         folder,
-        find_moved_files(missing_clips(project, folder), folder) if folder is not None else {},
+        find_moved_files(list_missing_clips(project, folder), folder) if folder is not None else {},
         progress,
     )
 
@@ -476,7 +476,7 @@ def relocate(
     read there.
     """
     return _load(
-        project, folder, find_moved_files(missing_clips(project, folder), where, by_name=True), progress
+        project, folder, find_moved_files(list_missing_clips(project, folder), where, by_name=True), progress
     ).project
 
 
@@ -487,7 +487,7 @@ def load_returned(
     return _load(project, folder, {}, progress)
 
 
-def clip_place(entry: ClipEntry, folder: Path | None) -> Path:
+def find_clip_place(entry: ClipEntry, folder: Path | None) -> Path:
     """Return where a clip's file should be. Backslashes, as in paths written by hand on Windows, are
     understood, too.
     """
@@ -499,11 +499,11 @@ def clip_place(entry: ClipEntry, folder: Path | None) -> Path:
     )
 
 
-def missing_clips(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
+def list_missing_clips(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
     """Return the clips whose file is not where it should be, by path."""
     out: dict[str, list[ClipEntry]] = {}
     for entry in project.clips.values():
-        if entry.motion is None and not is_file(clip_place(entry, folder)):
+        if entry.motion is None and not is_file(find_clip_place(entry, folder)):
             out.setdefault(entry.path, []).append(entry)
     return out
 
@@ -551,7 +551,7 @@ class _Loading:
 
     def load(self, name: str, entries: Sequence[ClipEntry]) -> None:
         """Read the file of some clips. `name` is its path in the project."""
-        place = self.found.get(name) or clip_place(entries[0], self.folder)
+        place = self.found.get(name) or find_clip_place(entries[0], self.folder)
         path = self._path(name, place)
         if name in self.found:
             self.notes.append(f"'{original_path(name)}' has moved to '{path}'")

@@ -148,7 +148,7 @@ class _Take:
 
     def _limbs(self, frame: int) -> dict[str, Array] | None:
         """Return where upper arms, forearms, whole arms and legs point: out to their own side, up and ahead
-        of the figure; None where a joint is not known.
+        of the figure; None if a joint is not known.
         """
         if self.roles is None:
             self.roles = find_roles(self.clip.skeleton)

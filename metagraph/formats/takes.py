@@ -88,7 +88,7 @@ def repair_note(repair: Repair) -> str:
     return repair.words if repair.made else f"left as it is in the file, without this: {repair.words}"
 
 
-def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
+def guess_frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
     """Return the frames per second on which key times (seconds, each array ascending) lie; 30 if any rate
     fits.
 
@@ -165,7 +165,7 @@ def _mended(clip: Clip, frames: Sequence[int]) -> Clip:
     return replace(clip, rotations=rotation.continuous(rotations), translations=translations, weights=weights)
 
 
-def unique_takes(clips: Sequence[Clip]) -> list[Clip]:
+def make_takes_unique(clips: Sequence[Clip]) -> list[Clip]:
     """Number takes of one file that share a name: walk, walk_2."""
     seen: dict[str, int] = {}
     taken = {clip.name for clip in clips}

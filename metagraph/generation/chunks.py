@@ -22,20 +22,20 @@ RIDGE = 0.02  # deviation of what is chance in a token, where its neighbours tel
 GUIDANCE = 1.5  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
 
 
-def tokens_of(w: Layers, sizes: MatchingSizes, poses: Array) -> Array:
+def make_tokens(w: Layers, sizes: MatchingSizes, poses: Array) -> Array:
     """Return the whitened tokens `[T // frames, D]` of poses `[T, X]`, standardised."""
     rows = list_spans(poses, sizes.frames)
     return np.asarray((rows - w["tokens.mean"]) @ w["tokens.basis"].T / w["tokens.deviation"])
 
 
-def poses_from_tokens(w: Layers, sizes: MatchingSizes, tokens: Array) -> Array:
+def join_token_poses(w: Layers, sizes: MatchingSizes, tokens: Array) -> Array:
     """Return the poses `[n frames, X]`, standardised, of tokens `[n, D]`."""
     rows = (tokens * w["tokens.deviation"]) @ w["tokens.basis"] + w["tokens.mean"]
     return np.asarray(rows.reshape(-1, sizes.pose))
 
 
 class Joining:
-    """From tokens to poses, so that pieces meet: each token's frames are told by its neighbours, too, and
+    """From tokens to poses, so that pieces meet: each token's frames are given by its neighbours, too, and
     come `delay` frames later than the token. count: tokens at once; arrays of one shape give the same bits.
     """
 
@@ -47,7 +47,7 @@ class Joining:
     def of(self, tokens: Array) -> Array:
         """Return the poses `[n, X]`, standardised, that `count` more tokens `[count, D]` tell."""
         if not self.delay:
-            return poses_from_tokens(self.w, self.sizes, tokens)
+            return join_token_poses(self.w, self.sizes, tokens)
         around, first = self.sizes.around, self._kept is None
         before = np.repeat(tokens[:1], 2 * around, 0) if self._kept is None else self._kept
         row = np.concatenate([before, tokens])
@@ -93,7 +93,7 @@ def join_by_least_squares(rows: Iterable[tuple[Array, Array]], around: int) -> A
 
 def tokens_of_still_pose(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
     """Return the past of somebody who holds a pose `[X]`, standardised: `[past, D]`."""
-    return tokens_of(w, sizes, np.repeat(pose[None], sizes.past * sizes.frames, 0))
+    return make_tokens(w, sizes, np.repeat(pose[None], sizes.past * sizes.frames, 0))
 
 
 class TokenDrawing:

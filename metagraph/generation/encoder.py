@@ -67,7 +67,7 @@ class EncoderConvolutions:
 
 
 class Reader(Protocol):
-    """Who reads what is heard, by a product whose terms may be reckoned one after the other."""
+    """Who reads what is heard, by a product whose terms may be computed one after the other."""
 
     def told(self, heard: Array, /) -> Array:
         """Return what is made of rows `[n, C]` heard at once: `[n, ...]`."""
@@ -87,7 +87,7 @@ class EncoderHearing:
         if control.kind == "encoder":
             self._layers = EncoderConvolutions(w, control.dilations, _share(lookahead, control.ahead))
         # Convolutions share nothing unless they know all ahead; then a few frames cost hardly more than one.
-        # The paper's windows are long: what all of a few frames know already is told at once.
+        # The paper's windows are long: what all of a few frames know already is reported at once.
         shared = lookahead == control.ahead if self._layers else control.before + lookahead >= BLOCK
         self._block = BLOCK if shared else 1
         self._features = np.zeros((control.frames + self._block - 1, control.inputs), np.float32)
@@ -197,5 +197,5 @@ def mask_after(window: Array, last: int) -> Array:
 
 
 def _share(lookahead: int, most: int) -> float:
-    """Return how much of what could be known ahead is known, 0..1; 1 where there is nothing to know."""
+    """Return how much of what could be known ahead is known, 0..1; 1 if there is nothing to know."""
     return lookahead / most if most else 1.0

@@ -1,5 +1,5 @@
 """What is heard, frame by frame: mels of both voices, and who speaks. Of a whole recording, or as it comes
-in; both are the same to the bit, since every frame is reckoned by itself.
+in; both are the same to the bit, since every frame is computed by itself.
 """
 
 from __future__ import annotations
@@ -234,7 +234,7 @@ def conversation_activity(conversation: Conversation, side: int, frames: int) ->
     return one_hot(found[0], np.any(found[1:], axis=0))  # of several, whoever answers is the partner
 
 
-def voice_activity(own: Array, partner: Array | None, rate: int, frames: int) -> Array:
+def detect_voice_activity(own: Array, partner: Array | None, rate: int, frames: int) -> Array:
     """Return activity `[T, 4]` by loudness alone. own, partner: samples `[N]`; without a partner nobody
     answers.
     """

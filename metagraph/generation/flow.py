@@ -19,7 +19,7 @@ LEAST = 1e-6  # what a coupling scales by at least
 
 
 class FlowWeights:
-    """A flow's weights, ready for both directions. dtype: what is reckoned in."""
+    """A flow's weights, ready for both directions. dtype: what is computed in."""
 
     def __init__(self, weights: Layers, sizes: FlowSizes, dtype: Any = np.float32) -> None:
         self.dims, self.half, self.layers = sizes.dims, sizes.dims // 2, sizes.layers
@@ -108,7 +108,7 @@ class FlowWeights:
 
 class FlowDrawing:
     """A flow from noise to codes, moment by moment. The context is in two parts: of the past poses, and of
-    what is heard, which can be reckoned beforehand.
+    what is heard, which can be computed beforehand.
     """
 
     def __init__(self, weights: Layers, sizes: FlowSizes, dtype: Any = np.float32) -> None:

@@ -1,5 +1,5 @@
-"""Models frame by frame: what a sampler asks for the next poses. Each moment is reckoned in arrays of
-the same shape and at the same place in them, so that it does not matter in which pieces the sound came.
+"""Models frame by frame: what a sampler asks for the next poses. Each moment is computed in arrays of the
+same shape and at the same place in them, so that it does not matter in which pieces the sound came.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Generator(ABC):
         yield self.step(heard, seed, take, frame)
 
     def rest(self) -> Array | None:
-        """Return the poses `[delay, X]` that are left when no more are made, None where none are."""
+        """Return the poses `[delay, X]` that are left when no more are made, None if none are."""
         return None
 
     def _hears(self, control: Control, lookahead: int | None) -> None:
@@ -85,7 +85,7 @@ class FlowGenerator(Generator):
         z = self.noise.of(seed, take, frame) * self.temperature
         with np.errstate(over="ignore", invalid="ignore"):
             code = self.flow.draw(z, past, told)
-            if not isfinite(code @ code):  # a flow that ran away begins anew
+            if not isfinite(code @ code):  # a flow that ran away begins again
                 code[:] = 0
                 self.flow.reset()
         poses = _near(self.decoder.one(code)).reshape(self.made, -1)
@@ -181,7 +181,7 @@ def generator(
     lookahead: int | None = None,
     guidance: float = chunks.GUIDANCE,
 ) -> Generator:
-    """Return a model that begins anew. first: the pose `[X]`, standardised, that it goes on from. lookahead:
+    """Return a model that begins again. first: the pose `[X]`, standardised, that it goes on from. lookahead:
     frames ahead that are known, None for all it can use.
     """
     if isinstance(sizes, FlowSizes):

@@ -40,7 +40,7 @@ def initial(sizes: Sizes, seed: int = 1) -> Weights:
 
 
 def _units(sizes: Sizes) -> int:
-    """Return the units of the LSTMs, 1 where there is none."""
+    """Return the units of the LSTMs, 1 if there is none."""
     return 1 if isinstance(sizes, MatchingSizes) else sizes.units
 
 

@@ -17,8 +17,8 @@ LOUDEST = 60.0  # dB a channel is raised at most
 _PIECE, _MARGIN = 30.0, 1.0  # seconds that are filtered at once, and what is thrown away on either side
 
 
-def integrated_loudness(samples: Array, rate: int) -> float:
-    """Return the integrated loudness of one channel `[N]`, LUFS; -inf where nothing is louder than the gate.
+def measure_integrated_loudness(samples: Array, rate: int) -> float:
+    """Return the integrated loudness of one channel `[N]`, LUFS; -inf if nothing is louder than the gate.
     Shorter than a block, the whole is one.
     """
     samples = np.asarray(samples, np.float64)
@@ -41,7 +41,7 @@ def integrated_loudness(samples: Array, rate: int) -> float:
 
 def gain_of(samples: Array, rate: int) -> float:
     """Return the factor that brings a channel `[N]` to TARGET; 1 for silence."""
-    level = integrated_loudness(samples, rate)
+    level = measure_integrated_loudness(samples, rate)
     return 1.0 if not np.isfinite(level) else float(10 ** (min(TARGET - level, LOUDEST) / 20))
 
 

@@ -15,9 +15,9 @@ refused. `initial.initial(sizes, seed)` gives weights to begin with. What only t
 predicts speeds, running means) has no name here and is not exported.
 
 **What goes in.** All is standardised: poses `[T, X]` (X = 6 numbers a joint) by the model's means and
-deviations, audio `[T, A]` (A = 27 mels, 54 with two tracks) likewise; activity `[T, 4]` (self, partner, both,
-none) is as it is. Before a recording begins and after it ends there are `features.silence` rows. `Control`
-says how frame t hears them:
+deviations, audio `[T, A]` (A = 27 mels, 54 with two tracks) in the same way; activity `[T, 4]` (self,
+partner, both, none) is as it is. Before a recording begins and after it ends there are `features.silence`
+rows. `Control` says how frame t hears them:
 
     window    what the paper does: `before + 1 + ahead` frames of [audio, activity], frame by frame from the
               past to the future, flat, after the `past` poses, oldest first.

@@ -55,7 +55,7 @@ class Chance:
 
 def project_rig(project: Project) -> PoseRig:
     """Return the joints of a project's figure that models move, relative to its base pose. Raises PoseError
-    where there are none.
+    if there are none.
     """
     if project.skeleton is None:
         raise PoseError("the project has no clips, so there is nobody to move: import some first")
@@ -102,7 +102,7 @@ def as_project_clip(project: Project, clip: Clip) -> tuple[Clip, tuple[str, ...]
     return made, notes
 
 
-def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Array, tuple[str, ...]]:
+def read_side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Array, tuple[str, ...]]:
     """Return what is heard in a conversation `[2, N]` at `features.RATE`, one side's own voice first, then
     all others' as one, as long as it lasts, and what is missing, in words. folder: what paths begin at.
     Raises FileError.
@@ -143,8 +143,8 @@ class HeardSpeech:
 
 
 def hear_side(project: Project, ident: str, side: int, folder: Path) -> HeardSpeech:
-    """Return what is heard in a conversation, as `side_sound` does. Raises FileError."""
-    samples, notes = side_sound(project.conversations[ident], side, folder)
+    """Return what is heard in a conversation, as `read_side_sound` does. Raises FileError."""
+    samples, notes = read_side_sound(project.conversations[ident], side, folder)
     count = frames_of(samples.shape[1])
     return HeardSpeech(samples, conversation_activity(project.conversations[ident], side, count), notes)
 

@@ -62,7 +62,7 @@ def find_rig(
     skeleton: Skeleton, roles: Mapping[str, int] | None = None, base: Array | None = None
 ) -> PoseRig:
     """Return the joints that count of a skeleton. roles: as found unless given. base: local rotations `[J,
-    4]`, the rest pose unless given. Raises PoseError where a joint is missing without which nobody gestures.
+    4]`, the rest pose unless given. Raises PoseError if a joint is missing without which nobody gestures.
     """
     found = find_roles(skeleton) if roles is None else roles
     missing = [role.replace("_", " ") for role in NEEDED if role not in found]

@@ -42,7 +42,7 @@ class Dense:
 
 class Cells:
     """LSTMs in layers, moment by moment. own: how many of the first layer's inputs are known at the moment
-    alone; what the others do (`told`) can be reckoned for many moments at once.
+    alone; what the others do (`told`) can be computed for many moments at once.
     """
 
     def __init__(self, w: Layers, name: str, layers: int, own: int, dtype: Any = np.float32) -> None:

@@ -17,9 +17,9 @@ from metagraph.generation.features import (
     RATE,
     FeatureStream,
     conversation_activity,
+    detect_voice_activity,
     frames_of,
     silence,
-    voice_activity,
 )
 from metagraph.generation.generators import generator
 from metagraph.generation.loudness import gain_of
@@ -197,8 +197,8 @@ def sample_whole(
     name: str = "generated",
 ) -> Clip:
     """Return the motion to a recording, as long as it is. samples: `[C, N]` at `features.RATE`, own voice
-    first; activity: `[T, 4]`, as `features.conversation_activity` or `voice_activity` give it. Joints that
-    the model does not move are in its base pose, or as `first` has them. Raises FeatureError.
+    first; activity: `[T, 4]`, as `features.conversation_activity` or `detect_voice_activity` give it. Joints
+    that the model does not move are in its base pose, or as `first` has them. Raises FeatureError.
     """
     samples = np.atleast_2d(samples)
     if not samples.shape[1]:
@@ -219,7 +219,7 @@ def sample_whole(
     return clip_of(model, np.concatenate(ready), name, first, seed)
 
 
-def conversation_motion(
+def make_conversation_motion(
     model: Model, conversation: Conversation, side: int, samples: Array, seed: int = 1, **options: Any
 ) -> Clip:
     """Return the motion of one side of a conversation. samples: `[C, N]` at `features.RATE`, that side's
@@ -235,7 +235,7 @@ def hear_activity(samples: Array) -> Array:
     """Return activity `[T, 4]` of a recording without words: samples `[C, N]` at `features.RATE`."""
     samples = np.atleast_2d(samples)
     partner = samples[1] if len(samples) > 1 else None
-    return voice_activity(samples[0], partner, RATE, frames_of(samples.shape[1]))
+    return detect_voice_activity(samples[0], partner, RATE, frames_of(samples.shape[1]))
 
 
 def clip_of(

@@ -1,5 +1,5 @@
-"""How far trainings got that were begun: what can be gone on with after a stop, a crash or a kill. No torch
-here.
+"""Find trainings that were started, and how far they got, to continue them after a stop or a crash. This
+module does not use torch.
 """
 
 from __future__ import annotations
@@ -54,10 +54,10 @@ class Standing:
 
     @property
     def share(self) -> float:
-        return training_share(self.plan, self.step, self.seconds, self.minutes)
+        return measure_training_share(self.plan, self.step, self.seconds, self.minutes)
 
 
-def training_share(plan: TrainingPlan, step: int, seconds: float, minutes: float) -> float:
+def measure_training_share(plan: TrainingPlan, step: int, seconds: float, minutes: float) -> float:
     """Return how much of a training is over, 0..1."""
     used = ((seconds, plan.seconds), (minutes, plan.minutes), (float(step), plan.steps))
     return min(1.0, max((value / most for value, most in used if most), default=0.0))
@@ -76,7 +76,7 @@ def find_begun_trainings(folder: Path) -> list[Standing]:
 
 
 def standing_of(training: Path) -> Standing | None:
-    """Return how far the training in a folder got, None where there is none that can be gone on with."""
+    """Return how far the training in a folder got, or None if there is none to continue."""
     try:
         plan = read_training_plan(training)
     except FileError:
@@ -104,7 +104,7 @@ def read_checkpoint_note(array: np.ndarray) -> CheckpointNote:
 
 def hold(training: Path) -> IO[bytes] | None:
     """Take a training's folder for this process until what is returned is closed, or the process ends however
-    it ends; None where another process has it. Raises OSError where nothing can be written.
+    it ends; None if another process has it. Raises OSError if nothing can be written.
     """
     return try_hold(training / LOCK)
 

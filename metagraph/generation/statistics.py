@@ -191,7 +191,7 @@ def compute_measures(generated: Sequence[MotionSample], true: Sequence[MotionSam
     """Return all MEASURES of generated motion beside what was recorded; nan where what it is made of does not
     occur. distance, frechet: the smaller the better, down to the floor. speed, acceleration, wrist_range,
     still (how often hands rest), trembling (their acceleration while they do), profile: 1 is perfect;
-    speed_w1, role_w1: 0. role, stroke, nods: as the recorded motion's own. Raises ValueError where there is
+    speed_w1, role_w1: 0. role, stroke, nods: as the recorded motion's own. Raises ValueError if there is
     nothing to compare.
     """
     if not generated or not true or min(len(m) for m in (*generated, *true)) < 3:

@@ -43,7 +43,7 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-FORMAT = 2  # 2: pieces of motion that are told by their neighbours, too
+FORMAT = 2  # 2: pieces of motion that are given by their neighbours, too
 SUFFIX = ".mgmodel"
 MOST = 512 * 2**20  # bytes of all weights
 MOST_TOLD = 16 * 2**20  # bytes of model.json
@@ -91,8 +91,8 @@ class SkeletonCard(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class ModelCard(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What is told of a model beside its weights. tracks: 1 hears both voices mixed, 2 apart. hours: of takes
-    that were learned from. statistics: of the finished model.
+    """What is reported about a model beside its weights. tracks: 1 hears both voices mixed, 2 apart. hours:
+    of takes that were learned from. statistics: of the finished model.
     """
 
     format: int = FORMAT
@@ -266,7 +266,7 @@ def read_model(path: str | Path) -> Model:
 
 @guard_reader
 def read_card(path: str | Path) -> ModelCard:
-    """Read what is told of a model, without its weights. Raises FileError."""
+    """Read what is reported about a model, without its weights. Raises FileError."""
     path = check_file(path, ARRAYS)
     with _opened(path) as archive:
         return _card(path, archive)

@@ -1,4 +1,4 @@
-"""Folders of takes: clips, each with the sound beside it, and its words where there are any.
+"""Folders of takes: clips, each with the sound beside it, and its words if there are any.
 
 `talk.bvh` is said with `talk.wav`: its first channel is the take's own voice, the second the partner's. Two
 clips of one conversation are `talk_1.bvh` and `talk_2.bvh` (also a and b, left and right), the sides of
@@ -197,7 +197,7 @@ def _take(
     digests = tuple(digest(p) for p in (files.clip, *files.sounds))
     folder = files.clip.parent
     if folder not in licences:
-        licences[folder] = licence_of(folder)
+        licences[folder] = read_licence(folder)
     source = TakeSource(files.clip.stem, digests, licences[folder])
     heard = TakeSound(speech.samples, RATE, speech.clipped)
     take = make_take(rig, clip, heard, source, speech.conversation, files.side, tracks)
@@ -248,7 +248,7 @@ def _speech(
     return TakeSpeech(samples, clipped, conversation, notes)
 
 
-def licence_of(folder: Path) -> str:
+def read_licence(folder: Path) -> str:
     """Return the first line of the licence that lies in a folder, or in the nearest two above it."""
     for place in (folder, *folder.resolve().parents[:2]):
         for path in sorted(place.iterdir()) if place.is_dir() else ():

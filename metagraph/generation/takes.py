@@ -1,4 +1,6 @@
-"""Takes to learn from: motion, what was said with it, and where both came from; and which are held out."""
+"""Takes to learn from: motion with its speech and its source; and the split into training and held-out
+takes.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +20,11 @@ from metagraph.generation.features import (
     SELF,
     compute_features,
     conversation_activity,
+    detect_voice_activity,
     frames_of,
     resample_for_features,
-    voice_activity,
 )
-from metagraph.generation.loudness import gain_of, integrated_loudness
+from metagraph.generation.loudness import gain_of, measure_integrated_loudness
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import (
     PoseError,
@@ -53,7 +55,7 @@ class TakeError(ValueError):
 
 
 class SplitError(ValueError):
-    """Takes that cannot be told into those to learn from and those held out."""
+    """Takes that cannot be split into takes to learn from and takes held out."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +186,7 @@ def make_take(
             )
         )
         partner = sound[1] if len(sound) > 1 else None
-        activity, marks = voice_activity(sound[0], partner, RATE, count), TakeMarks()
+        activity, marks = detect_voice_activity(sound[0], partner, RATE, count), TakeMarks()
     else:
         activity, marks = conversation_activity(conversation, side, count), _marks(conversation, side)
     own = activity[:, SELF].sum() / FPS
@@ -204,7 +206,7 @@ def make_take(
 
 def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool, notes: list[str]) -> None:
     """shared: one channel has both voices, and the words tell whose each is."""
-    silent = [not np.isfinite(integrated_loudness(channel, RATE)) for channel in sound]
+    silent = [not np.isfinite(measure_integrated_loudness(channel, RATE)) for channel in sound]
     if all(silent):
         raise TakeError(f"{who}: its sound is silent. Check the microphone, or which channel is its own")
     if len(sound) == 1 and not shared:
@@ -249,7 +251,7 @@ def _marks(conversation: Conversation, side: int) -> TakeMarks:
 
 def mirror_take(rig: PoseRig, clip: Clip, take: Take) -> Take:
     """Return a take's twin: left and right of its clip exchanged, what is heard as it was. Raises TakeError
-    where the skeleton is not the same on both sides.
+    if the skeleton is not the same on both sides.
     """
     try:
         poses = encode_clip(rig, mirror(clip, pairs_of(clip.skeleton)), FPS)

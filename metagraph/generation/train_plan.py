@@ -124,7 +124,7 @@ def plan_of(
     **options: Any,
 ) -> TrainingPlan:
     """Return a plan. sizes: those of kind and size unless given. options: further fields of the plan. Raises
-    SplitError where a take held out is learned from.
+    SplitError if a take held out is learned from.
     """
     check_split(takes, held)
     return TrainingPlan(

@@ -17,12 +17,13 @@ import msgspec
 from msgspec import Struct
 
 from metagraph.common.programs import python_command, start
+from metagraph.common.wording import phrase
 from metagraph.generation.train_plan import STOP, folder_of
 
-TORCH = (
+TORCH = phrase(
     "Training needs torch, which is not installed: 200 MB to download, 750 MB on disk. Install it with\n"
     "    pip install 'metagraph-studio[train]' --extra-index-url https://download.pytorch.org/whl/cpu\n"
-    "(without that index Linux gets several gigabytes for graphics cards). Using a model needs none of it."
+    "(Without that index, Linux gets several gigabytes for graphics cards.) You can use models without torch."
 )
 PATIENCE = 30.0  # seconds that a process may take to write its model once it is asked to stop
 
@@ -56,14 +57,14 @@ class TrainingEvent(Struct, frozen=True, kw_only=True):
 
 
 def find_missing_tools() -> str | None:
-    """Return what to do before anything can be trained, in words; None where torch is installed."""
+    """Return what to do before anything can be trained, in words; None if torch is installed."""
     return TORCH if importlib.util.find_spec("torch") is None else None
 
 
 class TrainingProcess:
     """A training that runs. out: the model's file; its folder has a plan (`train_plan.write_training`).
     resume: go on from the last checkpoint. export: write the model of the last checkpoint, and end. heard: is
-    given each event, on a thread of its own. Raises TrainingFailedError where torch is missing.
+    given each event, on a thread of its own. Raises TrainingFailedError if torch is missing.
     """
 
     def __init__(

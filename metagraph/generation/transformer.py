@@ -1,5 +1,5 @@
 """The transformer that tells the velocity of noisy tokens (`networks` has the formulas), for moments that are
-known beforehand: how they scale and shift is reckoned once a model.
+known beforehand: how they scale and shift is computed once a model.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def twice_gelu(x: Array) -> Array:
 
 
 def _moments(w: Layers, sizes: MatchingSizes, moments: Array) -> Array:
-    """Return how t `[M]` is told, `[M, time]`."""
+    """Return how t `[M]` is encoded, `[M, time]`."""
     half = sizes.time // 2
     speed = 1000.0 * 10000.0 ** (-np.arange(half) / half)
     angle = moments[:, None] * speed.astype(moments.dtype)

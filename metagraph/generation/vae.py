@@ -65,7 +65,7 @@ def list_spans(poses: Array, span: int) -> Array:
 def principal(rows: Array, dims: int, prefix: str) -> Weights:
     """Return mean, basis and deviation of the first principal components, in closed form, float32. rows: `[N,
     M]`. Signs are such that each component's largest number is positive, so that the same rows give the same
-    basis. Raises ValueError where there are fewer rows than components.
+    basis. Raises ValueError if there are fewer rows than components.
     """
     if len(rows) <= dims:
         raise ValueError(f"{len(rows)} stretches are too few for {dims} components: give more takes")

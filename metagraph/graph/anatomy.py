@@ -85,7 +85,7 @@ def action_mask(project: Project, action: Action) -> Array | None:
 
 def as_joint_mask(skeleton: Skeleton, weights: Mapping[str, float]) -> dict[str, Any]:
     """Return an action's `joints` and `joint_weights` for weights 0..1 of joints by name, 1 for those not
-    named; both empty where it moves all of all.
+    named; both empty if it moves all of all.
     """
     of = {name: min(1.0, max(0.0, round(weights.get(name, 1.0), 3))) for name in skeleton.names}
     moving = tuple(name for name, weight in of.items() if weight > 0)
@@ -123,7 +123,7 @@ def soft_edge(
     return out
 
 
-def unknown_joints(skeleton: Skeleton | None, of: Action | State) -> list[str]:
+def list_unknown_joints(skeleton: Skeleton | None, of: Action | State) -> list[str]:
     """Return the joints that a mask names and the skeleton does not have; none without a skeleton."""
     if skeleton is None:
         return []

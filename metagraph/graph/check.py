@@ -20,7 +20,7 @@ from metagraph.graph.manual.check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.repeating import LEAST_CYCLE, LONGEST_REPEAT, cycle_of, seconds_played
-from metagraph.motion.in_place import travel_of
+from metagraph.motion.in_place import measure_travel
 
 Array = NDArray[Any]
 
@@ -280,7 +280,7 @@ class _ActionCheck:
                 phrase("has likelihood {likelihood:g} and never plays", likelihood=action.likelihood),
                 phrase("Set it to more than 0."),
             )
-        if unknown := anatomy.unknown_joints(self.project.skeleton, action):
+        if unknown := anatomy.list_unknown_joints(self.project.skeleton, action):
             yield self.at(
                 "error",
                 "mask",
@@ -446,7 +446,7 @@ class _ActionCheck:
             return
         hips = anatomy.project_roles(self.project).get("hips", 0)
         start, end = self.project.span(self.action)
-        far = travel_of(motion, hips, start, end)
+        far = measure_travel(motion, hips, start, end)
         size = max(self.project.skeleton.height, 1e-6) / end_gaps.TALL
         if far > TRAVELS[self.action.kind] * size:
             yield self.at(

@@ -14,7 +14,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.clip_source import with_changed_file, with_source
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.face.takes import FACE_TAKE, face_joints
+from metagraph.graph.face.takes import FACE_TAKE, find_face_joints
 from metagraph.graph.manual.machine import remove_clips_from_machines
 from metagraph.graph.model import (
     PARTS,
@@ -220,8 +220,8 @@ def place_clips(
             stance=stance,
             name=entry.name,
             end_stance=end_stance if kind == "transition" else None,
-            timing=default_timing(entry, kind),
-            joints=face_joints(project) if entry.brought_from == FACE_TAKE and kind != "stance" else (),
+            timing=make_default_timing(entry, kind),
+            joints=find_face_joints(project) if entry.brought_from == FACE_TAKE and kind != "stance" else (),
             limb=guess_limb(entry.name) if layer == "arms" and kind in ("gesture", "fidget") else "both",
         )
     first = (
@@ -238,7 +238,7 @@ def find_added_actions(before: Project, after: Project) -> tuple[str, ...]:
     return tuple(a.id for a in after.actions() if before.action(a.id) is None)
 
 
-def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
+def make_default_timing(entry: ClipEntry, kind: Kind) -> Timing:
     """Return the timing of a newly placed clip: blends of at most a quarter of its length, and a blended seam
     if a loop is open.
     """
@@ -293,7 +293,7 @@ def move_actions(
     for action in moved:
         timing = action.timing
         if (kind == "stance") != (action.kind == "stance"):
-            timing = default_timing(project.clips[action.clip], kind)
+            timing = make_default_timing(project.clips[action.clip], kind)
         changes[action.id] = replace(
             action,
             kind=kind,

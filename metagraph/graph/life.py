@@ -63,7 +63,7 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     """The life layers' settings; what each means, and which value turns it off, says `DIALS`.
 
     on: whether they play at all. stillness: multiplies every amount by 1 - stillness and stretches the time
-    between events; at 1 nothing moves of itself, only lips and what is asked for. modes: changes to
+    between events; at 1 nothing moves of itself, only lips and what is requested. modes: changes to
     `MANNERS`, by mode. valence, arousal, intensity: the mood where no request tells another.
     """
 

@@ -1,4 +1,4 @@
-"""What animators leave each other to read: a note on the project, and one on each action."""
+"""Notes of animators: one on the project, and one on each action."""
 
 from __future__ import annotations
 

@@ -27,12 +27,12 @@ def offered_requests(
     project: Project, words: Sequence[str] = ENGINES, most: Mapping[str, int] = EVERYTHING
 ) -> dict[str, Any]:
     """Return what may be asked for, as plain data. words: of requests that are understood. most: of actions
-    of a layer, lines and points that are told.
+    of a layer, lines and points that are reported.
 
     `project`, its name; `words`; `modes`; `joints` (name, parent, part); `layers`: for each its `start`, its
     `stances` (id, name), its `actions` but loops of stances (id, name, kind, stance, seconds; `to`, `limb`
-    and `tags` where there are any) and `tags` with the number of actions; `lines` (id, text), by id; `points`
-    by name, metres.
+    and `tags` if there are any) and `tags` with the number of actions; `lines` (id, text), by id; `points` by
+    name, metres.
     """
     skeleton, parts = project.skeleton, anatomy.project_parts(project) if project.skeleton is not None else ()
     return {

@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 class Remembered(Generic[T]):
-    """What was found of the parts of projects, for as long as a project with the very same parts lives.
+    """What was found of the parts of projects, for as long as a project with the same parts lives.
 
     parts: of a project, those that what is found depends on; compared by identity. most: how many results are
     remembered, the latest. What is found must not refer to the project or its clips.
@@ -34,7 +34,7 @@ class Remembered(Generic[T]):
             if owners[-1]() is project:
                 return value
             living = tuple(o for o in owners if (p := o()) is not None and self._same(p, parts))
-            if living:  # one of before is kept beside this one, which may be a passing copy
+            if living:  # one from before is kept beside this one, which may be a passing copy
                 self._known[key] = value, (living[0], ref(project))
                 return value
         value = find()

@@ -85,7 +85,7 @@ def paste_requests(project: Project, performance: str, text: str, at: float) -> 
 
 
 def _there(project: Project, ask: a.AnyRequest, name: object, left_out: list[str]) -> a.AnyRequest | None:
-    """Return a request as this project can have it, None where it cannot."""
+    """Return a request as this project can have it, None if it cannot."""
     if isinstance(ask, a.Play):
         found = project.action(ask.action)
         if found is not None and name in (None, found.name):

@@ -30,7 +30,7 @@ _known: Remembered[Seat | None] = Remembered(parts_for_face)
 
 
 def seat_of(project: Project) -> Seat | None:
-    """Return the seat a project's body sits on in its first stance that sits, None where it never does."""
+    """Return the seat a project's body sits on in its first stance that sits, None if it never does."""
     if project.skeleton is None:
         return None
     loops = [a for a in project.graphs["body"].actions.values() if a.kind == "stance"]

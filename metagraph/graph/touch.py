@@ -9,8 +9,8 @@ from metagraph.motion.body_capsules import BodyPart
 
 class Touch(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
     """contacts: whether hands are kept where actions' contacts say. guard: whether hands and forearms are
-    kept out of the body and of each other. parts: the body's, as measured; found from the skeleton where
-    there are none.
+    kept out of the body and of each other. parts: the body's, as measured; found from the skeleton if there
+    are none.
     """
 
     contacts: bool = True

@@ -84,10 +84,10 @@ class Vocabulary:
 
     def __init__(self, phrases: Iterable[str], without: Iterable[str] = ()) -> None:
         self._keys: dict[str, bool] = {}  # letters -> whether several tokens may make them
-        others = {token_key(split_tokens(p)) for p in without}
+        others = {make_token_key(split_tokens(p)) for p in without}
         for phrase in phrases:
             words = split_tokens(phrase)
-            key = token_key(words)
+            key = make_token_key(words)
             several = len(words) > 1 or "'" in phrase.translate(_APOSTROPHES) or any(map(is_unspaced, key))
             bare = _bare(key)
             for form in (key, *([bare] if len(bare) > 1 and bare not in others else [])):  # "é" is no "e"
@@ -96,11 +96,11 @@ class Vocabulary:
         self._most = max(map(len, self._keys), default=0)
 
     def __contains__(self, words: tuple[str, ...]) -> bool:
-        return self._has(token_key(words), len(words))
+        return self._has(make_token_key(words), len(words))
 
     def is_plainly(self, words: tuple[str, ...]) -> bool:
         """Whether tokens are a phrase, not drawn out: あの, not あのー."""
-        return token_key(words) in self._keys
+        return make_token_key(words) in self._keys
 
     def _has(self, key: str, count: int) -> bool:
         """Whether the letters of so many tokens are a phrase, as they are or drawn out. "E R" is no "er"."""
@@ -116,7 +116,7 @@ class Vocabulary:
         """
         found, key, count = 0, "", 0
         for m in range(n, len(words)):
-            key += token_key(words[m])
+            key += make_token_key(words[m])
             count += len(words[m])
             if len(_RUN.sub(r"\1", key)) > self._most:
                 break
@@ -128,7 +128,7 @@ class Vocabulary:
         """Whether words, each in its tokens, are phrases and nothing else. Where writing has no blanks, a
         word may hold several.
         """
-        key = "".join(map(token_key, words))
+        key = "".join(map(make_token_key, words))
         if not key or len(key) > _LONGEST:
             return False
         ends = dict(_ends(words))
@@ -141,7 +141,7 @@ class Vocabulary:
         return len(key) in reached
 
 
-def token_key(words: tuple[str, ...]) -> str:
+def make_token_key(words: tuple[str, ...]) -> str:
     """Return the letters of tokens as they are compared with phrases."""
     return "".join(map(_key, words))
 

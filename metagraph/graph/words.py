@@ -1,4 +1,4 @@
-"""The words everything is told apart by: layers, kinds, limbs, body parts, modes."""
+"""The keys of the domain: layers, kinds, limbs, body parts, modes."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from math import inf
 
 from metagraph.playback.life.track import Item, LookAt, MoodFrom, Speech
 from metagraph.playback.plan import MetaAction, Plan, Report
-from metagraph.playback.planning.extend_performance import find_served, item_end, name_item
+from metagraph.playback.planning.extend_performance import find_item_end, find_served, name_item
 
 ENDLESS = 1e8  # seconds; what ends later than this ends when something else begins
 
@@ -91,7 +91,7 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
         found = of(item.id)
         if found is not None:
             found.starts.append(item.start)
-            found.ends.append(item_end(item))
+            found.ends.append(find_item_end(item))
             found.what.append(name_item(item))
     for report in plan.reports:
         found = of(report.request)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class ClientCamera:
-    """One client's person. wish: how they are mimicked; a change of it begins anew."""
+    """One client's person. wish: how they are mimicked; a change of it begins again."""
 
     mimic: Mimic
     wish: tuple[bool, bool, tuple[Layer, ...]]
@@ -26,7 +26,7 @@ class ClientCamera:
 def see(
     camera: ClientCamera | None, message: Keypoints, project: Project, plan: Plan, now: float, prefix: str
 ) -> tuple[ClientCamera, list[AnyRequest], dict[Layer, str]]:
-    """Take a frame in; return the camera, what is asked for because of it, and layer -> name of the stance
+    """Take a frame in; return the camera, what is requested because of it, and layer -> name of the stance
     the person is in.
 
     prefix: of the ids that requests of this camera have in the plan. Raises ValueError for points that cannot
@@ -44,7 +44,7 @@ def see(
         camera.mimic.count = count  # ids are not used twice
     size = {len(point) for point in message.points}
     if len(size) > 1:
-        raise ValueError("points: all have two numbers, or all have three")
+        raise ValueError("points: give two numbers for every point, or three for every point")
     # Pictures and pose estimators count y downwards and z away from the camera.
     points = [(x, -y, *(-z for z in rest)) for x, y, *rest in message.points]
     asks = camera.mimic.feed(now, points, message.confidence, goals(plan, now, prefix))

@@ -19,7 +19,7 @@ from metagraph.playback.plan import Plan
 
 
 class DescribedSession(Protocol):
-    """What of a live session is told. now: seconds since it began."""
+    """What of a live session is reported. now: seconds since it began."""
 
     project: Project
     ledger: Ledger

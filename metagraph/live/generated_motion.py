@@ -46,12 +46,12 @@ class GeneratedMotion(LaidMotion):
 
         if not moves_skeleton(model, project):
             raise ValueError(
-                f"the model '{name}' moves another skeleton than this character's; live it can only be used "
-                "with its own. Train one from this character's clips"
+                f"the model '{name}' was trained for another skeleton, so it cannot move "
+                "this character live. Train a model from this character's clips"
             )
         if (size := parameters(model.card.sizes)) > MOST:
             raise ValueError(
-                f"the model '{name}' has {size / 1e6:.1f} million numbers, too many to keep up live (at most "
+                f"the model '{name}' has {size / 1e6:.1f} million parameters, too many for live use (at most "
                 f"{MOST / 1e6:g} million): train a small one"
             )
         self.model = model
@@ -96,12 +96,12 @@ class GeneratedMotion(LaidMotion):
     def hear(self, message: Hear, now: float) -> str:
         """Take in what is heard; return why not, "" when it is."""
         if message.comes:
-            return "comes: a learned model moves to the sound; only motion graphs are told what comes"
+            return "comes: a learned model follows the sound; only motion graphs use announced speech"
         voices = read_voice_samples(message, self.wish.side)
         if isinstance(voices, str):
             return voices
         if self._sound.shape[1] + len(voices[0]) > self._most:
-            return f"more than {WAITS:g} s of sound would wait: send it as it is heard, not faster"
+            return f"more than {WAITS:g} s of sound would wait; send sound in real time"
         self._sound = np.concatenate([self._sound, np.stack(voices)], 1)
         if message.speaks is not None:
             self._speaks = None if message.speaks == "sound" else SIDES[message.speaks]

@@ -1,4 +1,4 @@
-"""What of a live session is made of what is heard: by a learned model, or by a motion graph."""
+"""Generate motion of a live session from the sound that it hears, by a learned model or a motion graph."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ KEPT = 100  # pieces of motion of a session that can be made again
 
 class Generating:
     """What of a session is generated. models: names to files, those that clients may choose from. graphs:
-    names to motion graphs, likewise, None while they are being made. kept: of motion that graphs made, and
-    that is over.
+    names to motion graphs, in the same way, None while they are being made. kept: of motion that graphs made,
+    and that is over.
     """
 
     def __init__(
@@ -87,9 +87,9 @@ class Generating:
         """Take in what a client hears; return the reply."""
         ident, motion = message.id or None, self.motion
         if motion is None or motion.ended:
-            why = "nothing is generated: ask to `generate` first"
+            why = "no motion is being generated; send `generate` first"
         elif motion.client != client:
-            why = "another client asked to `generate`: it says what is heard"
+            why = "another client started the generated motion; only that client may send its speech"
         else:
             why = motion.hear(message, now)
         return Reply(id=ident, state="refused" if why else "done", why=why)

@@ -169,7 +169,7 @@ class GraphMotion(LaidMotion):
         self._sound = np.zeros(0, np.float32)  # its own voice, what was not heard yet
         self._last_sound = now
         self._said: dict[str, float] = {}  # speeches of its own that it knows of, and when they end
-        self._speaks: bool | None = None  # as it was told; None: loudness tells
+        self._speaks: bool | None = None  # as it was reported; None: loudness tells
         self._poses: dict[int, Array] = {}
         self._first = now
         self._until: int | None = None  # the frame from which on no more is kept of what became known
@@ -178,7 +178,7 @@ class GraphMotion(LaidMotion):
     def note(self) -> str:
         """How soon it answers to what is heard, in words."""
         return (
-            f"movements begin {self.delay:.2f} s after what is heard at the earliest; say what `comes`, and "
+            f"movements begin at least {self.delay:.2f} s after the sound; announce speech with `comes`, and "
             "strokes meet its stresses"
         )
 
@@ -199,13 +199,16 @@ class GraphMotion(LaidMotion):
         if isinstance(voices, str):
             return voices
         if len(self._sound) + len(voices[0]) > WAITS * SAMPLES:
-            return f"more than {WAITS:g} s of sound would wait: send it as it is heard, not faster"
+            return f"more than {WAITS:g} s of sound would wait; send sound in real time"
         if len(self._news) + len(message.comes) + 2 * (message.speaks is not None) > NEWS:
             return "too much at once; try again in a moment"
         for clause in message.comes:
             begins = now + (clause.after or 0.0) if clause.at is None else clause.at
             if begins + clause.duration < now or begins > now + FARTHEST:
-                return f"comes: it is {now:.1f} s; {begins:.1f} s is over, or more than {FARTHEST:g} s ahead"
+                return (
+                    f"comes: the session is at {now:.1f} s; {begins:.1f} s is over, or more than "
+                    f"{FARTHEST:g} s ahead"
+                )
         self._tell_comes(message.comes, now)
         if len(voices[0]):
             if self._voice is None:

@@ -79,7 +79,7 @@ class Happenings:
     def end_waiting(
         self, key: str, ask: OpenAsk, reason: Reason, why: str, now: float, plan: Plan, fixed: float
     ) -> None:
-        """Tell that something ends which was promised and never began; what begins before `fixed` seconds
+        """Report that something ends which was promised and never began; what begins before `fixed` seconds
         cannot be stopped, and ends a moment later.
         """
         if not ask.settled or ask.ended or key in self.running or ask.lane not in TOLD:
@@ -173,7 +173,7 @@ class Happenings:
         self.running[request] = Running(whose, ident, played, layer, event, start)
 
     def _end(self, request: str, plan: Plan, ledger: Ledger, now: float) -> None:
-        """Tell that a request that ran has ended, and why."""
+        """Report that a request that ran has ended, and why."""
         one = self.running.pop(request)
         reason, why, spoken, word = one.reason, "", None, None
         event = replace(one.event, event="ended", t=round_seconds(now))

@@ -1,8 +1,8 @@
 """What a voice tells while it is heard: when somebody begins to speak and ends, and where they are stressed.
 
 A stress is a local maximum of F0, as in `speech.pitch.peaks`; it is known when the voice has fallen again, a
-tenth of a second later. So what answers to it comes later than the stress: only who is told beforehand can be
-in time.
+tenth of a second later. So what answers to it comes later than the stress: only a caller that announces it
+can be in time.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PIECE = 512  # of those: two of the longest periods, and some
 HOP = 0.01  # seconds between two looks at the pitch
 FALLS = 1.0  # semitones by which the voice has to fall, and to have risen, about a stress
 APART = 0.45  # seconds between two stresses
-GAP = 0.08  # seconds without a tone after which a rise begins anew
+GAP = 0.08  # seconds without a tone after which a rise begins again
 TONELESS = 0.5  # seconds of sound without a tone that are no voice any more
 NEAR = 15  # tones that tell how high the voice is
 
@@ -119,7 +119,7 @@ class HeardVoice:
         return found
 
     def _stressed(self, at: float, low: float = -np.inf) -> list[SpeechNews]:
-        """Return the highest moment since the last trough as a stress, where it stands out, and begin anew.
+        """Return the highest moment since the last trough as a stress, where it stands out, and begin again.
         low: what the next has to rise from; after a pause it need not.
         """
         top, when, rises = self._top, self._at, self._top - self._low

@@ -28,8 +28,8 @@ BUSY_WORDS = "too much at once; try again in a moment"
 BUSY = encode(Reply(state="refused", why=BUSY_WORDS))
 SLOW, TOO_FAST, STRANGER = (
     "reads too slowly",
-    "asks faster than it can be answered",
-    "needs a token: say hello with it first",
+    "sends requests faster than they can be answered",
+    "needs a token; send it in `hello` first",
 )
 POLICY, GOING, TRY_LATER = 1008, 1001, 1013  # reasons of closing, as WebSocket numbers them
 
@@ -163,7 +163,7 @@ class Hub:
             wish = message.poses
             if isinstance(wish, msgspec.Struct) and wish.format not in client.line.formats:
                 words = (
-                    f"poses: this line carries them as {' or '.join(client.line.formats)}, not as "
+                    f"poses: this connection has the formats {' or '.join(client.line.formats)}, not as "
                     f"{wish.format}"
                 )
                 return encode(Reply(id=message.id or None, error=words))

@@ -42,22 +42,27 @@ def read_kept(path: Path) -> tuple[KeptMotion, ...]:
     except OSError as error:
         raise FileError(path, error.strerror or str(error), "", GIVE) from error
     except (msgspec.DecodeError, RecursionError) as error:
-        raise FileError(path, f"it is no motion that was kept: {error}", "", GIVE) from None
+        raise FileError(path, f"is not a motion of a live session: {error}", "", GIVE) from None
     if read.format != FORMAT or read.version > VERSION:
         raise FileError(
             path,
-            f"it is of the format '{read.format}' {read.version}",
+            f"has the format '{read.format}' {read.version}",
             "",
-            "Give a file of `live --keep`, or take a newer Metagraph.",
+            "Give a file of `live --keep`, or use a newer Metagraph.",
         )
     if not read.motions:
-        raise FileError(path, "it holds no motion", "", "Give a file of a session in which a graph moved.")
+        raise FileError(
+            path,
+            "has no motion",
+            "",
+            "Give a file of a session in which a motion graph moved the character.",
+        )
     return read.motions
 
 
 def remake_motion(graph: LiveGraph, kept: KeptMotion, name: str) -> Clip:
-    """Return the motion of a session again, as a clip. Raises ValueError where the takes are others than
-    those it was made of.
+    """Return the motion of a session again, as a clip. Raises ValueError if the takes are others than those
+    it was made of.
     """
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.extending.path import replay_path
@@ -65,7 +70,7 @@ def remake_motion(graph: LiveGraph, kept: KeptMotion, name: str) -> Clip:
     size = graph.size
     if kept.size != size:
         raise ValueError(
-            f"it was made of a graph of {kept.size[0]:,} states and {kept.size[1]:,} transitions, these "
+            f"was made with a graph of {kept.size[0]:,} states and {kept.size[1]:,} transitions, but these "
             f"takes have {size[0]:,} and {size[1]:,}: give the takes and the speech that the session had"
         )
     path = replay_path(graph.driver, kept.told, kept.frames, kept.seed)

@@ -115,7 +115,7 @@ class LaidMotion(ABC):
         return Overlay(self.joints, offsets[None].astype(np.float32), np.array([weight]), *shown)
 
     def status(self) -> dict[str, Any]:
-        """Return what is told of it to clients."""
+        """Return what is reported about it to clients."""
         return {
             "model": self.name,
             "side": self.wish.side,
@@ -148,7 +148,7 @@ def read_voice_samples(message: Hear, side: str) -> list[Array] | str:
     they cannot be read. side: the character's.
     """
     if len(message.audio) % 2 or len(message.other) % 2:
-        return "audio: samples have two bytes each; an odd number of them came"
+        return "audio: a sample has two bytes, but an odd number of bytes arrived"
     voices = [np.frombuffer(x, "<i2").astype(np.float32) / 32768 for x in (message.audio, message.other)]
     size = max(len(v) for v in voices)
     voices = [np.pad(v, (0, size - len(v))) for v in voices]

@@ -22,7 +22,7 @@ _NAMED = re.compile(r"'c(\d+)/([^']*)'")
 
 def plan_key(client: int, ident: str) -> str:
     """Return what a client's id is called in the plan: apart from other clients', and free of what has a
-    meaning there, but for a number behind a "/": "answer/2" was made for what "answer" says.
+    meaning there, except for a number behind a "/": "answer/2" was made for what "answer" says.
     """
     made = _MADE.fullmatch(ident)
     if made:
@@ -75,7 +75,7 @@ class OpenAsk:
         return (self.at if self.until is None else self.until) < now - OVER
 
     def differs(self, found: FoundAnswer | None) -> bool:
-        """Whether a plan now does something else than was answered. Times are told to the millisecond."""
+        """Whether a plan now does something else than was answered. Times are reported to the millisecond."""
         if found is None:
             return True
         at, until = found.at, found.until

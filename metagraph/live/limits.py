@@ -80,7 +80,7 @@ class LimitLane:
 
 @dataclass
 class RequestWords:
-    """The words a project knows, by which most asks that cannot be met are told at once."""
+    """The words a project knows, by which most asks that cannot be met are reported at once."""
 
     project: Project
 
@@ -235,18 +235,18 @@ class Limits:
         if self.busy(client):
             return BUSY
         if share.greedy(client, priority, now):
-            return f"others ask for '{lane}', too, and had less of it; try again in a moment"
+            return f"other clients have used '{lane}' less than you; try again in a moment"
         if lane in self.lanes:
             until, above = self.full.get((lane, client), (0.0, 0))
             if now < until and at <= now + wait and priority <= above:
-                return f"the {lane} layer is taken for the next {wait:g} s by what is as important"
+                return f"a request of the same importance uses the {lane} layer for the next {wait:g} s"
             if self.several and share.flooding(client) and self.lanes[lane].own(at, wait, client):
-                return f"others are here, too, and you ask for '{lane}' too often; one of yours waits already"
+                return (
+                    f"you use '{lane}' too often while other clients wait; one of your requests waits already"
+                )
             count = self.lanes[lane].before(at, wait, priority)
             if count >= WAITING and self.lanes[lane].own(at, wait, client) >= share.of(WAITING):
-                return (
-                    f"{count} requests as important wait for the {lane} layer within {wait:g} s of that time"
-                )
+                return f"{count} requests of the same importance wait for the {lane} layer within {wait:g} s"
             return ""
         over = lane in RATES and sum(map(len, share.had.values())) >= RATES[lane]
         if over and share.count(client) >= share.of(RATES[lane]):
@@ -263,14 +263,14 @@ def beyond(ask: Any, now: float) -> str:
         if name == "duration" and value > FARTHEST:
             return f"{name}: at most {FARTHEST:g} s"
         if name != "duration" and value > FARTHEST + now:
-            return f"{name}: at most {FARTHEST:g} s ahead; it is {now:.1f} s"
+            return f"{name}: at most {FARTHEST:g} s ahead; the session is at {now:.1f} s"
     return ""
 
 
 @dataclass(frozen=True)
 class Timed:
     """An ask as it is understood now. missed: seconds since it should have come. why: it comes too late, ""
-    where it does not.
+    if it does not.
     """
 
     ask: Any
@@ -286,12 +286,12 @@ def set_start_now(ask: Any, now: float, wait: float) -> Timed:
     if stroke is not None:
         missed = max(0.0, now - stroke)
     if late is not None and missed > late:
-        why = f"asked for {missed:.2f} s ago, and may come {late:g} s late; it is {now:.1f} s"
+        why = f"too late by {missed:.2f} s, with {late:g} s allowed; the session is at {now:.1f} s"
         return Timed(ask, missed, why)
     if late is not None and stroke is None and missed > 0:
         ask = msgspec.structs.replace(ask, late=late - missed)  # it counts from when it was asked for
     if missed > wait:
-        return Timed(ask, missed, f"asked for {missed:.1f} s ago; it is {now:.1f} s")
+        return Timed(ask, missed, f"too late by {missed:.1f} s; the session is at {now:.1f} s")
     return Timed(ask, missed)
 
 

@@ -251,7 +251,7 @@ class LiveSession:
             notes = tuple(str(phrase("left out: {what}", what=what)) for what in left_out)
             more = ask.words or ask.visemes or ask.audio or ask.line or ask.duration
             if not telling(ALPHABET, text) and not more:
-                silent = str(phrase("nothing of the text is to be said"))
+                silent = str(phrase("the text has nothing to say"))
                 return Reply(id=ident, state="refused", why=silent, notes=notes)
             ask = msgspec.structs.replace(ask, text=text)
         before = work.open.get(key)
@@ -369,7 +369,7 @@ class LiveSession:
         """Note the name that a request gives a point; return the reason if there are too many."""
         if isinstance(ask, a.Place) and ask.name not in self._names:
             if len(self._names) >= NAMES:
-                return f"{NAMES} points have names already; use one of them again"
+                return f"there are {NAMES} named points already; use one of these names"
             self._names.add(ask.name)
         return ""
 
@@ -543,7 +543,7 @@ class LiveSession:
             self.ledger.drop(key)
         else:
             self.ledger.settle(key, found)
-        why = f"asked for {ask.missed:.2f} s ago" if ask.missed > 0 and not found.why else found.why
+        why = f"too late by {ask.missed:.2f} s" if ask.missed > 0 and not found.why else found.why
         if found.state == "refused" and not found.reports and ask.lane in ("say", ADDED):
             why = "something more important is said then"
         return Reply(
@@ -565,7 +565,7 @@ class LiveSession:
         return (told and speech.start == before.start) or (not told and speech.start == before.end)
 
     def _end_replaced(self, open_: Open) -> None:
-        """Tell that what waited under an id has ended, if something else has taken its place; so have the
+        """Report that what waited under an id has ended, if something else has taken its place; so have the
         gestures that were made for what was said.
         """
         if self._goes_on_from(open_):
@@ -581,7 +581,7 @@ class LiveSession:
             self._end_waiting(key, ask, "replaced", "asked again under the same id")
 
     def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
-        """Tell that something has ended which was promised and has not begun."""
+        """Report that something has ended which was promised and has not begun."""
         fixed = self.now + self.project.settings.lookahead
         self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
 
@@ -731,8 +731,8 @@ class LiveSession:
         if self.now <= min(self.tape.until, a.LONGEST_PERFORMANCE):
             return ""
         if self.tape.until < a.LONGEST_PERFORMANCE:
-            why = f"more was asked than is kept of a session, {self.tape.most / 1024 / 1024:g} MiB"
+            why = f"the session has more requests than fit into {self.tape.most / 1024 / 1024:g} MiB"
         else:
-            why = "no performance is longer"
+            why = "a performance cannot be longer"
         kept = min(self.tape.until, a.LONGEST_PERFORMANCE)
-        return f"only the first {kept / 60:.0f} minutes of {self.now / 60:.0f} are kept: {why}"
+        return f"only the first {kept / 60:.0f} of {self.now / 60:.0f} minutes are saved: {why}"

@@ -19,13 +19,19 @@ from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES, tools
 from metagraph.live.stdio import StdioLine
 from metagraph.speech.spoken_text import read_spoken_line
-from metagraph.speech.text_gestures import gesture_requests, gesture_words_for, propose_gestures, timed_words
+from metagraph.speech.text_gestures import (
+    find_gesture_words,
+    make_gesture_requests,
+    propose_gestures,
+    timed_words,
+)
 
 VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
 BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  # JSON-RPC's codes
 _LOOKS = {
-    "status": "What is playing at this moment, and how much waits.",
-    "describe": "All that may be asked of this character: stances, actions and tags by layer, lines, points.",
+    "status": "What is playing now, and how many requests wait.",
+    "describe": "Everything this character can be asked to do: stances, actions and tags by layer, "
+    "lines, points.",
 }
 
 
@@ -150,7 +156,7 @@ class McpLine(StdioLine):
         elif method == "tools/call":
             return self._tool(ident, parameters.get("name"), parameters.get("arguments") or {})
         else:
-            self._fail(ident, NO_METHOD, f"'{method[:80]}' is not understood here")
+            self._fail(ident, NO_METHOD, f"there is no method '{method[:80]}'")
         return False
 
     def _tool(self, ident: Any, name: Any, given: Any) -> bool:
@@ -180,9 +186,9 @@ class McpLine(StdioLine):
         begins = float(reply["at"])
         if told and "since" in reply:  # it is when the first of these words is said
             begins -= told[0][1]
-        lexicon = gesture_words_for(said.text)
+        lexicon = find_gesture_words(said.text)
         made = propose_gestures(timed_words(said.text, told), self._tags, lexicon, self._gestured + 1)
-        requests = gesture_requests(made, begins, str(reply.get("id", "said")), self._gestured)
+        requests = make_gesture_requests(made, begins, str(reply.get("id", "said")), self._gestured)
         self._gestured += len(requests) or 1
         for request in requests:
             self._calls.append(_Call(_NOBODY))

@@ -275,15 +275,17 @@ def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) 
     except (msgspec.DecodeError, UnicodeError, RecursionError) as broken:
         return Reply(error=a.explain_invalid_ask(broken))
     if not isinstance(fields, dict):
-        return Reply(error='a request is an object, as {"do": "nod"}')
+        return Reply(error='a request is an object such as {"do": "nod"}')
     ident = fields["id"] if isinstance(fields.get("id"), str) and len(fields["id"]) <= 200 else None
     if "in" not in fields:
         return Reply(id=ident, error=_words(error))
     after = fields.pop("in")
     if isinstance(after, bool) or not isinstance(after, int | float) or not 0 <= after <= 1e6:
-        return Reply(id=ident, error="in: seconds from now are expected, 0 or more")
+        return Reply(id=ident, error="in: give seconds from now, 0 or more")
     if fields.get("at") is not None:
-        return Reply(id=ident, error="say `at`, seconds of the session, or `in`, seconds from now, not both")
+        return Reply(
+            id=ident, error=("give `at` (seconds of the session) or `in` (seconds from now), not both")
+        )
     try:
         message = msgspec.convert(fields, Message)
     except (msgspec.ValidationError, RecursionError) as wrong:
@@ -319,8 +321,8 @@ def live_schema() -> dict[str, Any]:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Metagraph live session",
-        "description": "What a client sends: a request or a list of them. Definitions Reply and Event are "
-        "what it gets.",
+        "description": "What a client sends: a request, or a list of requests. It receives what the "
+        "definitions Reply and Event describe.",
         "anyOf": [
             {"$ref": "#/$defs/Request"},
             {"type": "array", "maxItems": MOST, "items": {"$ref": "#/$defs/Request"}},

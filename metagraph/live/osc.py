@@ -19,9 +19,9 @@ ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
 SENDERS = 32  # known at once
 AT_ONCE = ("hello", "status", "describe", "withdraw")  # whatever the time tag of their bundle says
-# Addresses that take no number, so that a number tells of a button: 0 when it is let go.
+# Addresses that take no number, so that a number reports a button: 0 when it is let go.
 BUTTONS = ("gesture", "fidget", "change", "nod", "shake", "action", "stance", "blink", "text", "withdraw")
-LET_GO = "it is a button that is let go: send another number than 0"
+LET_GO = "a value of 0 means a released button; send another number"
 LARGEST = 60_000  # bytes of one datagram that is sent
 
 
@@ -60,12 +60,12 @@ class _Values:
         return cls(more, plain, texts, [float(x) for x in plain if isinstance(x, int | float)])
 
     def first(self, name: str) -> dict[str, str]:
-        """Return the first text as a field of this name, nothing where there is none."""
+        """Return the first text as a field of this name, nothing if there is none."""
         return {name: self.texts[0]} if self.texts else {}
 
 
 def _of_moving(word: str, said: _Values) -> Mapping[str, Any] | None:
-    """Return an ask for motion; None where the address is about something else."""
+    """Return an ask for motion; None if the address is about something else."""
     texts, more = said.texts, said.more
     match word:
         case "gesture" | "fidget":
@@ -87,7 +87,7 @@ def _of_moving(word: str, said: _Values) -> Mapping[str, Any] | None:
 
 
 def _of_speech(word: str, said: _Values) -> Mapping[str, Any] | None:
-    """Return an ask to say a line or words; None where the address is about something else."""
+    """Return an ask to say a line or words; None if the address is about something else."""
     match word:
         case "say":
             line = said.first("line") or ({"line": str(said.plain[0])} if said.plain else {})
@@ -134,7 +134,7 @@ def _field(text: str) -> tuple[str, Any]:
 def texts_of(
     datagram: bytes, now: float | None = None
 ) -> Iterator[tuple[str, bytes | str | OscError | Reply | bool]]:
-    """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, the reply where
+    """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, the reply if
     nothing is asked, or whether replies are wanted. A request of a bundle begins when the bundle's time tag
     says. `now` is in seconds since 1970, the system's if None.
     """

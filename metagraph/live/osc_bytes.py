@@ -33,18 +33,18 @@ def messages_of(datagram: bytes, depth: int = 0) -> Iterator[tuple[str, list[Any
         yield _message(datagram)
         return
     if depth >= DEEPEST:
-        raise OscError(f"bundles lie more than {DEEPEST} deep")
+        raise OscError(f"bundles are nested more than {DEEPEST} deep")
     at = len(_BUNDLE) + 8  # the time at which it should be heard
     count = 0
     while at < len(datagram):
         size = int.from_bytes(datagram[at : at + 4], "big")
         part = datagram[at + 4 : at + 4 + size]
         if not size or size % 4 or len(part) < size:
-            raise OscError(f"the part at byte {at} of a bundle does not fit it")
+            raise OscError(f"the part at byte {at} of a bundle is larger than the bundle")
         for found in messages_of(part, depth + 1):
             count += 1
             if count > MOST:
-                raise OscError(f"it has more than {MOST} messages")
+                raise OscError(f"the bundle has more than {MOST} messages")
             yield found
         at += 4 + size
 
@@ -60,24 +60,24 @@ def seconds_ahead(datagram: bytes, now: float) -> float:
     seconds, part = int.from_bytes(tag[:4], "big"), int.from_bytes(tag[4:], "big")
     ahead = seconds - _SINCE_1900 + part / 2**32 - now
     if ahead > LONGEST_AHEAD:
-        raise OscError(f"its bundle is for {ahead:.0f} s ahead; at most {LONGEST_AHEAD:.0f} s are taken")
+        raise OscError(f"the bundle is for {ahead:.0f} s ahead; at most {LONGEST_AHEAD:.0f} s are allowed")
     return max(0.0, ahead)
 
 
 def _message(data: bytes) -> tuple[str, list[Any]]:
     address, at = _text(data, 0)
     if not address.startswith("/") or not address.isprintable():
-        raise OscError("it does not begin with an address")
+        raise OscError("the message does not begin with an address")
     if at >= len(data):
         return address, []
     types, at = _text(data, at)
     if not types.startswith(","):
-        raise OscError("its types are missing")
+        raise OscError("the type tags are missing")
     stack: list[list[Any]] = [[]]
     for kind in types[1:]:
         if kind == "[":
             if len(stack) > DEEPEST:
-                raise OscError(f"lists lie more than {DEEPEST} deep")
+                raise OscError(f"lists are nested more than {DEEPEST} deep")
             stack.append([])
         elif kind == "]":
             if len(stack) < 2:
@@ -101,14 +101,14 @@ def _value(kind: str, data: bytes, at: int) -> tuple[Any, int]:
         size = int.from_bytes(data[at : at + 4], "big")
         end = at + 4 + size
         if end > len(data):
-            raise OscError(f"it ends within the value at byte {at}")
+            raise OscError(f"the message ends within the value at byte {at}")
         return data[at + 4 : end], end + (-size % 4)
     code = _NUMBERS.get(kind)
     size = struct.calcsize(code) if code is not None else 4
     if kind not in (*_NUMBERS, "c", "r", "m"):
-        raise OscError("it has a value of a type that there is not")
+        raise OscError("the message has a value of an unknown type")
     if at + size > len(data):
-        raise OscError(f"it ends within the value at byte {at}")
+        raise OscError(f"the message ends within the value at byte {at}")
     return (struct.unpack_from(code, data, at)[0] if code is not None else data[at : at + 4]), at + size
 
 

@@ -1,4 +1,4 @@
-"""What a session is told of its partner's mood and laughter, as the ask that its own mood becomes."""
+"""What a session is reported about its partner's mood and laughter, as the ask that its own mood becomes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOOD_SHARE, LAUGH_SHARE = Rates().mood, Rates().laugh
 def partner_feel(
     message: Partner, ident: str, key: str, project: Project, track: Track, now: float
 ) -> Feel | None:
-    """Return what a character feels that is told of its partner; None where it does not laugh along.
+    """Return what a character feels that is reported about its partner; None if it does not laugh along.
 
     ident: of the ask, which a later one replaces. key: the ask's in the plan: what it told before is not
     counted as the character's own.

@@ -25,7 +25,7 @@ SHORTEST = 0.04  # seconds a clause lasts at least
 
 class PlayedVoice:
     """samples `[N]` float32: RATE a second. segments: what is said in them. announce: seconds before a
-    segment begins at which it is told; None where it is only heard. graph: the name of what moves with it.
+    segment begins at which it is reported; None if it is only heard. graph: the name of what moves with it.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class PlayedVoice:
 
 
 def read_played_voice(path: Path, graph: str, announce: float | None = None) -> PlayedVoice:
-    """Read a voice from a sound file, all channels mixed; where it is announced, its clauses are told by
+    """Read a voice from a sound file, all channels mixed; where it is announced, its clauses are given by
     sound. Raises FileError.
     """
     from metagraph.speech.clauses import segment_by_sound

@@ -54,7 +54,7 @@ class Relay:
             except queue.Empty:
                 break
             if data is None:
-                self.error = self.error or "the process that talks to clients has ended"
+                self.error = self.error or "the process that serves clients has ended"
                 break
             if self.ready is None:
                 self.ready = _ready.decode(data)

@@ -1,5 +1,5 @@
-"""Run as a process of its own by `metagraph.live.relay`: it opens a session's lines and passes batches on,
-until its parent has no more to say.
+"""The child process of `metagraph.live.relay`: it opens a session's connections and passes batches on until
+its parent ends.
 """
 
 from __future__ import annotations

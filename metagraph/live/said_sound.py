@@ -1,4 +1,4 @@
-"""The sound of a line as it comes in, and the mouth shapes it tells, where nothing better is told."""
+"""The sound of a line as it comes in, and the mouth shapes it tells, if nothing better is reported."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ class SaidSound:
 
 
 def join_asks(before: Say, ask: Say) -> Say | None:
-    """Return an ask with what another one of the same tick said before it under its id; None where it is in
-    the place of that.
+    """Return an ask with what another one of the same tick said before it under its id; None if it is in the
+    place of that.
     """
     if before.line is not None or ask.line is not None or ask.at is not None:
         return None
@@ -102,9 +102,9 @@ class SaidSounds:
         try:
             data = binascii.a2b_base64(ask.audio or "", strict_mode=True)
         except binascii.Error:
-            raise RequestError("audio: should be base64 of 16-bit numbers") from None
+            raise RequestError("audio: give base64 of 16-bit numbers") from None
         if not data or len(data) % 2:
-            raise RequestError("audio: should be base64 of 16-bit numbers, an even count of bytes")
+            raise RequestError("audio: give base64 of 16-bit numbers, an even number of bytes")
         line = self._lines.get(key)
         if line is None or not goes_on or line.rate != ask.rate:
             line = self._lines[key] = SaidSound(ask.rate)

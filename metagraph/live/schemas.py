@@ -16,7 +16,7 @@ GRAPH, LIVE = (
 )
 
 
-def schema_texts() -> dict[Path, bytes]:
+def make_schema_texts() -> dict[Path, bytes]:
     """Return the files: one request as in performances, lines and agents' messages; all messages of a live
     session.
     """
@@ -28,5 +28,5 @@ def _text(schema: dict[str, Any]) -> bytes:
 
 
 if __name__ == "__main__":
-    for path, text in schema_texts().items():
+    for path, text in make_schema_texts().items():
         path.write_bytes(text)

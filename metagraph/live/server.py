@@ -51,16 +51,16 @@ class LiveError(ValueError):
 def check_live_options(options: Options) -> Options:
     """Return options that are safe. Raises LiveError for those that are not."""
     if options.token is not None and not options.token:
-        raise LiveError("the token is empty; leave it out or give one")
+        raise LiveError("the token is empty; give a token, or leave the option out")
     if not is_loopback(options.host) and options.token is None:
         words = (
-            f"to listen on {options.host} a token is needed, so that not everyone there can move the "
+            f"listening on {options.host} needs a token, so that not everyone there can control the "
             "character; "
         )
         raise LiveError(words + f"choose one, for example --token {secrets.token_urlsafe(12)}")
     for port in (options.port, options.osc, options.vmc[1] if options.vmc is not None else None):
         if port is not None and not 0 <= port <= 65535:
-            raise LiveError(f"a port lies between 0 and 65535, not {port}")
+            raise LiveError(f"a port is a number from 0 to 65535, not {port}")
     return options
 
 
@@ -76,7 +76,7 @@ def is_loopback(host: str) -> bool:
 
 class Server:
     """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from
-    and write them to. project: whose tools are told, where the Model Context Protocol is spoken.
+    and write them to. project: whose tools are reported, where the Model Context Protocol is spoken.
     """
 
     def __init__(

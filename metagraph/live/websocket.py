@@ -108,7 +108,7 @@ class WebSocketLine(asyncio.Protocol):
             return ""  # who knows the token may come from anywhere
         hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
         if self.local and any(_name(host) not in LOCAL for host in hosts):
-            return "this server is for this machine alone; connect to localhost"
+            return "this server only serves this computer; connect to localhost"
         if any(o not in self.origins and _name(o.partition("://")[2]) not in LOCAL for o in origins):
             return (
                 f"web pages of '{origins[0][:100]}' may not connect; start with --origin to let them, or "

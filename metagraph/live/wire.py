@@ -1,5 +1,5 @@
-"""What goes between the side that talks to clients and the side that plans, once a tick; as values or as
-bytes for a pipe.
+"""Messages between the side that serves clients and the side that plans, once a tick, as values or as bytes
+for a pipe.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Ready(Struct, frozen=True, omit_defaults=True):
 
 
 def exchange(session: LiveSession, now: float, batch: RequestBatch | None) -> BatchResult:
-    """Let a session answer a batch at `now`; None for what happens without being asked."""
+    """Let a session answer a batch at `now`. None: only report what happens without requests."""
     batch = RequestBatch() if batch is None else batch
     for client in batch.joined:
         session.join(client)

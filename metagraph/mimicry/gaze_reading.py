@@ -50,8 +50,8 @@ class HeadFollower:
 
 
 def head_turn(points: Array, trust: Array, dims: int) -> tuple[float, float] | None:
-    """Return how far a head is turned to the picture's right and upwards, radians; None where ears or nose
-    are not seen.
+    """Return how far a head is turned to the picture's right and upwards, radians; None if ears or nose are
+    not seen.
     """
     if min(trust[PLACE["nose"]], trust[PLACE["left_ear"]], trust[PLACE["right_ear"]]) <= 0:
         return None

@@ -31,9 +31,9 @@ from metagraph.mimicry.tuning import Tuning
 Array = NDArray[Any]
 
 TURNS = np.radians(np.arange(-60, 61, 10))  # headings that are tried in a picture
-ALIKE = 0.5  # distance below which two stances are not told apart in a picture
+ALIKE = 0.5  # distance below which two stances are not distinguished in a picture
 AWAY = 0.15  # width of the shoulders in a picture, torso lengths, below which somebody turns the back
-LEAST_TRUST = 0.1  # of a running mean in a point, below which it is as good as not seen
+LEAST_TRUST = 0.1  # of a running mean in a point, below which it is almost not seen
 SIDEWAYS = np.array([1.0, 1.0, 0.3])  # how much speed counts along each axis; depth jitters
 
 
@@ -79,7 +79,7 @@ class PersonView:
 class Judge:
     """Tells a layer's stances apart. start: the stance the character is in before anything is known.
 
-    now: place of the stance the person is in, among the signature's; None where that is not known. distances:
+    now: place of the stance the person is in, among the signature's; None if that is not known. distances:
     `[S]` from each stance, None without evidence. bias `[N, 3]`: what of the person's difference from the
     character is got used to.
     """
@@ -124,7 +124,7 @@ class Judge:
         return None if self.now is None else self.signature.stances[self.now]
 
     def view(self, dims: int) -> PersonView | None:
-        """Return the person as they are now; None where they cannot be made out or show the back."""
+        """Return the person as they are now; None if they cannot be made out or show the back."""
         points, trust = self.mean.points(), self.mean.trust
         frame = frame_of(points, trust, dims, self.width)
         if frame is None or (dims == 2 and frame.width < AWAY):

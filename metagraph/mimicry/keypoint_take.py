@@ -40,9 +40,9 @@ class KeypointTakeError(ValueError):
     """These keypoints cannot be made into motion; the message says why, and what to do."""
 
 
-def clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name: str) -> Clip:
+def make_clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name: str) -> Clip:
     """Return a clip of the skeleton at `FPS` frames a second that moves as a person's keypoints do. Raises
-    KeypointTakeError where they are flat, too few, or the skeleton lacks arms, legs or a head.
+    KeypointTakeError if they are flat, too few, or the skeleton lacks arms, legs or a head.
     """
     if keypoints.dims < 3:
         raise KeypointTakeError(

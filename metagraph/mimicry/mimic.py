@@ -50,7 +50,7 @@ class Mimic:
 
     mirror: as somebody face to face does: the character moves its right where the person moves the left.
     layers: those that mimic. gaze: whether it looks where the person's head is turned, too. prefix: of the
-    requests' ids. Raises ValueError where the project has no humanoid character or no stance.
+    requests' ids. Raises ValueError if the project has no humanoid character or no stance.
     """
 
     def __init__(
@@ -90,11 +90,11 @@ class Mimic:
 
     @property
     def seen(self) -> dict[Layer, str]:
-        """Layer -> id of the stance the person is in, where that is known."""
+        """Layer -> id of the stance the person is in, if that is known."""
         return {layer: judge.stance for layer, judge in self.judges.items() if judge.stance is not None}
 
     def distances(self, layer: Layer) -> dict[str, float]:
-        """Stance -> how far the person is from it now; empty where there is no evidence."""
+        """Stance -> how far the person is from it now; empty if there is no evidence."""
         judge = self.judges[layer]
         return (
             {}
@@ -109,12 +109,12 @@ class Mimic:
         confidence: ArrayLike | None = None,
         goals: Mapping[Layer, str] | None = None,
     ) -> list[AnyRequest]:
-        """Take a frame in; return what is asked for because of it, mostly nothing.
+        """Take a frame in; return what is requested because of it, mostly nothing.
 
         seconds: of the frame; one that is not later than the last is passed over. points: `[K, 2]` or `[K,
         3]` of a layout of K points (17, 18, 25 or 33), x right, y up, z towards the camera. confidence: `[K]`
         0..1, all 1 where it is None. goals: layer -> the stance the character is in or goes to, where the
-        caller knows; where it is another than the person's, that is asked for anew. Raises ValueError for
+        caller knows; where it is another than the person's, that is asked for again. Raises ValueError for
         shapes that do not fit.
         """
         weighted, dims = self._weighted(points, confidence)

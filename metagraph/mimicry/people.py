@@ -27,7 +27,7 @@ class SeenPerson:
     ident: int | None = None
 
     def place(self) -> tuple[Array, float] | None:
-        """Return the middle `[2]` of what was found, and its size; None where it is hardly anything."""
+        """Return the middle `[2]` of what was found, and its size; None if it is hardly anything."""
         found = self.points[self.confidence > 0, :2]
         if len(found) < 3:
             return None
@@ -39,11 +39,11 @@ class SeenPerson:
 def follow_person(
     times: Sequence[float], frames: Sequence[Sequence[SeenPerson]], middle: float | None = None
 ) -> Iterator[SeenPerson | None]:
-    """Yield for each frame the person who is followed, None where they are not there.
+    """Yield for each frame the person who is followed, None if they are not there.
 
     The largest is followed, those in the picture's middle (x, where it is known) before those at its edge;
     then whoever is nearest to where they were, or has their number. After PATIENCE seconds without them
-    somebody is chosen anew.
+    somebody is chosen again.
     """
     last: tuple[Array, float] | None = None
     ident, lost = None, 0.0

@@ -45,7 +45,7 @@ def mimic_performance(
 
     into: the performance that what is seen is mixed into: its requests, seed, stances and length; a new one
     where it is None. progress: told how many frames are done, of how many; what it raises ends it. Other
-    arguments as for `Mimic`. Raises ValueError where there is no character, or nobody in the file.
+    arguments as for `Mimic`. Raises ValueError if there is no character, or nobody in the file.
     """
     if not len(keypoints):
         raise ValueError("there is nobody in the keypoints to mimic")
@@ -75,7 +75,7 @@ def _steps(
     into: Performance,
     progress: Callable[[int, int], object] | None,
 ) -> Iterator[list[AnyRequest]]:
-    """Yield what is asked for at each frame at which something is, planning along."""
+    """Yield what is requested at each frame at which something is, planning along."""
     named = [
         ask if ask.id else msgspec.structs.replace(ask, id=f"asked{n}") for n, ask in enumerate(into.asks)
     ]

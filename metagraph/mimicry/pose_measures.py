@@ -1,5 +1,5 @@
-"""What tells stances apart: differences between keypoints, seen from the torso (arms) or upright (body,
-head), in torso lengths.
+"""Measures that distinguish stances: differences between keypoints, seen from the torso (arms) or upright
+(body, head), in torso lengths.
 
 A measure is a weighted sum of points that adds up to a direction, so that neither place nor size nor picture
 matters. `scale` says how far it may be off, in torso lengths, before that counts as 1; they are ours: about
@@ -182,9 +182,9 @@ def straighten(vectors: Array, up: Array) -> Array:
 
 
 def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) -> MeasuredFrame | None:
-    """Return how a person stands whose POINTS are `points [17, 3]`; None where the shoulders do not say.
+    """Return how a person stands whose POINTS are `points [17, 3]`; None if the shoulders do not say.
 
-    Without hips, as at a desk, the torso is taken to be upright, and its length is told from the shoulders'
+    Without hips, as at a desk, the torso is taken to be upright, and its length is given from the shoulders'
     width, of which `usual_width` torso lengths are usual, and the ears' height above them; the more of both,
     since turning away hides the first.
     """

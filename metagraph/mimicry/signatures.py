@@ -54,7 +54,7 @@ class Signature:
 
 
 class BodySignature:
-    """Keypoints of a project's character. Raises ValueError where a project has no humanoid character."""
+    """Keypoints of a project's character. Raises ValueError if a project has no humanoid character."""
 
     def __init__(self, project: Project) -> None:
         if project.skeleton is None:
@@ -121,7 +121,7 @@ class BodySignature:
         return {place: rotation.rotate_vectors(back, v) for place, v in out.items()}
 
     def points(self, pose: Pose) -> Array:
-        """Return the POINTS `[..., 17, 3]` of poses, metres; zeros where there is no such joint (`confidence
+        """Return the POINTS `[..., 17, 3]` of poses, metres; zeros if there is no such joint (`confidence
         [17]` says which).
         """
         turns, places = self.skeleton.globals(pose)
@@ -179,7 +179,7 @@ def _width(body: BodySignature, pose: Pose) -> float:
 
 
 def _seen(project: Project, body: BodySignature, layer: Layer, rest: Rest) -> Array | None:
-    """Return the POINTS `[17, 3]` of a loop, averaged; None where they make no figure."""
+    """Return the POINTS `[17, 3]` of a loop, averaged; None if they make no figure."""
     start, end = project.span(rest.action)
     layers = {x: LayerPlan(x, rests=(rest,)) if x == layer else LayerPlan(x) for x in LAYERS}
     times = np.linspace(0.0, max(0.0, end - start - rest.action.timing.blend_in), FRAMES, endpoint=False)

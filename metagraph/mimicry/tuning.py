@@ -17,8 +17,8 @@ class Judging:
     which somebody may come into a stance. way: share of the way there from the one before that they must have
     gone. dwell: for how many seconds. used: how much is got used to of how a person differs from the
     character in the stance they are in, usual differences. mistaken: by how many tens of degrees the heading
-    in a picture may be, for stances to be told apart all the same. Distances are those of `measures`: 1 is as
-    far off as is usual.
+    in a picture may be, for stances to be distinguished all the same. Distances are those of `measures`: 1 is
+    as far off as is usual.
     """
 
     smooth: float
@@ -47,8 +47,8 @@ class Tuning:
     how a person differs from the character; using_first: the same at first, it grows with the time that
     somebody has been seen. way_first: share of the way from the start stance to another that somebody must
     have gone who is seen for the first time. left: distance beyond which somebody has left a stance, whatever
-    they are in now. again: after which a stance the character is not in is asked for anew; each time twice as
-    long. gap: after which all begins anew. lost: after which somebody who is not seen is gone.
+    they are in now. again: after which a stance the character is not in is asked for again; each time twice
+    as long. gap: after which all begins again. lost: after which somebody who is not seen is gone.
     """
 
     layers: Mapping[Layer, Judging] = field(default_factory=lambda: JUDGING)

@@ -83,7 +83,7 @@ class _Match:
         between = sum(len(chain) - 1 for chains in (self.own, self.ours) for chain in chains.values())
         if between > _BETWEEN:
             return phrase(
-                "{count} joints between those of the same names are there in one skeleton alone",
+                "{count} joints between the matched ones exist in only one of the skeletons",
                 count=between,
             )
         theirs, mine = self._lengths()

@@ -106,7 +106,7 @@ class CharacterMesh:
 
 def explain_no_character(body: CharacterMesh, skeleton: Skeleton | None = None) -> str | None:
     """Return why a mesh is no character to draw on a skeleton (its own, if none is given), in words that
-    follow "its mesh"; None where it is one.
+    follow "its mesh"; None if it is one.
 
     Files of animations often hold a stand-in, since a skin needs a mesh. What is asked is whether there is
     something to see, of the size of the skeleton or where its joints are, that moves with it; not what it is
@@ -154,7 +154,7 @@ def followers(own: Skeleton, skeleton: Skeleton) -> tuple[Array, Array]:
 
 def bind_character(body: CharacterMesh, skeleton: Skeleton) -> CharacterMesh:
     """Return a character on a skeleton that is not its own, its joints matched by name as `followers` says,
-    and its surface as that skeleton's rest pose moves it. Raises ValueError where no joint matches.
+    and its surface as that skeleton's rest pose moves it. Raises ValueError if no joint matches.
     """
     follow, places = followers(body.skeleton, skeleton)
     if places.min() < 0:

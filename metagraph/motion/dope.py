@@ -29,9 +29,9 @@ class DopeSheet:
     parts: Array
 
 
-def dope_sheet(clip: Clip, groups: Mapping[str, str] | None = None) -> DopeSheet:
-    """Return what moves in a clip. groups: joint -> the line it is told of in, as fast as the fastest of
-    them; joints that are not named there are left out. Without it every joint has a line.
+def make_dope_sheet(clip: Clip, groups: Mapping[str, str] | None = None) -> DopeSheet:
+    """Return what moves in a clip. groups: joint -> the line that reports it, as fast as the fastest
+    of them; joints that are not named there are left out. Without it every joint has a line.
     """
     turned = np.zeros((clip.frames, len(clip.skeleton)))
     if clip.frames > 1:

@@ -55,7 +55,7 @@ def keep_in_place(clip: Clip) -> Clip:
     )
 
 
-def travel_of(clip: Clip, hips: int, start: float, end: float) -> float:
+def measure_travel(clip: Clip, hips: int, start: float, end: float) -> float:
     """Return how far the hips are over the ground from where they were, metres, between two seconds."""
 
     def measure() -> float:

@@ -12,7 +12,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from metagraph.motion.joint_names import joint_kind, split_joint_name
+from metagraph.motion.joint_names import guess_joint_kind, split_joint_name
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 
@@ -251,4 +251,4 @@ def _unnamed(name: str, role: str) -> int:
     """Return 1 if the name alone does not say the role, else 0."""
     words = split_joint_name(name)
     bare = role.removeprefix("left_").removeprefix("right_")
-    return int(joint_kind(words) != bare and bare.replace("_", "") not in words.joined)
+    return int(guess_joint_kind(words) != bare and bare.replace("_", "") not in words.joined)

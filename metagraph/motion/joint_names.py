@@ -69,7 +69,7 @@ def split_joint_name(name: str) -> JointWords:
 
 
 @lru_cache(maxsize=4096)
-def joint_kind(words: JointWords) -> str:
+def guess_joint_kind(words: JointWords) -> str:
     """Return what a name alone says of a limb's joint; "" when it says nothing, or nothing certain."""
     own, joined = set(words.words), words.joined
     if own & _FOUR_LEGGED and ("leg" in joined or "foot" in joined or "paw" in joined or "toe" in joined):

@@ -76,7 +76,7 @@ class LimbGoals:
         )
 
     def outwards(self, upper: str) -> Array:
-        """Return the directions `[F, 3]` from which the bend of the limb of that role is reckoned."""
+        """Return the directions `[F, 3]` from which the bend of the limb of that role is computed."""
         side, kind = upper.split("_", 1)
         beside = OUTWARDS[kind] * [1 if side == "left" else -1, 1, 1]
         trunk = "hips" if kind == "upper_leg" else self.chest

@@ -21,7 +21,7 @@ def bent(
     """Return where the middle joint and the end come to, `[F, 3]` from the limb's root.
 
     goal: `[F, 3]`, from the root. one, two: lengths of the bones. start: `[F, 3]` directions from which turns
-    about the limb are reckoned, by the shortest way, so that they are the same there and back. source: places
+    about the limb are computed, by the shortest way, so that they are the same there and back. source: places
     of the limb that is followed, each `[F, 3]`. pole: `[F, 3]` where a straight limb bends to.
     """
     goal = clamp_to_reach(goal, abs(one - two) + 1e-3 * (one + two), one + two)

@@ -2,7 +2,8 @@
 other arm, the target's comes to the same place of its own body.
 
 Parts of the body are lines with a radius, a head is a ball; all are sized by the figure's own bones, so that
-no mesh is needed. A place is told by how far it is along the part's line and by what way it lies beside it.
+no mesh is needed. A place is given by how far it is along the part's line and by what way it lies beside
+it.
 """
 
 from __future__ import annotations
@@ -142,7 +143,7 @@ class _Place:
 
 
 class OwnContact:
-    """What a motion's hands meet of their own body, and where that is on another figure.
+    """What a motion's hands meet of their own body, and if that is on another figure.
 
     near: side -> `[F]`, 1 where a hand touches, 0 where it is far from all. Motions as `Body.points` gives
     them.

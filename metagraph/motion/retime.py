@@ -23,7 +23,7 @@ LONGEST = 20.0  # seconds of a hold
 SHORTEST = 0.02  # seconds of a hold worth the name
 MOST = 16  # holds of a clip
 RAMP = 0.16  # seconds in which a hold is come to and left, so that nothing stops dead
-FINE = 480.0  # moments a second at which a clip's course is reckoned
+FINE = 480.0  # moments a second at which a clip's course is computed
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +160,7 @@ def _ramps(retime: Retime, duration: float) -> list[float]:
 
 
 def apply_retiming(clip: Clip, retime: Retime) -> Clip:
-    """Return a clip as a retiming plays it; the same clip where that is as it is."""
+    """Return a clip as a retiming plays it; the same clip if that is as it is."""
     if retime.plain or clip.frames < 2:
         return clip
     clip = hold_hands(clip, retime.contacts)

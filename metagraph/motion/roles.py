@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 
-from metagraph.motion.joint_names import ARM, FACE, HELPERS, joint_kind, split_joint_name
+from metagraph.motion.joint_names import ARM, FACE, HELPERS, guess_joint_kind, split_joint_name
 from metagraph.motion.roles_by_shape import roles_by_shape
 from metagraph.motion.skeleton import Skeleton
 
@@ -53,7 +53,7 @@ class _Reader:
         helpers = [bool(HELPERS & set(w.words)) for w in self.words]
         common = sum(helpers) > len(helpers) / 2  # a word that most joints bear says nothing
         self.helper = [False] * len(helpers) if common else helpers
-        self.kinds = ["" if h else joint_kind(w) for w, h in zip(self.words, self.helper, strict=True)]
+        self.kinds = ["" if h else guess_joint_kind(w) for w, h in zip(self.words, self.helper, strict=True)]
         self.parents = [int(p) for p in skeleton.parents]
         self.roles: dict[str, int] = {}
 

@@ -176,7 +176,7 @@ class _Shape:
 
 def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
     """Return role -> joint for a figure in a rest pose that stands: two legs, two arms, a head; {} for
-    anything else. Sides are told by where the toes point, without toes as if it faced +Z.
+    anything else. Sides are given by where the toes point, without toes as if it faced +Z.
     """
     shape = _Shape(skeleton)
     pairs = shape.pairs()
@@ -212,7 +212,7 @@ def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
 
 def _arms(shape: _Shape, pairs: Sequence[tuple[int, int]], ground: int) -> tuple[tuple[int, int], int] | None:
     """Return the longest pair of limbs that hangs above the joint `ground` of the legs, not on it, and the
-    joint it hangs on; None where there is no such pair.
+    joint it hangs on; None if there is no such pair.
     """
     best: tuple[float, tuple[int, int], int] | None = None
     below_legs = set(shape.above(ground))

@@ -1,4 +1,4 @@
-"""How a figure stands: the pose that turns are reckoned from, its measures, and what brings one figure's
+"""How a figure stands: the pose that turns are computed from, its measures, and what brings one figure's
 standing pose to another's.
 
 All is in the character's axes: +X to its left, +Y up, +Z ahead.

@@ -27,8 +27,8 @@ ARGYLE = phrase("Argyle and Ingham 1972")
 
 @dataclass(frozen=True)
 class BehaviourRow:
-    """One thing that was counted. least, most: what people do, None where nobody has published it; source:
-    who has. share: whether the value is a share of the whole, 0..1.
+    """One thing that was counted. least, most: what people do, None if nobody has published it; source: who
+    has. share: whether the value is a share of the whole, 0..1.
     """
 
     name: Phrase
@@ -41,7 +41,7 @@ class BehaviourRow:
 
     @property
     def usual(self) -> bool | None:
-        """Whether people do it about as often, None where nobody knows."""
+        """Whether people do it about as often, None if nobody knows."""
         if self.least is None and self.most is None:
             return None
         low = 0.0 if self.least is None else self.least
@@ -55,7 +55,7 @@ class BehaviourRow:
 
     @property
     def compared(self) -> Phrase:
-        """What people do, or what is aimed at; empty where nobody knows."""
+        """What people do, or what is aimed at; empty if nobody knows."""
         if self.most is None:
             return phrase("")
         most = self._number(self.most)
@@ -152,7 +152,7 @@ def _acts(project: Project, plan: Plan, seconds: float) -> list[BehaviourRow]:
         out.append(
             BehaviourRow(
                 name,
-                repeated_share(acts, span),
+                measure_repeated_share(acts, span),
                 phrase("of them"),
                 None,
                 most,
@@ -178,7 +178,7 @@ def _tilted(project: Project, plan: Plan, seconds: float) -> float:
     )
 
 
-def repeated_share(cues: Sequence[Cue], seconds: float) -> float:
+def measure_repeated_share(cues: Sequence[Cue], seconds: float) -> float:
     """Return the share of cues whose action began already within `seconds` before, 0..1."""
     last: dict[str, float] = {}
     again = 0

@@ -22,7 +22,7 @@ from metagraph.graph.model import LAYERS, Action, Project
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.own_moves import RATE, body_joints, play_clips
+from metagraph.playback.own_moves import RATE, find_body_joints, play_clips
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 from metagraph.playback.posing.composer import find_composer
 from metagraph.playback.posing.cue_times import SEAM
@@ -73,7 +73,7 @@ class ContinuityLaw:
         if project.skeleton is None:
             raise ValueError("The project has no skeleton: import a clip first.")
         self.project, self.skeleton = project, project.skeleton
-        self.joints = moved_joints(project)
+        self.joints = find_moved_joints(project)
         self._size = max(1e-6, project.skeleton.height / TALL)
 
     def added(self, stages: Iterable[tuple[str, Pose]]) -> Mapping[str, AddedMoves]:
@@ -89,12 +89,12 @@ class ContinuityLaw:
                 nothing = np.zeros((max(0, len(after[0]) - 1), len(self.joints)))
                 out[name] = AddedMoves(nothing, nothing)
             elif before is not None:
-                out[name] = added_moves(before, after, self._size)
+                out[name] = measure_added_moves(before, after, self._size)
             before, pose = after, shown
         return out
 
     def blended(self, plan: Plan, times: Array, shown: Pose) -> AddedMoves:
-        """Return what blends do beyond what the clips do; nothing where nothing blends.
+        """Return what blends do beyond what the clips do; nothing if nothing blends.
 
         times `[N]`: a sixtieth of a second apart. shown: what the layers of `plan` compose then.
         """
@@ -112,7 +112,7 @@ class ContinuityLaw:
 
     @cached_property
     def _usual(self) -> tuple[Array, Array]:
-        return usual_moves(self.project, self.joints)
+        return measure_usual_moves(self.project, self.joints)
 
     def _own(self, plan: Plan, times: Array) -> tuple[Array, Array]:
         """Return how far joints go, metres, and turn, radians, from each time to the next, `[N-1, J]`, where
@@ -144,15 +144,15 @@ class ContinuityLaw:
         return near
 
 
-def moved_joints(project: Project) -> list[int]:
-    """Return the joints that the law is about: those of the body, as `body_joints` says, with fingers and
-    without the face.
+def find_moved_joints(project: Project) -> list[int]:
+    """Return the joints that the law is about: those of the body, as `find_body_joints` says, with fingers
+    and without the face.
     """
     assert project.skeleton is not None
     roles = anatomy.project_roles(project)
     known = find_known_roles(project.skeleton, roles)
     face = {roles[role] for role in FACE if role in roles}
-    return [joint for joint in body_joints(project.skeleton, known) if joint not in face]
+    return [joint for joint in find_body_joints(project.skeleton, known) if joint not in face]
 
 
 def moves_of(shown: Globals) -> tuple[Array, Array]:
@@ -163,7 +163,7 @@ def moves_of(shown: Globals) -> tuple[Array, Array]:
     return np.diff(at, axis=0), rotation.log(rotation.multiply(turned[1:], rotation.conjugate(turned[:-1])))
 
 
-def added_moves(before: Globals, after: Globals, size: float = 1.0) -> AddedMoves:
+def measure_added_moves(before: Globals, after: Globals, size: float = 1.0) -> AddedMoves:
     """Return what is added to poses. size: of the figure, as a share of TALL."""
     ways, turns = (_beyond(a, b) for a, b in zip(moves_of(after), moves_of(before), strict=True))
     return AddedMoves(ways / size, turns)
@@ -181,7 +181,7 @@ def measure_moves(moves: tuple[Array, Array]) -> tuple[Array, Array]:
     return np.linalg.norm(moves[0], axis=-1), np.linalg.norm(moves[1], axis=-1)
 
 
-def usual_moves(project: Project, joints: list[int]) -> tuple[Array, Array]:
+def measure_usual_moves(project: Project, joints: list[int]) -> tuple[Array, Array]:
     """Return how far each joint goes, metres, and turns, radians, in a sixtieth of a second of the clips,
     `[J]` each: the USUAL percentile over all that plays.
     """
@@ -230,7 +230,7 @@ def _seams(project: Project, plan: Plan) -> Iterator[tuple[float, float]]:
 
 
 def _rounds(project: Project, plan: Plan, of: LayerPlan) -> Iterator[tuple[Rest, list[float]]]:
-    """Yield each rest of a layer, and when its loop begins anew."""
+    """Yield each rest of a layer, and when its loop begins again."""
     ends = [*(rest.fade_start + rest.fade for rest in of.rests[1:]), plan.end]
     for rest, end in zip(of.rests, ends, strict=False):
         first, last = project.span(rest.action)

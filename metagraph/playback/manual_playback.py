@@ -34,8 +34,8 @@ from metagraph.playback.posing.layers import (
     crossfade,
     ease_blend,
     keep_to,
+    make_zero_offsets,
     sample_offsets,
-    zero_offsets,
 )
 from metagraph.playback.posing.rigs import rigs_of
 
@@ -209,9 +209,7 @@ def _turn(project: Project, state: State, start: float, link: Link | None) -> Pl
 
 
 def _drawn(manual: Manual, state: State, seed: int, visit: int) -> Link | None:
-    """Draw the finished link by which a state will be left at its `visit`-th turn, None where there is
-    none.
-    """
+    """Draw the finished link by which a state will be left at its `visit`-th turn, None if there is none."""
     finished = {x.id: x for x in manual.leaving(state.id) if x.condition.when == "finished"}
     weights = {i: x.condition.weight for i, x in finished.items() if x.condition.weight > 0}
     return finished[pick(seed, f"{state.id} {visit}", "link", weights)] if weights else None
@@ -231,8 +229,8 @@ def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
 
 
 def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
-    """Return the fewest links from a state whose last waits for a trigger, None where there is no way. Of
-    equals the first drawn.
+    """Return the fewest links from a state whose last waits for a trigger, None if there is no way. Of equals
+    the first drawn.
     """
     before: dict[str, tuple[str, Link] | None] = {state: None}
     queue = [state]
@@ -269,7 +267,7 @@ def play_state_alone(project: Project, ident: str) -> ManualPlan:
 def link_alone(project: Project, ident: str) -> ManualPlan:
     """Return a plan of one link: its source's last second, the blend, its target's first. Raises KeyError.
 
-    Of a link from several states the start is the source, or where that is not one of them, or the target,
+    Of a link from several states the start is the source, or if that is not one of them, or the target,
     another of them.
     """
     link = project.link(ident)
@@ -386,7 +384,7 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     """
     motion = playable(project, turn.action)
     if motion is None:
-        return zero_offsets(len(times), len(reach.joints))
+        return make_zero_offsets(len(times), len(reach.joints))
     shown = sample_offsets(ground, reach, motion, clip_seconds(project, turn, times))
     mask = anatomy.action_mask(project, turn.action)
     if mask is not None:

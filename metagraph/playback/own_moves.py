@@ -20,7 +20,7 @@ Array = NDArray[Any]
 RATE = 60.0  # poses a second that are looked at
 
 
-def body_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> list[int]:
+def find_body_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> list[int]:
     """Return the joints of the body itself, with what its feet end in; without control joints, props and
     clothes, which may be anywhere. All joints where no roles are known.
     """

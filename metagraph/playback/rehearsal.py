@@ -20,11 +20,11 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
-from metagraph.motion.in_place import travel_of
+from metagraph.motion.in_place import measure_travel
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.continuity import ContinuityLaw
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
-from metagraph.playback.own_moves import RATE, body_joints, own_moves, play_clips
+from metagraph.playback.own_moves import RATE, find_body_joints, own_moves, play_clips
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import improvise, plan_performance
 from metagraph.playback.posing.composer import playable
@@ -170,13 +170,13 @@ def _chunks(seconds: float) -> int:
 
 
 def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool]) -> PlayedPoses | None:
-    """Return what is seen of a plan; None where it was cancelled."""
+    """Return what is seen of a plan; None if it was cancelled."""
     skeleton = project.skeleton
     assert skeleton is not None
     roles = anatomy.project_roles(project)
     parts = tuple(part for part in PARTS if part in roles)
     joints = [roles[part] for part in parts]
-    body = body_joints(skeleton, roles)
+    body = find_body_joints(skeleton, roles)
     contacts = rigs_of(project).contacts
     evaluator = Evaluator(plan, project)
     times = np.arange(round(seconds * RATE)) / RATE
@@ -460,7 +460,7 @@ class _Findings:
         if action is None or clip is None or self.project.skeleton is None:
             return False
         hips = anatomy.project_roles(self.project).get("hips", 0)
-        far = travel_of(clip, hips, *self.project.span(action))
+        far = measure_travel(clip, hips, *self.project.span(action))
         return not self.project.clips[action.clip].in_place and far > GLIDES * self.size
 
     def _floor(self) -> Iterator[Problem]:
@@ -485,15 +485,15 @@ class _Findings:
             far, share = 100 * abs(float(self.seen.lowest[worst])), len(frames) / len(self.seen.times)
             words = (
                 phrase(
-                    "the character is {length:.0f} cm under the floor for {share:.0%} of the time",
+                    "the character is {length:.0f} cm under the floor for {share:.0f} % of the time",
                     length=far,
-                    share=share,
+                    share=100 * share,
                 )
                 if code == "play-under-floor"
                 else phrase(
-                    "the character floats {length:.0f} cm above the floor for {share:.0%} of the time",
+                    "the character floats {length:.0f} cm above the floor for {share:.0f} % of the time",
                     length=far,
-                    share=share,
+                    share=100 * share,
                 )
             )
             remedy = phrase("Set the height of the clip in the program it is from, or skip the clip.")
@@ -512,10 +512,9 @@ class _Findings:
             return
         frame = int(np.argmax(self.seen.inside))
         words = phrase(
-            "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0%} of all that was "
-            "played",
+            "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0f} % of the time",
             length=100 * float(self.seen.inside[frame]),
-            share=float(over.mean()),
+            share=100 * float(over.mean()),
         )
         remedy = phrase(
             "Turn on keeping hands out of the body under Life, or skip the gesture in this stance."

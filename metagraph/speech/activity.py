@@ -110,7 +110,7 @@ def is_not_crosstalk(heard: HeardSound, partner: HeardSound) -> Array:
     count = min(len(heard.level), len(partner.level))
     if (
         not np.isfinite(bleed) or bleed > -3.0
-    ):  # one's own voice is as loud there: the two cannot be told apart by that
+    ):  # one's own voice is as loud there: the two cannot be distinguished by that
         return np.ones(len(heard.level), bool)
     out = np.ones(len(heard.level), bool)
     # Rooms answer late: what came over in the last 30 ms counts.

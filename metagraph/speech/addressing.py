@@ -57,7 +57,7 @@ class Role:
     turn: AddressedTurn | None = None
 
 
-def speaking_spans(segments: Iterable[Segment]) -> list[tuple[float, float]]:
+def find_speaking_spans(segments: Iterable[Segment]) -> list[tuple[float, float]]:
     """Return when someone speaks, with pauses shorter than `TURN` closed."""
     out: list[tuple[float, float]] = []
     for s in segments:
@@ -106,7 +106,7 @@ def _turns(conversation: Conversation, side: int) -> Iterable[AddressedTurn]:
     """Yield a side's turns: parted where it says that it speaks to somebody else."""
     segments = conversation.sides[side].segments
     names = {n: split_tokens(conversation.sides[n].name) for n in others_of(conversation, side)}
-    ends = iter([end for _, end in speaking_spans(segments)])
+    ends = iter([end for _, end in find_speaking_spans(segments)])
     end = next(ends, 0.0)
     some: list[Segment] = []
     for s in segments:

@@ -49,7 +49,7 @@ def read_caption_words(grid: TextGrid) -> tuple[Word, ...]:
 
 
 def describe_line(line: Line, folder: Path) -> tuple[Word, ...]:
-    """Return the words of a line whose times are told in its TextGrid; none where they are not. folder: what
+    """Return the words of a line whose times are given in its TextGrid; none where they are not. folder: what
     its path begins at.
     """
     if line.phones is None:
@@ -85,7 +85,7 @@ def list_timed_words(speech: Speech, lines: Mapping[str, Sequence[Word]]) -> tup
     return tuple(Word(text=text, start=first, end=last) for text, first, last in placed if first < speech.end)
 
 
-def captions_of(words: Iterable[Word], side: int = 0) -> list[Caption]:
+def make_captions(words: Iterable[Word], side: int = 0) -> list[Caption]:
     """Return captions of words with their times: a new one after a sentence, a pause, or where it is full."""
     out: list[Caption] = []
     held: list[Word] = []
@@ -107,7 +107,7 @@ def captions_of(words: Iterable[Word], side: int = 0) -> list[Caption]:
     return _standing(out)
 
 
-def captions_of_text(speech: Speech, text: str, side: int = 0) -> list[Caption]:
+def make_captions_of_text(speech: Speech, text: str, side: int = 0) -> list[Caption]:
     """Return captions of a text whose words' times are not known: each has its share by its letters."""
     words, whole = text.split(), max(1, sum(len(w) + 1 for w in text.split()))
     each, at = max(0.0, speech.end - speech.start) / whole, speech.start
@@ -116,16 +116,16 @@ def captions_of_text(speech: Speech, text: str, side: int = 0) -> list[Caption]:
         end = at + each * (len(word) + 1)
         timed.append(Word(text=word, start=at, end=end))
         at = end
-    return captions_of(timed, side)
+    return make_captions(timed, side)
 
 
-def conversation_captions(conversation: Conversation) -> tuple[Caption, ...]:
+def make_conversation_captions(conversation: Conversation) -> tuple[Caption, ...]:
     """Return the captions of all who talk, by start."""
-    some = (c for n, side in enumerate(conversation.sides) for c in captions_of(side.words, n))
+    some = (c for n, side in enumerate(conversation.sides) for c in make_captions(side.words, n))
     return tuple(sorted(some, key=lambda c: c.start))
 
 
-def captions_at(captions: Iterable[Caption], seconds: float) -> list[Caption]:
+def find_captions_at(captions: Iterable[Caption], seconds: float) -> list[Caption]:
     """Return what is to be read at a time, who began first above."""
     return [c for c in captions if c.start <= seconds < c.end]
 

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from metagraph.graph.conversation.model import SHORTEST, Segment, Spoken, Word
 from metagraph.graph.vocabulary import Vocabulary, join_tokens, kinds_of_words, split_tokens
 from metagraph.speech.activity import PAUSE, SpokenStretch, activity
-from metagraph.speech.language_packs import LanguagePack, english_pack
+from metagraph.speech.language_packs import LanguagePack, read_english_pack
 from metagraph.speech.pitch import Pitch, peaks, smooth
 from metagraph.speech.sound import HeardSound
 from metagraph.speech.stress import CLOSED, rate_stresses, split_into_clauses
@@ -71,7 +71,7 @@ def segments(
     words = order_words(words, heard.duration)
     if not words:
         return segment_by_sound(words, pitch, heard, partner)
-    spoken = language if language is not None else english_pack()
+    spoken = language if language is not None else read_english_pack()
     lists = [
         tuple(own if some is None else some)
         for own, some in ((spoken.responses, responses), (spoken.hesitations, hesitations))

@@ -1,30 +1,31 @@
-"""What became of a side's rates: how much was asked, drawn and performed."""
+"""Count how many movements a side's rates request, how many were chosen, and how many play."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from metagraph.common.wording import phrase
 from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.timing.phases import phases
-from metagraph.speech.drive import TOLERANCE, clause_peak, draw_segments, key_segments
+from metagraph.speech.drive import TOLERANCE, draw_segments, find_clause_peak, key_segments
 
 NAMES = {
-    "clause": "clauses with a gesture",
-    "response": "responses with a nod",
-    "hesitation": "partner's hesitations with a nod",
+    "clause": phrase("clauses with a gesture"),
+    "response": phrase("responses with a nod"),
+    "hesitation": phrase("partner's hesitations with a nod"),
 }
 NEAR = 1.0  # seconds after a segment within which a nod is its
 
 
 @dataclass(frozen=True, slots=True)
 class Delivered:
-    """Of one kind of segments that a side moves with. count: how many there are. asked: the rate, 0..1.
-    drawn: how many were drawn to get a movement. performed: how many have one: a clause where its peak lies
-    between a gesture's stroke and the end of its hold, others where a nod begins in time. strokes: clauses
-    that have a stroke of their own, within `TOLERANCE` of the peak.
+    """One kind of segment that a side moves with. count: number of segments. asked: the rate, 0..1. drawn:
+    number of segments that were chosen to get a movement. performed: number that have one: a clause if its
+    peak is between a gesture's stroke and the end of its hold, the others if a nod begins in time. strokes:
+    number of clauses with a stroke within `TOLERANCE` of the peak.
     """
 
     kind: Spoken
@@ -35,16 +36,37 @@ class Delivered:
     strokes: int
 
     def words(self) -> str:
-        """Say it: "clauses with a gesture: asked 75 %, drawn 10 of 13 (77 %), performed 9 (69 %), 6 of them
-        by a stroke of their own".
+        """Return a sentence, such as "clauses with a gesture: 75 % requested, 10 of 13 chosen (77 %), 9
+        performed (69 %), 6 of them with a stroke on the stress".
         """
+        name = NAMES[self.kind]
         if not self.count:
-            return f"{NAMES[self.kind]}: there are none"
-        own = f", {self.strokes} of them by a stroke of their own" if self.kind == "clause" else ""
-        return (
-            f"{NAMES[self.kind]}: asked {100 * self.asked:.0f} %, drawn {self.drawn} of {self.count} "
-            f"({100 * self.drawn / self.count:.0f} %), performed {self.performed} "
-            f"({100 * self.performed / self.count:.0f} %){own}"
+            return phrase("{name}: none", name=name)
+        asked, chosen = 100 * self.asked, 100 * self.drawn / self.count
+        played = 100 * self.performed / self.count
+        if self.kind != "clause":
+            return phrase(
+                "{name}: {asked:.0f} % requested, {drawn} of {count} chosen ({chosen:.0f} %), {performed} "
+                "performed ({played:.0f} %)",
+                name=name,
+                asked=asked,
+                drawn=self.drawn,
+                count=self.count,
+                chosen=chosen,
+                performed=self.performed,
+                played=played,
+            )
+        return phrase(
+            "{name}: {asked:.0f} % requested, {drawn} of {count} chosen ({chosen:.0f} %), {performed} "
+            "performed ({played:.0f} %), {strokes} of them with a stroke on the stress",
+            strokes=self.strokes,
+            name=name,
+            asked=asked,
+            drawn=self.drawn,
+            count=self.count,
+            chosen=chosen,
+            performed=self.performed,
+            played=played,
         )
 
 
@@ -79,11 +101,11 @@ def _told(cue: Cue, project: Project) -> tuple[float, float]:
 
 
 def _strikes(segment: Segment, told: Sequence[tuple[float, float]]) -> bool:
-    return any(abs(stroke - clause_peak(segment)) <= TOLERANCE for stroke, _ in told)
+    return any(abs(stroke - find_clause_peak(segment)) <= TOLERANCE for stroke, _ in told)
 
 
 def _covered(segment: Segment, told: Sequence[tuple[float, float]]) -> bool:
-    peak = clause_peak(segment)
+    peak = find_clause_peak(segment)
     return any(stroke - TOLERANCE <= peak <= end + TOLERANCE for stroke, end in told)
 
 

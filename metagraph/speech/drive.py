@@ -32,7 +32,7 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.timing.phases import phases
-from metagraph.speech.addressing import TURN, speaking_spans
+from metagraph.speech.addressing import TURN, find_speaking_spans
 from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import looks_of
 from metagraph.speech.mode_spans import list_modes
@@ -92,7 +92,9 @@ def drive_side(
         if key not in drawn:
             continue
         if s.kind == "clause" and "gesture" in kinds["arms"] and not together:
-            out.append(Gesture(id=key, at=s.start, stroke=clause_peak(s), tags=tags[key], priority=CLAUSE))
+            out.append(
+                Gesture(id=key, at=s.start, stroke=find_clause_peak(s), tags=tags[key], priority=CLAUSE)
+            )
         elif s.kind != "clause" and nods:
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
@@ -103,7 +105,7 @@ def drive_side(
         out += listened
         busy += [(nod.at or 0.0, (nod.at or 0.0) + 1.0) for nod in listened]
     if "transition" in kinds["body"]:
-        own = speaking_spans(conversation.sides[side].segments)
+        own = find_speaking_spans(conversation.sides[side].segments)
         for n, (start, end) in enumerate(own):
             if end - start > TURN and uniform(conversation.seed, str(side), f"shift {n}") < SHIFTS:
                 out.append(
@@ -134,7 +136,7 @@ def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Ite
         yield Look(id=f"look {n}", at=look.at, to=f"{PARTNER} {look.side + 1}")
 
 
-def partner_points(plan: Plan) -> dict[int, Point]:
+def find_partner_points(plan: Plan) -> dict[int, Point]:
     """Return where the others' heads are in the plan of one of three or more, by the others' numbers."""
     named = ((p.name.removeprefix(f"{PARTNER} "), p.point) for p in plan.track.places)
     return {int(number) - 1: point for number, point in named if number.isdecimal()}
@@ -150,7 +152,7 @@ def draw_segments(conversation: Conversation, side: int) -> frozenset[str]:
     )
 
 
-def clause_peak(segment: Segment) -> float:
+def find_clause_peak(segment: Segment) -> float:
     """Return where a clause's stress is, its middle if that is unknown."""
     return (segment.start + segment.end) / 2 if segment.peak is None else segment.peak
 
@@ -171,7 +173,7 @@ def _chosen(
     every = [a for a in every if a.cooldown <= 0] or every
     said = [(key, s) for key, s in key_segments(segments_heard_by(conversation, side)) if s.kind == "clause"]
     clauses = [
-        GestureClause(key, clause_peak(s), key in drawn, _fitting(every, tags[key])) for key, s in said
+        GestureClause(key, find_clause_peak(s), key in drawn, _fitting(every, tags[key])) for key, s in said
     ]
     for one in choose_gestures(project, clauses, conversation.seed, conversation.length):
         (key, s), clause = said[one.clause], clauses[one.clause]

@@ -123,8 +123,8 @@ def side_line(side: Side) -> Line:
 
 
 def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None, ...], tuple[str, ...]]:
-    """Return each side's voice, None where its sound is missing, and what could not be read, in words.
-    folder: what paths begin at.
+    """Return each side's voice, None if its sound is missing, and what could not be read, in words. folder:
+    what paths begin at.
     """
     found: list[Voice | None] = []
     notes: list[str] = []

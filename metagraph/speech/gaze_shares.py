@@ -1,5 +1,5 @@
-"""How much of the time whom is looked at, as it comes out: the gaze of a plan, with life's looks away and
-darts of the eyes, sampled and told by role.
+"""Measure whom a speaker looks at, and for how long: the gaze of a plan is sampled, with the looks away and
+the eye darts that life adds, and counted for each role.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import asin, atan, atan2, hypot
 from typing import Literal
 
+from metagraph.common.wording import phrase
 from metagraph.graph.conversation.model import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Point
@@ -16,16 +17,16 @@ from metagraph.playback.life.gaze import BodyGaze
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.rigs import rigs_of
 from metagraph.speech.addressing import roles_of
-from metagraph.speech.drive import partner_points
+from metagraph.speech.drive import find_partner_points
 
 FACE = 0.14  # metres round the middle of a head that are its face, hair and chin with it
 STEP, MOST = 0.1, 6000  # seconds between samples at least, and samples at most
 Doing = Literal["addressed", "aside", "speaking", "speaking to all"]
-NAMES: dict[Doing, tuple[str, str]] = {
-    "addressed": ("addressed, looks", "at the speaker"),
-    "aside": ("listening aside, looks", "at the speaker"),
-    "speaking": ("speaking, looks", "at the one addressed"),
-    "speaking to all": ("speaking to all, looks", "at one of them"),
+NAMES: dict[Doing, str] = {
+    "addressed": phrase("when addressed, looks at the speaker"),
+    "aside": phrase("when listening aside, looks at the speaker"),
+    "speaking": phrase("when speaking to one, looks at that one"),
+    "speaking to all": phrase("when speaking to all, looks at one of them"),
 }
 
 
@@ -48,22 +49,30 @@ class GazeShare:
         return self.main / seen if seen > 0 else None
 
     def words(self) -> str:
-        """Say it: "addressed, looks at the speaker for 71 % of 12.3 s and at others for 8 %: 90 % of its
-        looks at faces".
+        """Return a sentence, such as "when addressed, looks at the speaker for 71 % of 12.3 s and at others
+        for 8 %: 90 % of all looks at faces".
         """
-        how, whom = NAMES[self.doing]
-        out = f"{how} {whom} for {100 * self.main:.0f} % of {self.seconds:.1f} s"
+        role, main = NAMES[self.doing], 100 * self.main
         if self.doing == "speaking to all" or self.of_faces is None:
-            return out
-        of_faces = f"{100 * self.of_faces:.0f} % of its looks at faces"
-        return f"{out} and at others for {100 * self.others:.0f} %: {of_faces}"
+            return phrase(
+                "{role} for {main:.0f} % of {seconds:.1f} s", role=role, main=main, seconds=self.seconds
+            )
+        return phrase(
+            "{role} for {main:.0f} % of {seconds:.1f} s and at others for {others:.0f} %: {faces:.0f} % of "
+            "all looks at faces",
+            others=100 * self.others,
+            faces=100 * self.of_faces,
+            role=role,
+            main=main,
+            seconds=self.seconds,
+        )
 
 
 def gaze_shares(conversation: Conversation, side: int, project: Project, plan: Plan) -> tuple[GazeShare, ...]:
     """Return where a side looks by what it does, in the order of `NAMES`; nothing of what it never does, and
     nothing of two, who have nobody else to look at. project: whose graph moves it.
     """
-    points = partner_points(plan)
+    points = find_partner_points(plan)
     if len(conversation.sides) < 3 or not points or not project.life.on:
         return ()
     gaze = BodyGaze(plan.life, project.life, rigs_of(project).body, project.points)

@@ -258,7 +258,7 @@ def _best(
 def _freed(
     project: Project, clauses: Sequence[GestureClause], found: list[ChosenGesture], known: dict[str, _Lengths]
 ) -> list[ChosenGesture]:
-    """Tell of each gesture whether any other of its clause would have done."""
+    """Report each gesture whether any other of its clause would have done."""
     rest, out = project.settings.rest, []
     ends = [-inf]
     for n, one in enumerate(found):

@@ -21,9 +21,9 @@ APART = 1.5  # deviations by which one stands out from the next
 
 @dataclass(frozen=True)
 class SpokenLanguage:
-    """language: what is spoken; None where that is not known. how: sure; undecided, as there are too few
-    words or they fit several; unknown, as they are of none of the languages. words: how many were read.
-    known: how many of them are the language's, or the likeliest one's. likeliest: the next best, to name.
+    """language: what is spoken; None if that is not known. how: sure; undecided, as there are too few words
+    or they fit several; unknown, as they are of none of the languages. words: how many were read. known: how
+    many of them are the language's, or the likeliest one's. likeliest: the next best, to name.
     """
 
     language: LanguagePack | None

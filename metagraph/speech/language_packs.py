@@ -15,7 +15,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta, Struct
 
-from metagraph.graph.vocabulary import Vocabulary, is_unspaced, split_tokens, token_key
+from metagraph.graph.vocabulary import Vocabulary, is_unspaced, make_token_key, split_tokens
 
 FOLDER = Path(__file__).parent / "languages"
 ENGLISH = "en"
@@ -165,12 +165,12 @@ def language_of(pack: PackFile, others: Mapping[str, LanguagePack]) -> LanguageP
         for name, words in lists.items()
         if name not in _PHRASES
     }
-    own = {token_key(split_tokens(w)) for words in lists.values() for w in words}
+    own = {make_token_key(split_tokens(w)) for words in lists.values() for w in words}
     borrowed: list[str] = []
     for code in pack.borrows:
         if code not in others:
             raise PackError("borrows", f"there are no words of '{code}': known are {', '.join(others)}")
-        borrowed += (w for w in others[code].responses if token_key(split_tokens(w)) not in own)
+        borrowed += (w for w in others[code].responses if make_token_key(split_tokens(w)) not in own)
     said = {t for name in ("responses", "hesitations") for w in lists[name] for t in split_tokens(w)}
     return LanguagePack(
         pack.code,
@@ -208,5 +208,5 @@ def list_language_packs() -> Mapping[str, LanguagePack]:
     return out
 
 
-def english_pack() -> LanguagePack:
+def read_english_pack() -> LanguagePack:
     return list_language_packs()[ENGLISH]

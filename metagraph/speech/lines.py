@@ -64,7 +64,7 @@ def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
     return make_voice(pieces, heard.duration, peaks, strengths)
 
 
-def voice_from_phones(phones: str | Path) -> Voice:
+def make_voice_from_phones(phones: str | Path) -> Voice:
     """Read a line without sound from its TextGrid alone; every vowel is a syllable. Raises FileError."""
     grid = read_textgrid(phones)
     pieces = [p for p in pieces_of(grid) if p.start >= 0]
@@ -98,7 +98,7 @@ def read_line(line: Line, folder: Path) -> Voice | None:
         return read_line_voice(
             folder / line.audio, folder / line.phones if line.phones else None, line.channel
         )
-    return voice_from_phones(folder / line.phones) if line.phones else None
+    return make_voice_from_phones(folder / line.phones) if line.phones else None
 
 
 def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[str, ...]]:

@@ -18,7 +18,7 @@ BELOW = 10.0  # LU under the loudest parts' mean, below which a block does not c
 OFFSET = -0.691  # of the standard
 
 
-def loudness_of(samples: Array, rate: int) -> float | None:
+def measure_loudness(samples: Array, rate: int) -> float | None:
     """Return the integrated loudness of samples `[N]`, -1..1, in LUFS; None for silence, and for sounds
     shorter than a block.
     """
@@ -36,7 +36,7 @@ def loudness_of(samples: Array, rate: int) -> float | None:
     return OFFSET + 10 * log10(float(loud.mean()))
 
 
-def loudness_within(samples: Array, rate: int, spans: Sequence[tuple[float, float]]) -> Array:
+def measure_loudness_within(samples: Array, rate: int, spans: Sequence[tuple[float, float]]) -> Array:
     """Return how loud each span of seconds is, `[n]` LUFS: the mean of all of it, without gates; NaN where it
     is silent, or beyond the samples `[N]`.
     """
@@ -84,7 +84,7 @@ def level_sounds(sounds: dict[str, Array], rate: int, wanted: float, peak: float
     """
     out: dict[str, Array] = {}
     for name, samples in sounds.items():
-        found = loudness_of(samples, rate)
+        found = measure_loudness(samples, rate)
         out[name] = samples if found is None else samples * np.float32(10 ** ((wanted - found) / 20))
     most = max((float(np.abs(s).max(initial=0)) for s in out.values()), default=0.0)
     return out if most <= peak else {n: s * np.float32(peak / most) for n, s in out.items()}

@@ -1,7 +1,7 @@
 """Listeners take up the posture of who speaks, as in a mirror, a moment later (LaFrance and Broadbent 1976;
 Yang et al. name it as future work).
 
-Which of one's own stances is most like the other's is told by where head, hands, chest and feet are, seen
+Which of one's own stances is most like the other's is given by where head, hands, chest and feet are, seen
 from the hips, so two characters of other studios with other names mirror each other too.
 """
 
@@ -83,7 +83,7 @@ def _seen(
 
 def stance_shapes(project: Project) -> dict[str, Array]:
     """Return where `SEEN` is in each stance of the body `[6, 3]`, x to the left, from the hips, in units of
-    the hips' height; none where that cannot be told.
+    the hips' height; none if that cannot be told.
     """
     roles = anatomy.project_roles(project)
     if project.skeleton is None or not {"hips", *SEEN} <= roles.keys():

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from metagraph.graph.conversation.model import Conversation, Segment, others_of
 from metagraph.graph.model import Mode
-from metagraph.speech.addressing import speaking_spans
+from metagraph.speech.addressing import find_speaking_spans
 
 QUIET = 2.0  # seconds of everyone's silence after which a side idles
 MUSES = 1.3  # seconds before the first word that somebody thinks, at most
@@ -28,9 +28,11 @@ def list_modes(conversation: Conversation, side: int) -> Iterator[tuple[float, M
     speaker.
     """
     segments = conversation.sides[side].segments
-    own = speaking_spans(segments)
+    own = find_speaking_spans(segments)
     other = [
-        span for n in others_of(conversation, side) for span in speaking_spans(conversation.sides[n].segments)
+        span
+        for n in others_of(conversation, side)
+        for span in find_speaking_spans(conversation.sides[n].segments)
     ]
     thinks, reacts = list(_thinking(segments, other)), list(_reacting(segments, conversation.length))
     states: tuple[tuple[Mode, list[Span]], ...] = (

@@ -1,4 +1,4 @@
-"""Blinks of one who speaks, as Yang et al. (section 7.3) key them: on the peaks of what is said, and where
+"""Blinks of one who speaks, as Yang et al. (section 7.3) key them: on the peaks of what is said, and if
 nothing brings one for long.
 """
 

@@ -173,7 +173,7 @@ def smooth(found: Pitch) -> Array:
 def peaks(found: Pitch, start: float, end: float, tones: Array | None = None) -> tuple[float, ...]:
     """Return when F0 has its local maxima between two times, seconds, the most prominent first: those that
     are followed and preceded by the deepest falls, and, among equals, the highest. Where it only rises or
-    falls, its highest moment. () where there is no voice. tones: `smooth(found)`, where that is at hand.
+    falls, its highest moment. () if there is no voice. tones: `smooth(found)`, if that is at hand.
     """
     tones = smooth(found) if tones is None else tones
     first, last = int(np.searchsorted(found.times, start)), int(np.searchsorted(found.times, end, "right"))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import Segment, Sound, Word
-from metagraph.speech.loudness import loudness_within
+from metagraph.speech.loudness import measure_loudness_within
 from metagraph.speech.sound import analyse_sound, syllables
 
 Array = NDArray[Any]
@@ -33,18 +33,18 @@ class Prosody:
 def prosody(
     segments: Sequence[Segment], words: Sequence[Word] = (), samples: Array | None = None, rate: int = 0
 ) -> Prosody:
-    """Return how the segments of a recording are said. words: of the same speaker, with their times.
-    samples, rate: the sound `[N]`, None where there is none; then loudness is not known.
+    """Return how the segments of a recording are said. words: of the same speaker, with their times. samples,
+    rate: the sound `[N]`, None if there is none; then loudness is not known.
 
-    The rate is told by the letters of the words that lie in a segment, from the first one's start to the last
-    one's end; where no words have times by the segments' own texts; where there are no texts by the syllables
-    that are heard. Letters, as they are counted alike in every language that writes them; in Chinese they are
-    syllables.
+    The rate is given by the letters of the words that lie in a segment, from the first one's start to the
+    last one's end; where no words have times by the segments' own texts; if there are no texts by the
+    syllables that are heard. Letters, as they are counted alike in every language that writes them; in
+    Chinese they are syllables.
     """
     own = [s.kind in OWN for s in segments]
     loud = np.full(len(segments), np.nan)
     if samples is not None and any(own):
-        loud = loudness_within(samples, rate, [(s.start, s.end) for s in segments])
+        loud = measure_loudness_within(samples, rate, [(s.start, s.end) for s in segments])
     found = _by_words(segments, words)
     if np.isnan(found).all():
         found = np.array([_of(letters(s.text), s.end - s.start) for s in segments])

@@ -142,7 +142,7 @@ def read_head(path: str | Path) -> tuple[int, int, int]:
 
 def _no_sound(path: Path, error: Exception) -> FileError:
     cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
-    if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
+    if (kind := guess_sound_kind(path)) and not kind.startswith("a WAV"):
         cause = phrase("it is {kind}", kind=kind)
     return FileError(
         path,
@@ -227,8 +227,8 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
         raise _no_sound(path, error) from error
 
 
-def sound_kind(path: str | Path) -> str:
-    """Return what a file is by its first bytes, in words ("an MP3 file"), "" where they do not tell."""
+def guess_sound_kind(path: str | Path) -> str:
+    """Return what a file is by its first bytes, in words ("an MP3 file"), "" if they do not tell."""
     try:
         with open_file(path, SOUND_FILE) as file:
             head = file.read(64)
@@ -248,14 +248,14 @@ def sound_kind(path: str | Path) -> str:
     return ""
 
 
-def sound_ending(path: str | Path) -> str:
-    """Return the ending of a file that reads as a sound, such as ".wav": its own where that is of a sound,
-    else that of its kind. Raises FileError for what is none.
+def guess_sound_ending(path: str | Path) -> str:
+    """Return the ending of a file that reads as a sound, such as ".wav": its own if that is of a sound, else
+    that of its kind. Raises FileError for what is none.
     """
     path = Path(path)
     read_head(path)
     own = path.suffix.lower()
-    known = next((endings for words, endings in _ENDINGS.items() if words == sound_kind(path)), ())
+    known = next((endings for words, endings in _ENDINGS.items() if words == guess_sound_kind(path)), ())
     if not known and not any(own in endings for endings in _ENDINGS.values()):
         raise FileError(
             path,
@@ -268,7 +268,7 @@ def sound_ending(path: str | Path) -> str:
 
 def explain_misnamed(path: str | Path) -> str:
     """Return in words what a file is whose ending says it is another kind of sound, else ""."""
-    kind = sound_kind(path)
+    kind = guess_sound_kind(path)
     endings = next((e for words, e in _ENDINGS.items() if words == kind), None)
     suffix = Path(path).suffix.lower()
     return kind if endings is not None and suffix not in endings and suffix else ""

@@ -21,7 +21,7 @@ RATE = 44100  # samples a second
 FADE = 0.02  # seconds in which a line that is cut short goes
 
 
-def line_sounds(
+def place_line_sounds(
     lines: Mapping[str, Line], folder: Path, rate: int = RATE
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return the samples of each line that has sound, `[N]` float32 at `rate`, and what could not be read, in

@@ -122,7 +122,7 @@ def read_spoken_line(text: str) -> tuple[str, list[Phrase]]:
 
 
 def _certain(text: str) -> int:
-    """Return up to where nothing that comes later changes what is to be said."""
+    """Return up to if nothing that comes later changes what is to be said."""
     end, before = len(text), -1
     while end != before:
         before = end

@@ -85,12 +85,12 @@ def read_gesture_words(path: str | Path) -> GestureWords:
 
 @cache
 def words_for_gesture(language: str = "en") -> GestureWords:
-    """Return the lexicon that comes along for a language, English where there is none."""
+    """Return the lexicon that comes along for a language, English if there is none."""
     file = _files().get(language)
     return msgspec.json.decode((file or _files()["en"]).read_bytes(), type=_Words).read()
 
 
-def gesture_words_for(text: str) -> GestureWords:
+def find_gesture_words(text: str) -> GestureWords:
     """Return the lexicon of the language a text is in, as far as its words tell; else the English one."""
     packs = list_language_packs()
     spoken = detect_language(
@@ -137,7 +137,7 @@ def propose_gestures(
     return proposed_for(words, set(tags.get("arms", ())), bool(tags.get("head")), known, small, Bits(seed))
 
 
-def gesture_requests(
+def make_gesture_requests(
     every: Sequence[ProposedGesture], at: float, ident: str, first: int = 0
 ) -> list[dict[str, Any]]:
     """Return gestures as requests for a text that begins at `at` seconds of the session. Those that could not
@@ -206,9 +206,9 @@ class TextStream:
         words = timed_words(text)
         self.free = start + float(read_aloud(ALPHABET, text)) + BETWEEN
         self._heard = f"{self._heard} {text}"[-HEARD:]
-        known = self.lexicon or gesture_words_for(self._heard)
+        known = self.lexicon or find_gesture_words(self._heard)
         made = propose_gestures(words, self.tags, known, self.seed + self._count)
         return [
             {"do": "say", "id": ident, "text": text, "at": round(start, 3)},
-            *gesture_requests(made, start, ident),
+            *make_gesture_requests(made, start, ident),
         ]

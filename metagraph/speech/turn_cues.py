@@ -13,7 +13,7 @@ from math import cos, radians, sin
 from metagraph.graph.conversation.model import Conversation, Segment, others_of
 from metagraph.graph.requests import Look, Nod, Point
 from metagraph.playback.planning.choice import uniform
-from metagraph.speech.addressing import speaking_spans
+from metagraph.speech.addressing import find_speaking_spans
 
 LONG = 2.0  # seconds from which on a turn is long
 AWAY = 0.7  # share of long turns that begin with a look away
@@ -33,7 +33,7 @@ def look_at_turns(conversation: Conversation, side: int, partner: str, head: Poi
     the other's head; head: where it is, metres in this side's space.
     """
     seed, own = conversation.seed, str(side)
-    for n, (start, end) in enumerate(speaking_spans(conversation.sides[side].segments)):
+    for n, (start, end) in enumerate(find_speaking_spans(conversation.sides[side].segments)):
         if end - start < LONG:
             continue
         if uniform(seed, own, f"turn {n}", "away") < AWAY:
@@ -73,7 +73,7 @@ def nod_to_clauses(conversation: Conversation, side: int, small: bool) -> Iterat
     """Yield the nods of a side that listens to what the others say. small: whether its head has nods with the
     tag "listen".
     """
-    busy = speaking_spans(conversation.sides[side].segments)
+    busy = find_speaking_spans(conversation.sides[side].segments)
     last = -APART
     for n, clause in enumerate(_clauses(conversation, side)):
         lag = LAG * (0.5 + uniform(conversation.seed, str(side), f"heard {n}", "lag"))

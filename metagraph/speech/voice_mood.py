@@ -16,7 +16,7 @@ import numpy as np
 
 from metagraph.graph.model import Project
 from metagraph.speech.lines import Array
-from metagraph.speech.loudness import loudness_of
+from metagraph.speech.loudness import measure_loudness
 from metagraph.speech.pitch import pitch, smooth
 from metagraph.speech.sound import analyse_sound, read_sound, syllables
 
@@ -24,8 +24,8 @@ from metagraph.speech.sound import analyse_sound, read_sound, syllables
 # semitones of range; ours.
 FULL = (10.0, 0.5, 8.0)
 MOST = 0.8  # a voice alone makes nobody more or less aroused than this
-LEAST = 3  # lines of a speaker below which nothing is told: the median would be of next to nothing
-SHORTEST = 0.6  # seconds of sound below which nothing is told
+LEAST = 3  # lines of a speaker below which nothing is reported: the median would be of next to nothing
+SHORTEST = 0.6  # seconds of sound below which nothing is reported
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ def measure_voice(samples: Array, rate: int) -> VoiceFeatures:
     nan = float("nan")
     if len(samples) < SHORTEST * rate:
         return VoiceFeatures(nan, nan, nan)
-    loud = loudness_of(samples, rate)
+    loud = measure_loudness(samples, rate)
     heard = analyse_sound(samples, rate)
     beats = syllables(heard)[0]
     spoken = float(beats[-1] - beats[0]) if len(beats) > 1 else 0.0
@@ -56,7 +56,7 @@ def measure_voice(samples: Array, rate: int) -> VoiceFeatures:
     )
 
 
-def arousals(said: Sequence[VoiceFeatures]) -> list[float]:
+def measure_arousals(said: Sequence[VoiceFeatures]) -> list[float]:
     """Return how aroused one speaker's voice is in each of what they said, -0.8..0.8: the mean of how far
     each feature that is heard is from its median. All 0 of fewer than three.
     """
@@ -85,7 +85,7 @@ def with_voice_moods(project: Project, folder: str | Path) -> Project:
         if path is not None and path.is_file():
             samples, rate = read_sound(path, line.channel)
             heard[ident] = measure_voice(samples, rate)
-    told: Mapping[str, float] = dict(zip(heard, arousals(list(heard.values())), strict=True))
+    told: Mapping[str, float] = dict(zip(heard, measure_arousals(list(heard.values())), strict=True))
     lines = {
         ident: msgspec.structs.replace(line, mood=(0.0, round(told[ident], 2)))
         if ident in told and line.mood is None and round(told[ident], 2) != 0

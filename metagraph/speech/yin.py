@@ -31,7 +31,7 @@ def yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
             f"frames of {frames.shape[1]} samples at {rate:g} Hz tell no pitch from {lowest:g} to "
             f"{highest:g} Hz"
         )
-    apart = yin_differences(np.asarray(frames, np.float64), longest)[:, shortest - 1 :]
+    apart = measure_yin_differences(np.asarray(frames, np.float64), longest)[:, shortest - 1 :]
     trough = apart < THRESHOLD
     trough[:, 1:] &= apart[:, 1:] < apart[:, :-1]
     trough[:, :-1] &= apart[:, :-1] <= apart[:, 1:]
@@ -47,9 +47,9 @@ def yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
     return np.asarray(rate / (shortest + best - np.divide(slope, curve, out=np.zeros(len(best)), where=fits)))
 
 
-def yin_differences(frames: Array, longest: int) -> Array:
+def measure_yin_differences(frames: Array, longest: int) -> Array:
     """Return the cumulative mean normalised difference `[K, longest]` (the paper's equation 8) of frames `[K,
-    N]` float64 to themselves 1 to `longest` samples later: 0 where all repeats, about 1 where nothing does.
+    N]` float64 to themselves 1 to `longest` samples later: 0 where all repeats, about 1 if nothing does.
     """
     size = _fast(frames.shape[1] + longest)
     spectrum = np.fft.rfft(frames, size)

@@ -45,7 +45,9 @@ def accept(
         p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips
     ]
     left: dict[str, str] = {
-        p.clip: phrase("only {sure:.0%} certain", sure=p.confidence) for p in wanted if p.confidence < above
+        p.clip: phrase("only {sure:.0f} % certain", sure=100 * p.confidence)
+        for p in wanted
+        if p.confidence < above
     }
     if clips is None:
         left |= {p.clip: _why_unlikely(p) for p in wanted if is_unlikely(p) and p.clip not in left}

@@ -48,7 +48,7 @@ class LabelledExample:
         return {"words": list(self.words), "measures": measures, "labels": dict(self.labels)}
 
 
-def example_from(data: Any) -> LabelledExample:
+def decode_example(data: Any) -> LabelledExample:
     """Read an example from plain data. Raises ValueError naming what is wrong."""
     if not isinstance(data, Mapping):
         raise ValueError("an example should be an object")

@@ -155,7 +155,7 @@ class _Posed:
         self.p = {role: self.places[:, i] for role, i in figure.places.items()}
         self.p |= {f"{side}_tip": self.places[:, some[0]] for side, some in figure.tips.items()}
         self.carrier = next(role for role in _CARRIERS if role in figure.places)
-        self.facing = facing_of(self.p, self.turns[:, figure.places["hips"]], figure.turned["hips"])
+        self.facing = measure_facing(self.p, self.turns[:, figure.places["hips"]], figure.turned["hips"])
 
     def axis(self, role: str, direction: Sequence[float]) -> Array:
         """Return where one of the character's directions points after a joint has turned."""
@@ -240,7 +240,7 @@ def _pose(figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]) -
     return Pose(rotations, translations)
 
 
-def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
+def measure_facing(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
     """Return `[F, 2]` sine and cosine of the direction that hips and shoulders face, about y from +z."""
     across = leftward(p)
     if across is None:
@@ -254,7 +254,7 @@ def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
 
 def view_from(facing: Array, v: Array) -> Array:
     """Return vectors `v` `[..., 3]` as seen by somebody with the facing direction `[..., 2]`, see
-    `facing_of`.
+    `measure_facing`.
     """
     s, c = facing[..., 0], facing[..., 1]
     return np.stack([c * v[..., 0] - s * v[..., 2], v[..., 1], s * v[..., 0] + c * v[..., 2]], axis=-1)

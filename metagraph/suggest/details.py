@@ -63,20 +63,22 @@ def with_timing(
             if motion is None or motion.frames < 2:
                 continue
             if p.kind.value == "stance":
-                times = compatibility.loop_times(stats, motion, roles)
+                times = compatibility.find_loop_times(stats, motion, roles)
             elif _repeats(p):
                 times = _whole_cycle(motion)
             else:
                 start = frames.get(p.stance.value if p.stance is not None else "")
                 if start is None:
                     continue
-                into = compatibility.transition_costs(stats, motion, start, roles)
+                into = compatibility.measure_transition_costs(stats, motion, start, roles)
                 last = frames.get(p.end_stance.value) if p.end_stance is not None else None
                 times = compatibility.propose_times(
                     stats,
                     motion,
                     into,
-                    None if last is None else compatibility.transition_costs(stats, motion, last, roles),
+                    None
+                    if last is None
+                    else compatibility.measure_transition_costs(stats, motion, last, roles),
                     None,
                     roles,
                 )

@@ -74,7 +74,7 @@ def _least_certain_stance(p: Proposal) -> float:
 
 
 def chance_wrong(p: Proposal) -> float:
-    """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong where
+    """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong if
     nobody can be sure of its stance, or of the one that a transition ends in: a clip that begins 40 cm from
     its stance belongs elsewhere, whatever its name says.
     """
@@ -84,7 +84,7 @@ def chance_wrong(p: Proposal) -> float:
 
 def doubt(p: Proposal) -> str:
     """Return how likely a proposal is wrong and why, in words."""
-    chance = f"{chance_wrong(p):.0%} likely wrong"
+    chance = f"wrong with a probability of {100 * chance_wrong(p):.0f} %"
     if p.conflicts:
         return f"{chance}: {p.conflicts[0]}"
     beliefs: list[tuple[str, Belief[Any] | None]] = [
@@ -96,8 +96,8 @@ def doubt(p: Proposal) -> str:
         beliefs.append(("end", p.end_stance))
     name, least = min(beliefs, key=lambda x: x[1].confidence if x[1] is not None else 0.0)
     if least is None:
-        return f"{chance}: nothing says its {name}"
-    return f"{chance}: its {name} is {least.confidence:.0%} sure, {least.reason}"
+        return f"{chance}: there is no evidence of its {name}"
+    return f"{chance}: its {name} is {100 * least.confidence:.0f} % certain, {least.reason}"
 
 
 def gain(p: Proposal) -> float:

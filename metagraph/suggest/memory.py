@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from metagraph.suggest.alike import LabelledExample, example_from
+from metagraph.suggest.alike import LabelledExample, decode_example
 from metagraph.suggest.words.names import learn_correction
 from metagraph.suggest.words.patterns import Patterns, PatternsError, forget_learned
 
@@ -111,7 +111,7 @@ def _examples(key: str, data: Any) -> tuple[LabelledExample, ...]:
     out = []
     for n, each in enumerate(data):
         try:
-            out.append(example_from(each))
+            out.append(decode_example(each))
         except ValueError as error:
             raise MemoryFormatError(f"'projects', '{key}', number {n + 1}: {error}") from None
     return tuple(out)

@@ -45,7 +45,7 @@ Likely = Sequence[tuple[float, Shape]]
 
 @dataclass(frozen=True)
 class MotionGuess:
-    """What a clip seems to be; None where the motion says nothing.
+    """What a clip seems to be; None if the motion says nothing.
 
     `stance` and `end_stance` are `Shape`s; only transitions have an end stance. `runner_up` is the next
     nearest stance. `stroke` is in seconds. `chances` has the probability of each kind, adding up to 1.
@@ -273,7 +273,9 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
             0.75,
             _unusual("body", 100 * traits.height * unusual["body"])
             if "body" in unusual
-            else phrase("rests, and hips and legs do {share:.0%} of the movement", share=lower / all_of),
+            else phrase(
+                "rests, and hips and legs do {share:.0f} % of the movement", share=100 * lower / all_of
+            ),
         )
     if len(unusual) == 1 and found.value not in unusual:
         ((layer, away),) = unusual.items()

@@ -230,7 +230,7 @@ def _placed(
 
 
 def _away_from(shapes: Mapping[Layer, Sequence[Shape]], each: ClipEvidence) -> float:
-    """Return how far a clip that does not rest begins from the nearest stance of its layer, heights; 0 where
+    """Return how far a clip that does not rest begins from the nearest stance of its layer, heights; 0 if
     that is not known.
     """
     kind = each.agreed("kind", len(KINDS))
@@ -414,7 +414,7 @@ def _loop_elsewhere(
     traits: Mapping[str, Traits],
 ) -> str | None:
     """Return the clip of another layer that rests in a stance: the one whose pose there is nearest, if it is
-    near, else, where nobody knows what the stance looks like, one whose stance has the same name.
+    near, else, if nobody knows what the stance looks like, one whose stance has the same name.
     """
     name, found = plain_stance_name(place.name), list[tuple[float, str]]()
     for clip, p in resting.items():

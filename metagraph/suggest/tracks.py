@@ -17,7 +17,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.rig_controls import rig_controls
 from metagraph.motion.roles import body_parts, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.suggest.body_points import facing_of, view_from
+from metagraph.suggest.body_points import measure_facing, view_from
 
 Array = NDArray[Any]
 
@@ -70,7 +70,7 @@ def joint_track(rig: TrackRig, clip: Clip) -> Array:
     return _tracks(rig, clip)[1]
 
 
-def floor_track(rig: TrackRig, clip: Clip) -> Array:
+def track_floor(rig: TrackRig, clip: Clip) -> Array:
     """Return where the hips are over the floor, `[F, 2]` metres, at RATE frames a second."""
     return _tracks(rig, clip)[2]
 
@@ -78,23 +78,23 @@ def floor_track(rig: TrackRig, clip: Clip) -> Array:
 def _tracks(rig: TrackRig, clip: Clip) -> tuple[TrackRig, Array, Array]:
     known = _TRACKS.get(clip)
     if known is None or known[0] is not rig:
-        facing, at = facing_and_standing(rig, clip_poses(clip))
+        facing, at = measure_facing_and_standing(rig, sample_clip_poses(clip))
         track = view_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
         known = _TRACKS[clip] = rig, track, at[:, rig.root][:, [0, 2]]
     return known
 
 
-def clip_poses(clip: Clip) -> Pose:
+def sample_clip_poses(clip: Clip) -> Pose:
     """Return a clip's poses at RATE frames a second."""
     return clip.pose_at(track_seconds(clip)) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
 
 
-def facing_and_standing(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
-    """Return where a character faces `[F, 2]`, as in `body_points.facing_of`, and where the joints
+def measure_facing_and_standing(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
+    """Return where a character faces `[F, 2]`, as in `body_points.measure_facing`, and where the joints
     `TrackRig.keep` are `[F, K, 3]`, in the world.
     """
     turns, at = rig.small.globals(Pose(poses.rotations[:, rig.keep], poses.translations[:, rig.keep]))
-    return facing_of(
+    return measure_facing(
         {role: at[:, j] for role, j in rig.places.items()}, turns[:, rig.root], np.array([0.0, 0, 0, 1])
     ), at
 

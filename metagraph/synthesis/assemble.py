@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
-from metagraph.suggest.tracks import RATE, clip_poses, facing_and_standing, track_rig
+from metagraph.suggest.tracks import RATE, measure_facing_and_standing, sample_clip_poses, track_rig
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.retiming import Retiming
 from metagraph.synthesis.search.path import Path
@@ -59,8 +59,8 @@ def assemble(
     origin, facing +z; from there the root goes on by what each frame goes on in its take. blend: frames on
     either side of a transition in which one motion fades into the other, by a cosine, rotations along the
     shortest way (slerp). hold_feet: where it goes from piece to piece, feet that stood in the takes stay
-    where they were put down. onward: all of the blend comes after the transition, as live, where nobody knew
-    of it before. retiming: how it is played faster and slower; feet are held by what is then shown. Raises
+    where they were put down. onward: all of the blend comes after the transition, as live, if nobody knew of
+    it before. retiming: how it is played faster and slower; feet are held by what is then shown. Raises
     SynthesisError when the takes are others.
     """
     takes = [c for c in clips if c.frames >= 2]
@@ -101,7 +101,7 @@ def assemble(
         way = way[retiming.frames]
     if not hold_feet or not len(path.jumps):
         return made
-    each = [find_standing(c.skeleton, clip_poses(c)) for c in takes]
+    each = [find_standing(c.skeleton, sample_clip_poses(c)) for c in takes]
     feet = {side: np.concatenate([one[side] for one in each])[way] for side in each[0]}
     return keep_feet_still(made, feet)
 
@@ -116,8 +116,8 @@ def _frames(takes: Sequence[Clip]) -> _Frames:
     rig = track_rig(takes[0], None)
     rotations, translations, ground, heading = [], [], [], []
     for clip in takes:
-        poses = clip_poses(clip)
-        facing, at = facing_and_standing(rig, poses)
+        poses = sample_clip_poses(clip)
+        facing, at = measure_facing_and_standing(rig, poses)
         rotations.append(poses.rotations)
         translations.append(poses.translations)
         ground.append(at[:, rig.root][:, [0, 2]])

@@ -62,7 +62,7 @@ class BlockWork:
 
     @property
     def digest(self) -> str:
-        """Tell work apart: the same for the same inputs alone."""
+        """Report work apart: the same for the same inputs alone."""
         told = hashlib.blake2b(f"{FORMAT} {BLOCK} {self.limit!r} {self.most}".encode(), digest_size=12)
         for array in (self.rows, self.keys, self.blocks, self.into):
             told.update(f"{array.shape} {array.dtype}".encode())
@@ -187,8 +187,8 @@ def transitions(
 
 
 class _Kept:
-    """Finished blocks, in a folder, or in memory where there is none. A file is there as a whole or not at
-    all.
+    """Finished blocks, in a folder, or in memory if there is none. A file is there as a whole or
+    not at all.
     """
 
     def __init__(self, folder: Path | None) -> None:

@@ -27,8 +27,8 @@ STRESS, EDGE = 1, 2  # what happens at a state: bits
 @dataclass(frozen=True, eq=False)
 class HeardStates:
     """What was heard at the states of a graph. kinds `[F]` uint8: bits of SOUNDS. peaks `[F]`: whether a
-    clause's stress is there. edges `[F]`: whether a segment begins there, or the silence after one; None
-    where nothing is known of that.
+    clause's stress is there. edges `[F]`: whether a segment begins there, or the silence after one; None if
+    nothing is known of that.
     """
 
     kinds: Array
@@ -47,7 +47,7 @@ class WantedSegment:
     with. window `[T]` int32: number of the event that has to lie in this frame's window, -1 outside of all.
     events `[T]` uint8: which kind of event that is, STRESS or EDGE. barred `[T]` uint8: bits of the events
     that must not lie there. only: frames -> the states `[F]` bool that alone may come then, beside all that;
-    nothing where that is of no account. places: the frames at which events are wanted, each with its kind, in
+    nothing if that is of no account. places: the frames at which events are wanted, each with its kind, in
     the order of the windows' numbers.
     """
 
@@ -72,8 +72,8 @@ class WantedSegment:
 
 def find_heard_at(states: States, takes: Sequence[Sequence[Segment]]) -> HeardStates:
     """Return what was heard at states, from each take's segments; where segments of a take overlap the later
-    one counts, and where there is none it was idle. Raises SynthesisError when there are not as many takes,
-    or a segment ends before it starts.
+    one counts, and if there is none it was idle. Raises SynthesisError when there are not as many takes, or a
+    segment ends before it starts.
     """
     if len(takes) != len(states.starts) - 1:
         raise SynthesisError(f"{len(states.starts) - 1} takes have states, but {len(takes)} have speech")
@@ -122,7 +122,7 @@ def list_wanted(
     kinds = np.ones(frames, np.uint8) if "idle" in use else np.full(frames, ALL, np.uint8)
     bounds: list[int] = []
     stresses: list[int] = []
-    anywhere = np.zeros(frames, bool)  # where nobody knows a clause's stress
+    anywhere = np.zeros(frames, bool)  # if nobody knows a clause's stress
     for s in _checked(segments):
         a, b = max(0, round(s.start * RATE)), min(frames, round(s.end * RATE))
         kinds[a:b] = 1 << SOUNDS.index(s.kind) if s.kind in use else ALL

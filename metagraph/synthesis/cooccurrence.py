@@ -2,7 +2,7 @@
 (Yang et al., section 5).
 
 Around every segment of speech a window is searched for a movement of the hand or the head. Whether anything
-moves there at all is told by a threshold of the whole take (equation 1), where the movement begins and ends
+moves there at all is given by a threshold of the whole take (equation 1), where the movement begins and ends
 by one of the window (equation 2).
 """
 
@@ -120,8 +120,8 @@ def movement_windows(
 def movement(
     speed: Array, fps: float, window: tuple[float, float], idle: float
 ) -> tuple[float, float] | None:
-    """Return when a movement begins and ends within a window, seconds; None where nothing is faster than
-    `idle` there (equation 1).
+    """Return when a movement begins and ends within a window, seconds; None if nothing is faster than `idle`
+    there (equation 1).
 
     It begins with the first frame faster than the window's own threshold, and ends with the last (equation
     2).
@@ -209,7 +209,7 @@ def _turned(s: Segment, by: float, length: float) -> Segment:
 
 
 def wilson(matched: int, total: int, level: float = 0.95) -> tuple[float, float]:
-    """Return the interval of a share (Wilson, 1927); 0..1 where there is nothing to tell."""
+    """Return the interval of a share (Wilson, 1927); 0..1 if there is nothing to tell."""
     if not total:
         return 0.0, 1.0
     z = NormalDist().inv_cdf((1 + level) / 2)

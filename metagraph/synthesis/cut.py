@@ -2,7 +2,7 @@
 
 A clip between two moments is safe when somebody can go from its end to its beginning, and from the end of any
 other such clip to it, for no more than a transition of a motion graph may cost. So its ends lie near one
-pose, the stance, in which the take often rests. What rest is, and what moves, is told by the take's own
+pose, the stance, in which the take often rests. What rest is, and what moves, is given by the take's own
 speeds: they are of two kinds where somebody rests between movements, also where resting trembles a little.
 """
 

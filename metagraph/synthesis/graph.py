@@ -23,8 +23,8 @@ MARGIN = 1e-3  # of the range: bounds of the distribution lie that far outside w
 
 @dataclass(frozen=True, eq=False)
 class Threshold:
-    """What a transition may cost. costs `[n]`: c_(i, i+k) of the takes. distribution: fitted to them, None
-    where all are alike. limit: its LEVEL; observed: the costs' own.
+    """What a transition may cost. costs `[n]`: c_(i, i+k) of the takes. distribution: fitted to them, None if
+    all are alike. limit: its LEVEL; observed: the costs' own.
     """
 
     k: int

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.graph.conversation.model import Word
 from metagraph.graph.vocabulary import Vocabulary, split_tokens
 from metagraph.suggest.tracks import RATE
@@ -45,7 +46,7 @@ class WordWish:
 
 def word_wish(text: str) -> WordWish:
     """Return what is wished by "big", "big = huge, tall" (motion for "big", of takes that say any of them) or
-    "big, huge" (for both, of either). Raises ValueError where a side names no word.
+    "big, huge" (for both, of either). Raises ValueError if a side names no word.
     """
     left, equals, right = text.partition("=")
     said, alike = (tuple(w.strip() for w in part.split(",") if split_tokens(w)) for part in (left, right))
@@ -95,7 +96,7 @@ def find_phrase_spans(words: Sequence[Word], phrases: Sequence[str]) -> list[tup
     return out
 
 
-def word_places(
+def find_word_places(
     wishes: Sequence[WordWish],
     states: States,
     takes: Sequence[SpokenTake],
@@ -108,7 +109,7 @@ def word_places(
     the same moment the first of them has it.
 
     At a frame so far from the middle of a word, a state may come that is as far from the middle of such a
-    word in its take, give or take the tolerance, seconds. Raises SynthesisError where there are not as many
+    word in its take, give or take the tolerance, seconds. Raises SynthesisError if there are not as many
     takes, or neither side's words have times.
     """
     if len(takes) != len(states.starts) - 1:
@@ -159,7 +160,9 @@ def _near(
     return out
 
 
-def word_cost(places: Sequence[WordPlace], frames: int, price: float, limit: float) -> FrameCost | None:
+def measure_word_cost(
+    places: Sequence[WordPlace], frames: int, price: float, limit: float
+) -> FrameCost | None:
     """Return what frames cost that show nothing of a word they should. price: of a word that is missed all
     along, of the graph's threshold (limit, metres); for a part of it as much less.
     """
@@ -182,7 +185,7 @@ def only_states_of_words(places: Sequence[WordPlace]) -> dict[int, Array]:
 @dataclass(frozen=True)
 class WordShown:
     """What became of a word. text, at: as said, seconds. known: whether any take says it. met: whether motion
-    is from where one does. take, there: from which, and from which second of it; None where it is not met.
+    is from where one does. take, there: from which, and from which second of it; None if it is not met.
     """
 
     text: str
@@ -218,18 +221,27 @@ def unsaid(wishes: Sequence[WordWish], new: SpokenTake, start: float, seconds: f
 
 
 def describe_words(shown: Sequence[WordShown], never: Sequence[str] = ()) -> str:
-    """Return what became of words, in words; "" where none was wished. never: `unsaid`."""
+    """Return how well words are met, or "" if no words were given. never: the words of `unsaid`."""
     parts = []
     if shown:
         met = sum(w.met for w in shown)
-        parts.append(f"{met} of {len(shown)} words from where a take says them")
-    missed = [f"'{w.text}' at {w.at:.1f} s" for w in shown if w.known and not w.met]
+        parts.append(
+            phrase(
+                "{met} of {count} words have the motion of a take that says them", met=met, count=len(shown)
+            )
+        )
+    missed = [f"'{w.text}' ({w.at:.1f} s)" for w in shown if w.known and not w.met]
     absent = list(dict.fromkeys(f"'{w.text}'" for w in shown if not w.known))
     if missed:
-        parts.append(f"missed: {', '.join(missed[:5])}{' and more' if len(missed) > 5 else ''}")
+        parts.append(phrase("missed: {words}", words=_first_of(missed)))
     if absent:
-        parts.append(f"no take says {', '.join(absent[:5])}")
+        parts.append(phrase("no take says {words}", words=_first_of(absent)))
     if never:
-        more = f" and {len(never) - 5} more" if len(never) > 5 else ""
-        parts.append(f"not said now: {', '.join(repr(w) for w in never[:5])}{more}")
-    return "; ".join(parts)
+        parts.append(phrase("not in this speech: {words}", words=_first_of([f"'{w}'" for w in never])))
+    return join_phrases(parts, "; ") if parts else ""
+
+
+def _first_of(words: Sequence[str]) -> str:
+    """Return up to five words, and how many more there are."""
+    first, more = ", ".join(words[:5]), len(words) - 5
+    return phrase("{words} and {more} more", words=first, more=more) if more > 0 else first

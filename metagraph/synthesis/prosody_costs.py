@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.graph.conversation.model import Segment, Word
 from metagraph.speech.prosody import OWN, Prosody
 from metagraph.suggest.tracks import RATE
@@ -23,6 +24,7 @@ from metagraph.synthesis.states import States, SynthesisError
 Array = NDArray[Any]
 Measure = Literal["loudness", "rate"]
 MEASURES: tuple[Measure, ...] = ("loudness", "rate")
+_MEASURES: dict[Measure, str] = {"loudness": phrase("loudness"), "rate": phrase("rate")}
 
 FEW = 3  # segments of a kind: of fewer no mean is made
 FARTHEST = 3.0  # spreads: farther apart is not worse
@@ -32,7 +34,7 @@ UNKNOWN = 1.0  # spreads that what nobody knows is held to be off; two of one sp
 @dataclass(frozen=True, eq=False)
 class SpokenTake:
     """What is known of the speech a take was recorded with, or new motion is for. segments: as
-    `segments_heard_by` has them. words: its own, with times. prosody: of the segments, None where it was not
+    `segments_heard_by` has them. words: its own, with times. prosody: of the segments, None if it was not
     looked for.
     """
 
@@ -41,15 +43,15 @@ class SpokenTake:
     prosody: Prosody | None = None
 
     def values(self, measure: Measure) -> Array:
-        """Return how its segments are said `[n]`, NaN where that is not known."""
+        """Return how its segments are said `[n]`, NaN if that is not known."""
         if self.prosody is None:
             return np.full(len(self.segments), np.nan)
         return np.asarray(getattr(self.prosody, measure), float)
 
 
 def standardise_prosody(recordings: Sequence[SpokenTake], measure: Measure) -> list[Array]:
-    """Return of each recording how far each segment is from its speaker's usual, in spreads; NaN where that
-    is not known.
+    """Return of each recording how far each segment is from its speaker's usual, in spreads; NaN if that is
+    not known.
 
     Clauses and responses each by themselves. The mean is the recording's own where it has FEW of them, else
     that of all; the spread (root mean square about the means) is that of all, which are taken to be of one
@@ -77,7 +79,7 @@ def standardise_prosody(recordings: Sequence[SpokenTake], measure: Measure) -> l
 
 def of_states(states: States, takes: Sequence[SpokenTake], measure: Measure) -> Array:
     """Return `[F]` how the segment a state is in is said, in spreads of its speaker; NaN outside of one's own
-    speech. Raises SynthesisError where there are not as many takes.
+    speech. Raises SynthesisError if there are not as many takes.
     """
     if len(takes) != len(states.starts) - 1:
         raise SynthesisError(f"{len(states.starts) - 1} takes have states, but {len(takes)} have speech")
@@ -102,7 +104,7 @@ def of_speech(new: SpokenTake, start: float, seconds: float, measure: Measure) -
     return out
 
 
-def prosody_cost(
+def measure_prosody_cost(
     measure: Measure, weight: float, of_state: Array, of_frame: Array, limit: float
 ) -> FrameCost:
     """Return what frames cost by how they are said. weight: what a second costs that is off by one spread, of
@@ -122,7 +124,7 @@ def prosody_cost(
 @dataclass(frozen=True)
 class ProsodyMatch:
     """How well a path is said as what is heard, over frames where both are known. off: the mean difference,
-    in spreads. correlation: of both, -1..1; None where there is none. known: share of the spoken frames.
+    in spreads. correlation: of both, -1..1; None if there is none. known: share of the spoken frames.
     """
 
     measure: Measure
@@ -131,13 +133,22 @@ class ProsodyMatch:
     known: float
 
     def words(self) -> str:
-        """Return it in words."""
-        together = "" if self.correlation is None else f", correlation {self.correlation:.2f}"
-        return f"{self.measure} {self.off:.2f} spreads off{together}"
+        """Return a phrase such as "loudness differs by 0.42 standard deviations, correlation 0.71"."""
+        measure = _MEASURES[self.measure]
+        if self.correlation is None:
+            return phrase("{measure} differs by {off:.2f} standard deviations", measure=measure, off=self.off)
+        return phrase(
+            "{measure} differs by {off:.2f} standard deviations, correlation {correlation:.2f}",
+            correlation=self.correlation,
+            measure=measure,
+            off=self.off,
+        )
 
 
-def prosody_match(measure: Measure, of_state: Array, of_frame: Array, way: Array) -> ProsodyMatch | None:
-    """Return how well the states `[T]` of a path go with speech, None where nothing can be compared."""
+def measure_prosody_match(
+    measure: Measure, of_state: Array, of_frame: Array, way: Array
+) -> ProsodyMatch | None:
+    """Return how well the states `[T]` of a path go with speech, None if nothing can be compared."""
     shown = of_state[np.asarray(way)]
     both = np.isfinite(shown) & np.isfinite(of_frame[: len(shown)])
     if not both.any():

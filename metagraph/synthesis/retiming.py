@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.motion.clip import Clip
-from metagraph.suggest.tracks import RATE, clip_poses, track_seconds
+from metagraph.suggest.tracks import RATE, sample_clip_poses, track_seconds
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
 from metagraph.synthesis.cooccurrence import activation, speeds
 from metagraph.synthesis.graph import BLEND
@@ -33,7 +34,7 @@ STROKE = 0.5  # of the fastest moment of a movement of a hand: what is faster is
 SLOW = 0.1  # metres a second: a hand that is slower, seen from its shoulder, does nothing that shows
 STEP = 0.1  # frames: how exactly events are moved
 NEARER = 0.1  # of the graph's threshold: what an event costs that is as far off as it may be
-FARTHER = 3.0  # likewise where more is allowed than was asked for: what is retimed into it has to be near
+FARTHER = 3.0  # the same if more is allowed than was asked for: what is retimed into it has to be near
 EASY = 0.01  # what moving by a frame costs beside being off by one
 
 
@@ -63,15 +64,19 @@ class Retiming:
         return np.interp(count, self.moments, count)
 
     def words(self) -> str:
-        """Return it in words."""
-        return (
-            f"{self.changed:.1f} s at another speed: {self.events} starts, ends and stresses "
-            f"{1000 * self.off:.0f} ms off (root mean square) instead of {1000 * self.was:.0f}"
+        """Return in words how much was retimed, and what that gains."""
+        return phrase(
+            "{changed:.1f} s at another speed: {events} starts, ends and stresses are {off:.0f} ms off (root "
+            "mean square), not {was:.0f} ms",
+            changed=self.changed,
+            events=self.events,
+            off=1000 * self.off,
+            was=1000 * self.was,
         )
 
 
 def check_share(most: float) -> float:
-    """Return a share by which speed may change. Raises SynthesisError where it is none."""
+    """Return a share by which speed may change. Raises SynthesisError if it is none."""
     if not 0 <= most <= HIGHEST:
         raise SynthesisError(f"speed may change by 0 to {HIGHEST:.0%}, not by {most:.0%}")
     return most
@@ -86,7 +91,7 @@ def retimable(takes: Sequence[Clip]) -> Array:
     """
     out = []
     for clip in (c for c in takes if c.frames >= 2):
-        times, poses = track_seconds(clip), clip_poses(clip)
+        times, poses = track_seconds(clip), sample_clip_poses(clip)
         free = np.ones(len(times), bool)
         own = np.arange(clip.frames) / clip.fps
         for part, speed in speeds(clip).items():
@@ -121,8 +126,8 @@ def retime(
     most: float = MOST,
     reach: float | None = None,
 ) -> Retiming | None:
-    """Return how a path is retimed so that its events come nearer to where they are wanted, None where
-    nothing can be or need be moved.
+    """Return how a path is retimed so that its events come nearer to where they are wanted, None if nothing
+    can be or need be moved.
 
     way `[T]`: its states; jumps: frames that come by a transition. free `[F]`: `retimable`. most: share by
     which speed may change at most. reach: frames within which an event of the path is the one that is wanted,
@@ -191,8 +196,8 @@ def _pairs(
 
 def _changeable(steady: Array, a: int, b: int) -> Array:
     """Return `[b - a]` how much speed may change between the frames a and b, 0..1: all that it may in each
-    stretch that is not steady, but for its ends, where it rises and falls by a cosine. Stretches too short to
-    rise and fall in have none.
+    stretch that is not steady, except for its ends, where it rises and falls by a cosine. Stretches too short
+    to rise and fall in have none.
     """
     out = np.zeros(b - a)
     for first, after in _stretches(~steady[a:b]):
@@ -235,7 +240,7 @@ def timing_cost(
 ) -> FrameCost | None:
     """Return what frames cost in which an event comes early or late, so that there is less to retime: none
     where it is in time, as much as `price` of the graph's threshold (limit, metres) where it is off by as
-    much as it may be, its square between. None where no event is wanted.
+    much as it may be, its square between. None if no event is wanted.
     """
     frames, order = len(wanted), list(wanted.places.items())
     inside = np.flatnonzero(wanted.window >= 0)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import TOLERANCE, HeardStates, WantedSegment
@@ -20,20 +21,20 @@ from metagraph.synthesis.iconic_words import (
     WordShown,
     WordWish,
     describe_words,
+    find_word_places,
     find_words_shown,
+    measure_word_cost,
     unsaid,
-    word_cost,
-    word_places,
 )
 from metagraph.synthesis.prosody_costs import (
     MEASURES,
     Measure,
     ProsodyMatch,
     SpokenTake,
+    measure_prosody_cost,
+    measure_prosody_match,
     of_speech,
     of_states,
-    prosody_cost,
-    prosody_match,
 )
 from metagraph.synthesis.retiming import Retiming, check_share, retimable, retime
 from metagraph.synthesis.search.frame_costs import FrameCosts, join_costs
@@ -41,6 +42,12 @@ from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]
+_COSTS = {
+    "loudness": phrase("loudness"),
+    "rate": phrase("rate"),
+    "words": phrase("words"),
+    "timing": phrase("timing"),
+}
 
 
 @dataclass(frozen=True)
@@ -97,7 +104,7 @@ class SoftConstraints:
         self, path: Path, heard: HeardStates, want: WantedSegment, reach: float | None, part: float = 1.0
     ) -> Retiming | None:
         """Return how a path is retimed, as `retiming.retime` does, by some part of what speed may change;
-        None where it is not.
+        None if it is not.
         """
         if self.free is None:
             return None
@@ -114,7 +121,7 @@ class SoftMaterial:
         self, wish: SoftWish, states: States, clips: Sequence[Clip], takes: Sequence[SpokenTake], limit: float
     ) -> None:
         """clips, takes: what the states are of, and what was said; limit: the graph's threshold, metres.
-        Raises SynthesisError where what is to be compared is not known of any take.
+        Raises SynthesisError if what is to be compared is not known of any take.
         """
         self.wish, self.states, self.limit = wish, states, limit
         # Takes of one frame have no states.
@@ -128,7 +135,7 @@ class SoftMaterial:
     def constraints(
         self, new: SpokenTake, start: float, seconds: float, tolerance: float = TOLERANCE
     ) -> SoftConstraints:
-        """Return the wish for new speech, from a second of it on. Raises SynthesisError where what is to be
+        """Return the wish for new speech, from a second of it on. Raises SynthesisError if what is to be
         compared is not known of it.
         """
         wish, kinds, known = self.wish, [], []
@@ -136,11 +143,13 @@ class SoftMaterial:
             if not np.isfinite(new.values(measure)).any() and new.segments:
                 raise SynthesisError(_unknown(measure, "the new speech"))
             of_frame = of_speech(new, start, seconds, measure)
-            kinds.append(prosody_cost(measure, getattr(wish, measure), of_state, of_frame, self.limit))
+            kinds.append(
+                measure_prosody_cost(measure, getattr(wish, measure), of_state, of_frame, self.limit)
+            )
             known.append((measure, of_state, of_frame))
-        places = word_places(wish.words, self.states, self.takes, new, start, seconds, tolerance)
+        places = find_word_places(wish.words, self.states, self.takes, new, start, seconds, tolerance)
         frames = max(1, round(seconds * RATE))
-        charged = join_costs([*kinds, word_cost(places, frames, wish.price, self.limit)])
+        charged = join_costs([*kinds, measure_word_cost(places, frames, wish.price, self.limit)])
         never = unsaid(wish.words, new, start, seconds)
         return SoftConstraints(charged, places, wish.hard, self.free, wish.retime, tuple(known), never)
 
@@ -153,10 +162,10 @@ def _unknown(measure: Measure, whose: str) -> str:
 
 @dataclass(frozen=True)
 class SoftReport:
-    """What became of a wish. paid: what each kind of cost came to, metres. matches: how it is said. words:
-    those that wanted motion. unsaid: those that were asked for and are not said. retiming: in words, "" where
-    speed is as in the takes; off, was: seconds events are off (root mean square), after and before it, None
-    where there was none.
+    """How well preferences are met. paid: the sum of each kind of cost, metres. matches: loudness and rate.
+    words: words with motion. unsaid: given words that the speech does not have. retiming: in words, or "".
+    off, was: seconds by which events are off (root mean square), after and before retiming; None
+    without it.
     """
 
     paid: dict[str, float]
@@ -168,15 +177,19 @@ class SoftReport:
     was: float | None = None
 
     def told(self) -> str:
-        """Return it in words, "" where nothing was asked for."""
+        """Return it in words, or "" if there were no preferences."""
         parts = [m.words() for m in self.matches]
         if words := describe_words(self.words, self.unsaid):
             parts.append(words)
         if self.paid:
-            parts.append(f"paid {', '.join(f'{cost:.3g} m for {name}' for name, cost in self.paid.items())}")
+            costs = [
+                phrase("{cost:.3g} m for {name}", cost=cost, name=_COSTS.get(name, name))
+                for name, cost in self.paid.items()
+            ]
+            parts.append(phrase("added cost: {costs}", costs=join_phrases(costs, ", ")))
         if self.retiming:
             parts.append(self.retiming)
-        return "; ".join(parts)
+        return join_phrases(parts, "; ") if parts else ""
 
     def data(self) -> dict[str, Any]:
         """Return it as a program reads it."""
@@ -186,10 +199,10 @@ class SoftReport:
 def soft_report(
     soft: SoftConstraints, states: States, path: Path, retiming: Retiming | None = None
 ) -> SoftReport:
-    """Return what became of a wish by a path, as it is shown."""
+    """Return how well a path meets preferences, as it is shown."""
     way = path.states if retiming is None else path.states[retiming.frames]
     paid = soft.charged.paid(path.states) if soft.charged is not None else {}
-    matches = [prosody_match(measure, a, b, way) for measure, a, b in soft.known]
+    matches = [measure_prosody_match(measure, a, b, way) for measure, a, b in soft.known]
     return SoftReport(
         paid,
         tuple(m for m in matches if m is not None),

@@ -23,12 +23,12 @@ from metagraph.suggest.tracks import RATE
 Array = NDArray[Any]
 
 SLOW = 0.15  # metres a second, of a person 1.75 m high: a foot that is slower, and low, stands
-LOW = 0.05  # metres above the floor, likewise
+LOW = 0.05  # metres above the floor, in the same way
 TALL = 1.75
 LEG = ("upper_leg", "lower_leg", "foot")
 LEAST = 0.2  # seconds a foot stands at least
 FADE = 0.2  # seconds in which it is let go, and taken
-FARTHEST = 0.1  # metres it is held back at most, likewise; beyond it goes along
+FARTHEST = 0.1  # metres it is held back at most, in the same way; beyond it goes along
 
 
 def find_standing(skeleton: Skeleton, poses: Pose) -> dict[str, Array]:

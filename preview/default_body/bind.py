@@ -72,7 +72,7 @@ def bind_pose(skeleton: Skeleton, at: Mapping[str, Array], footing: Footing | No
 
 
 def _why_not(places: Array, roles: Mapping[str, int]) -> str | None:
-    """Return why a pose is none of a standing person, None where it is one."""
+    """Return why a pose is none of a standing person, None if it is one."""
     lines = [("hips", "head")] + [(f"{side}_foot", f"{side}_upper_leg") for side in SIDES]
     for low, high in lines:
         line = places[roles[high]] - places[roles[low]]
@@ -148,7 +148,7 @@ def _angle(a: Array, b: Array) -> float:
 
 
 def _hand_turn(roles: Mapping[str, int], places: Array, at: Mapping[str, Array], side: str) -> Array | None:
-    """Return the turn that brings a hand's knuckles in line, None where fewer than two are known."""
+    """Return the turn that brings a hand's knuckles in line, None if fewer than two are known."""
     knuckles = [f"{side}_{f}_1" for f in FINGERS[1:] if f"{side}_{f}_1" in roles]
     if len(knuckles) < 2:
         return None

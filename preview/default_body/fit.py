@@ -71,7 +71,7 @@ def sculpture() -> Sculpture:
 
 class Fit:
     """The body's surface on a skeleton. `size` is how large it is beside the sculpted one, `broad` how thick.
-    `ankle` is how high ankles are above the soles, metres, None where it is not known.
+    `ankle` is how high ankles are above the soles, metres, None if it is not known.
     """
 
     def __init__(self, skeleton: Skeleton, bind: Bind, ankle: float | None = None) -> None:

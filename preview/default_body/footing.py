@@ -35,7 +35,7 @@ UP = np.array([0.0, 1, 0])
 class Footing:
     """`pose` is one in which the skeleton stands. `ankle` is how high an ankle is above the ground while its
     foot is on it, metres. `ups` are unit vectors `[3]` in the spaces of the left and the right foot that
-    point up then. None where the clip does not tell.
+    point up then. None if the clip does not tell.
     """
 
     pose: Pose
@@ -43,7 +43,7 @@ class Footing:
     ups: tuple[Array | None, Array | None] = (None, None)
 
 
-def footing_of(clips: Iterable[Clip | None], skeleton: Skeleton) -> Footing | None:
+def choose_footing(clips: Iterable[Clip | None], skeleton: Skeleton) -> Footing | None:
     """Return how a skeleton stands, as the first of some clips that is on it tells; None if none is."""
     clip = next((c for c in clips if c is not None and c.skeleton == skeleton), None)
     return find_footing(clip) if clip is not None else None
@@ -106,7 +106,7 @@ def _feet(roles: Mapping[str, int]) -> list[int]:
 
 
 def _up(turned: Array, high: Array, rest: Array) -> Array | None:
-    """Return what points up in a foot's space while it is on the ground, None where it is never level.
+    """Return what points up in a foot's space while it is on the ground, None if it is never level.
 
     turned `[F, 4]`: its rotations. high `[F]`: its ankle's heights. rest `[4]`: its rotation as it stands.
     """

@@ -169,7 +169,7 @@ def _lowpass(values: Array, keep: float) -> Array:
 
 
 def _resonate(values: Array, hertz: Array, width: Array) -> Array:
-    """Pass samples through a resonator that is set anew each frame; its gain at 0 Hz is 1."""
+    """Pass samples through a resonator that is set again each frame; its gain at 0 Hz is 1."""
     r = np.exp(-np.pi * width / RATE)
     b, c = 2 * r * np.cos(2 * np.pi * np.minimum(hertz, 0.46 * RATE) / RATE), -r * r
     out, one, two = [], 0.0, 0.0

@@ -1,4 +1,4 @@
-"""Sheets of a clip before and after it was made anew: drawn as a character plays it, hands kept in contact
+"""Sheets of a clip before and after it was made again: drawn as a character plays it, hands kept in contact
 and out of the body.
 
 python -m sample_clips.make.before_after FOLDER --before OLD NAME    write FOLDER/NAME.png: the clip in

@@ -16,7 +16,7 @@ from sample_clips.make.shapes import JOINT, mouth_line, step
 
 Array = NDArray[Any]
 
-MIDDLE = -0.012  # metres ahead: where the trunk's depth is reckoned from
+MIDDLE = -0.012  # metres ahead: where the trunk's depth is computed from
 TRUNK = ("Hips", "Spine", "Chest", "UpperChest")
 LIMBS = {
     "arms": (("UpperArm", "LowerArm"), ("LowerArm", "Hand")),

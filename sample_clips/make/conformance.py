@@ -82,7 +82,7 @@ def _face(project: Project, morphs: tuple[str, ...]) -> CharacterMesh:
 
 def without_authors(path: Path) -> None:
     """Rewrite an export as a program might that knows nothing of what users set: `own_weights` and
-    `own_markov` tell of nothing, and parts that a layer does not move are not listed.
+    `own_markov` report nothing, and parts that a layer does not move are not listed.
     """
     document = json.loads(path.read_bytes())
     for layer in document["layers"].values():

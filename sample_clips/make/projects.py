@@ -104,7 +104,7 @@ def seated() -> Project:
     ]
     files = [HERE / ("seated" if e.name in {r.name for r in SEATED} else "clips") / e.file for e in entries]
     project = _finished("seated", _imported("seated", files), entries, SITS)
-    # Again and again, so that nobody gets up for want of another way to sit.
+    # Again and again, so that nobody gets up without another way to sit.
     again = {
         a.id: {"spacing": 0}
         for a in project.graphs["body"].actions.values()

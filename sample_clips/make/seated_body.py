@@ -212,7 +212,7 @@ CLIPS = (
         ),
         home(0.66, overshoot=0.03),
     ),
-    way(  # up: the nose over the toes, then the legs push; nobody gets up for want of something to do
+    way(  # up: the nose over the toes, then the legs push; nobody gets up without something to do
         UPRIGHT,
         "weight_both",
         go(

@@ -57,7 +57,7 @@ def step(low: float, high: float, x: Array) -> Array:
 
 
 def mouth_line(x: Array) -> Array:
-    """Height of the line between the lips: level, but for corners a hair above; a mood makes the smile."""
+    """Height of the line between the lips: level, except for corners a hair above; a mood makes the smile."""
     return np.asarray(MOUTH_Y + 0.0007 * np.minimum(np.abs(x) / MOUTH_HALF, 1.3) ** 2)
 
 
@@ -167,7 +167,7 @@ def hair() -> Field:
 
 
 def _hairline(p: Array) -> Array:
-    """From the forehead past the temple, in front of the ear and down to the nape: positive where there is no
+    """From the forehead past the temple, in front of the ear and down to the nape: positive if there is no
     hair.
     """
     forehead, temple = (

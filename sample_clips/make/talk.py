@@ -125,7 +125,7 @@ def speak(
     voices: Sequence[SpeakingVoice] = VOICES,
 ) -> Talk:
     """Return turns as they sound, of as many who talk as there are voices. crosstalk: dB of the others in
-    each microphone. Raises MissingError where eSpeak NG is not there.
+    each microphone. Raises MissingError if eSpeak NG is not there.
     """
     pieces: list[tuple[int, float, Array, list[tuple[str, float, float]], list[Said]]] = []
     at = 0.0
@@ -161,7 +161,7 @@ def _turn(
         (kind, text.replace("*", "").split(), next((n for n, w in enumerate(text.split()) if "*" in w), None))
         for kind, text in parts
     ]
-    # A mark before each word: eSpeak runs small words together, and tells of them as of one.
+    # A mark before each word: eSpeak runs small words together, and reports them as of one.
     text = " ".join(
         "<mark name='w'/>" + re.sub(r"\*(\w+)\*", _LOUD, word) for _, c in parts for word in c.split()
     )
@@ -181,8 +181,8 @@ def _turn(
 
 
 def _apart(starts: Sequence[float], end: float, words: Sequence[str]) -> list[float]:
-    """Return when each word begins, and the end; one that is told of only when the next begins shares the
-    time of the one before it, by their letters.
+    """Return when each word begins, and the end; one that is reported only when the next begins shares
+    the time of the one before it, by their letters.
     """
     edges = [*starts, end]
     n = 0

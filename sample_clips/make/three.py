@@ -30,7 +30,7 @@ TURNS = (
 
 
 def three() -> Talk:
-    """Return it as it sounds. Raises MissingError where eSpeak NG is not there."""
+    """Return it as it sounds. Raises MissingError if eSpeak NG is not there."""
     return speak(TURNS, voices=VOICES)
 
 

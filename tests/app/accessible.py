@@ -1,5 +1,5 @@
-"""What a screen reader is told of controls: each that the keyboard reaches has a name, and a role or words on
-what it is.
+"""What a screen reader is reported about controls: each that the keyboard reaches has a name, and a role or
+words on what it is.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ def nameless(top: QWidget) -> list[str]:
         if told is None:
             continue
         if isinstance(widget, (QLabel, QTabBar)):
-            continue  # a label's words are its name, or there are none yet; each tab is told by its own
+            continue  # a label's words are its name, or there are none yet; each tab is given by its own
         if not told.text(QAccessible.Text.Name).strip():
             out.append(f"{_who(widget)} has no name")
         elif isinstance(widget, (QAbstractScrollArea, QTabWidget)):
-            continue  # what they hold is told
+            continue  # what they hold is reported
         elif told.role() in ROLELESS and not told.text(QAccessible.Text.Description).strip():
             out.append(f"{_who(widget)} ({told.text(QAccessible.Text.Name)}) is told to be nothing")
     return out

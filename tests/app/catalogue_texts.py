@@ -10,8 +10,8 @@ from app.translation import FOLDER
 
 @cache
 def catalogue_texts(code: str) -> dict[str, str]:
-    """Return by each English text, and by both of a plural, what stands for it in a language, "" where
-    nothing does.
+    """Return by each English text, and by both of a plural, what stands for it in a language, "" if nothing
+    does.
     """
     out: dict[str, str] = {}
     for message in read_catalogue(FOLDER / code / "LC_MESSAGES" / "metagraph.po"):

@@ -300,15 +300,15 @@ def drive(
     most tests.
     """
     import app.shell.window
-    from app.look.theme import WindowTheme, apply_theme, style_sheet
+    from app.look.theme import WindowTheme, apply_theme, make_style_sheet
     from app.main import make_window
     from app.stage.thumbnails import Thumbnails
 
     def styled(app: QApplication, look: WindowTheme) -> None:
         """The application outlives each window here: the same style again would only polish every widget
-        anew.
+        again.
         """
-        if app.styleSheet() != style_sheet(look):
+        if app.styleSheet() != make_style_sheet(look):
             apply_theme(app, look)
 
     def unexpected(*args: object, **kwargs: object) -> object:

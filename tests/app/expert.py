@@ -189,7 +189,7 @@ class Expert(Participant):
             ((right + 9.0 * n, y), (-16, high if y == low else low)) for n in range(60) for y in (low, high)
         ]
         corners = [(a, b) for a, b in corners if scene.hit(QPointF(*a), view.scale).area == "nothing"]
-        a, b = (view.to(QPointF(*c)).toPoint() for c in corners[0])  # where nothing is
+        a, b = (view.to(QPointF(*c)).toPoint() for c in corners[0])  # if nothing is
         keys = CONTROL if more else Qt.KeyboardModifier.NoModifier
         QTest.mouseMove(self.canvas, a)
         QTest.mousePress(self.canvas, LEFT, keys, a)
@@ -366,7 +366,7 @@ class Reviewer(Participant):
 def without_times(project: Project) -> Project:
     """Return a project whose actions have the times of clips that are dropped: the review proposes others."""
     for action in list(project.actions()):
-        timing = edits.default_timing(project.clips[action.clip], action.kind)
+        timing = edits.make_default_timing(project.clips[action.clip], action.kind)
         project = edits.update_actions(project, [action.id], timing=asdict(timing))
     return project
 

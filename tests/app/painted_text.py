@@ -334,7 +334,7 @@ def _plain(words: str) -> str:
 
 @contextmanager
 def without(*kinds: type) -> Iterator[None]:
-    """Leave widgets of some kinds alone: they show no words, and drawing them anew takes its time."""
+    """Leave widgets of some kinds alone: they show no words, and drawing them again takes its time."""
     global SKIPPED
     before, SKIPPED = SKIPPED, kinds
     try:

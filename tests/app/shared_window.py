@@ -1,5 +1,5 @@
-"""One window for many tests: between two it is taken back to what it was when it was made, and thrown away
-where that does not succeed.
+"""One window for many tests: between two it is taken back to what it was when it was made, and thrown away if
+that does not succeed.
 """
 
 from __future__ import annotations

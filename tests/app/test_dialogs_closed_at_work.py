@@ -71,7 +71,7 @@ AT_WORK: dict[str, Callable[[QDialog, Path], None]] = {
 
 @pytest.fixture
 def told(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Faults that were told."""
+    """Faults that were reported."""
     out: list[str] = []
     monkeypatch.setattr(
         faults, "report_error", lambda error, where: out.append(f"{type(error).__name__}: {error}")

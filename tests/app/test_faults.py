@@ -50,7 +50,7 @@ def zero():
     return 1 / 0
 
 
-# --- what is told
+# --- what is reported
 
 
 def test_a_fault_is_told_once_and_counted(told):
@@ -104,7 +104,7 @@ def test_a_report_tells_versions_actions_and_places_of_ours_alone(told):
         try:
             zero()
         except ZeroDivisionError:
-            raise StrangeError("Anna's own words")  # noqa: B904 - what was raised before is told, too
+            raise StrangeError("Anna's own words")  # noqa: B904 - what was raised before is reported, too
 
     raised(strange)
     text = faults.format_fault_report()

@@ -219,14 +219,14 @@ def test_what_came_of_recordings_is_said_in_the_language(english: None, tmp_path
 
 
 def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
-    assert translation.in_english(tr("Set base pose")) == "Set base pose"
+    assert translation.get_english(tr("Set base pose")) == "Set base pose"
     translation.choose("de")
     german = tr("Duplicate {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", 3))
-    assert german != "Duplicate 3 clips" == translation.in_english(german)
+    assert german != "Duplicate 3 clips" == translation.get_english(german)
     with pytest.raises(EditError) as caught:
         edits.rename_clip(Project(), "c1", "x")
-    assert translation.in_english(tr_error(caught.value)) == "that clip is no longer in the project"
-    assert translation.in_english("nobody said this") == "nobody said this"
+    assert translation.get_english(tr_error(caught.value)) == "that clip is no longer in the project"
+    assert translation.get_english("nobody said this") == "nobody said this"
 
 
 def test_what_a_language_lacks_is_english(english: None) -> None:

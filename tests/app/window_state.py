@@ -1,5 +1,5 @@
-"""What of a window can be told apart: the values of its widgets, of its actions, and of every object of ours
-behind them.
+"""What of a window can be distinguished: the values of its widgets, of its actions, and of every object of
+ours behind them.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def _parts(window: QObject, name: str) -> list[tuple[str, Any]]:
         count: dict[str, int] = {}
         for child in children:
             if main and isinstance(child, QTabBar):
-                continue  # Qt hands them out anew; docks tell which is in front
+                continue  # Qt hands them out again; docks tell which is in front
             name = child.objectName() or type(child).__name__
             if name.startswith("qt_scrollarea_") and name.endswith("container"):
                 continue  # scroll bars are set back, and those of what is behind another panel are laid out when it comes to the front
@@ -122,7 +122,7 @@ def _dock_place(dock: QDockWidget) -> object:
     return (dock.isFloating(), None if behind else dock.size().toTuple())
 
 
-# What is told of a widget that is not hidden, by its class.
+# What is reported about a widget that is not hidden, by its class.
 SHOWN: tuple[tuple[type | tuple[type, ...], str, Callable[[Any], object]], ...] = (
     (QDockWidget, "place", _dock_place),
     ((QLabel, QLineEdit, QAbstractButton), "text", lambda w: w.text()),

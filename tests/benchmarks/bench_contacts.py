@@ -26,7 +26,7 @@ from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.motion.contact_spans import contact_key, contact_weight
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.contacts import contact_depths, goals_at, pose_with_contacts
+from metagraph.playback.posing.contacts import contact_depths, goals_at, solve_pose_with_contacts
 from metagraph.suggest.find_contacts import find_contacts
 from tests.posing import contact_rig, pose_at
 
@@ -159,7 +159,7 @@ def shared(name: str, pattern: str, most: int) -> None:
             for t in times.tolist()
         ]
         pose = entry.motion.poses()
-        after = pose_with_contacts(pose, rig, goals)
+        after = solve_pose_with_contacts(pose, rig, goals)
         rows.append([measured(rig, p, goals, entry.motion.fps) for p in (pose, after)] + [[len(times)] * 4])
     found = np.array(rows)
     weight = found[:, 2, :1]

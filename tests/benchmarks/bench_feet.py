@@ -31,7 +31,7 @@ from metagraph.playback.posing.foot_slides import (
     FeetWatch,
     FootState,
     clip_speeds,
-    slide_speeds,
+    measure_slide_speeds,
 )
 from tests.benchmarks.bench_weight import FPS, SAMPLE, STANDS, Watched, shared_project
 from tests.posing import pose_at, weight_of
@@ -72,7 +72,7 @@ def slides(plan: Plan, project: Project, times: Array, off: Watched, on: Watched
             if not ground.any():
                 parts.append(f"{name} all steps")
                 continue
-            speed = slide_speeds(of.at, FPS)[ground] * 1000
+            speed = measure_slide_speeds(of.at, FPS)[ground] * 1000
             level, most, over = np.percentile(speed, 95), speed.max(), (speed > 2).mean()
             parts.append(f"{name} {level:.1f} {most:.1f} {over:.2%}")
         share = (here & steps).sum() / here.sum()

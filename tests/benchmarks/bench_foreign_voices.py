@@ -25,7 +25,7 @@ from app.cli.command_output import open_for_command  # noqa: E402
 from metagraph.formats.conversations.files import read_conversation  # noqa: E402
 from metagraph.formats.conversations.languages import Speaking  # noqa: E402
 from metagraph.generation.features import compute_features, conversation_activity, frames_of  # noqa: E402
-from metagraph.generation.performing import side_sound  # noqa: E402
+from metagraph.generation.performing import read_side_sound  # noqa: E402
 from metagraph.generation.poses import encode_clip  # noqa: E402
 from metagraph.generation.statistics import (  # noqa: E402
     MotionSample,
@@ -84,7 +84,7 @@ def turns(language: str, seed: int) -> tuple[maker.Turn, ...]:
 
 
 def takes(model: Model, folder: Path) -> tuple[list[Take], list[Take]]:
-    """Return takes of all languages, and the same speech performed anew."""
+    """Return takes of all languages, and the same speech performed again."""
     opened_as = open_for_command(ROOT / "sample_clips" / "sample.metagraph.yaml")
     project = getattr(opened_as, "project", opened_as)
     found, again = [], []
@@ -99,7 +99,7 @@ def takes(model: Model, folder: Path) -> tuple[list[Take], list[Take]]:
             read_conversation([sound], [said], folder, language, speaking=Speaking("en")).conversation, seed=n
         )
         for side in (0, 1):
-            samples, _ = side_sound(read, side, folder)
+            samples, _ = read_side_sound(read, side, folder)
             count = frames_of(samples.shape[1])
             heard = compute_features(samples, conversation_activity(read, side, count), model.card.tracks)
             for seed, into in ((n, found), (n + AGAIN, again)):

@@ -99,7 +99,7 @@ def bvh_readers(path: Path) -> dict[str, Callable[[], Any]]:
 
 
 def assimp() -> Callable[[Path], None] | None:
-    """Return what has the C++ library read a file, and lets go of it; None where it is not installed."""
+    """Return what has the C++ library read a file, and lets go of it; None if it is not installed."""
     place = Path("cmeel.prefix") / "lib" / "libassimp.so"
     found = [Path(folder) / place for folder in sys.path if (Path(folder) / place).exists()]
     if not found:

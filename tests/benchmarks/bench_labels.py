@@ -4,9 +4,9 @@ On the sample clips, on labelled sets made by others, and on sets made from the 
 (`tests.label_zoo`), each left out of whatever is learned from the others: with names and motion, with names
 alone and with names hidden, by field. A stance counts as right where most clips proposed for it are of that
 stance; "all" are clips all of whose kind, layer, stance and end stance are right; "none" those that are none
-of the four kinds and are told so. Then: whether what is wrong is flagged for a look, how often what is said
-with what confidence is right, how much is right after a person's first looks, and what happens with wrong
-names. "seen" are sets that whoever wrote the product looked at. Prints the tables of
+of the four kinds and are marked so. Then: whether what is wrong is flagged for a look, how often what is
+said with what confidence is right, how much is right after a person's first looks, and what happens with
+wrong names. "seen" are sets that whoever wrote the product looked at. Prints the tables of
 docs/contributing/labelling-figures.md.
 """
 

@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 SIZE = (640, 900)  # pixels of the panel
-STEP = 45  # pixels of a step of the wheel, thrice as many lines
+STEP = 45  # pixels of a step of the wheel, three times as many lines
 
 
 def clips_of(count: int) -> Any:

@@ -18,7 +18,7 @@ from metagraph.graph.conversation.model import Segment, segments_heard_by  # noq
 from metagraph.motion.clip import Clip  # noqa: E402
 from metagraph.research.exhibits.material import make_conversations  # noqa: E402
 from metagraph.research.generation.planted_speech import make_planted_speech  # noqa: E402
-from metagraph.research.motion_graph.extending_evaluation import rows_as_text, score_extending  # noqa: E402
+from metagraph.research.motion_graph.extending_evaluation import format_rows_as_text, score_extending  # noqa: E402
 from metagraph.synthesis.constraints import find_change_states, find_heard_at  # noqa: E402
 from metagraph.synthesis.graph import build_graph  # noqa: E402
 from metagraph.synthesis.states import key_states, read_states  # noqa: E402
@@ -39,7 +39,8 @@ def measured(
     kept, edges = graph.size
     print(f"{words}: {kept:,} states, {edges:,} transitions; {seconds:g} s of other speech")
     print(
-        rows_as_text(list(score_extending([(graph, find_heard_at(states, said), new, seconds)]))), flush=True
+        format_rows_as_text(list(score_extending([(graph, find_heard_at(states, said), new, seconds)]))),
+        flush=True,
     )
 
 

@@ -2,10 +2,10 @@
 tests/benchmarks/bench_names.py [-v]
 
 Truth: tests/suggest/truth/*.json, written by hand. right/said/there: guesses that are right, guesses made,
-labels there are. A label nobody can tell (null) is not counted, except as "needless": guesses made where
-there is none. "looked at": the patterns were written or bettered with that set in mind. "first read": what
-was right when the set was read for the first time, before any pattern was changed for it: what to expect of
-names never seen. -v lists what is wrong.
+labels there are. A label nobody can tell (null) is not counted, except as "needless": guesses made if there
+is none. "looked at": the patterns were written or bettered with that set in mind. "first read": what was
+right when the set was read for the first time, before any pattern was changed for it: what to expect of names
+never seen. -v lists what is wrong.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ BINS = ((0.0, 0.6), (0.6, 0.75), (0.75, 0.85), (0.85, 0.93), (0.93, 1.01))
 
 @dataclass
 class Score:
-    """Of one field in one set: how many labels there are, guessed, guessed rightly; guesses where there is
-    none.
+    """Of one field in one set: how many labels there are, guessed, guessed rightly; guesses if
+    there is none.
     """
 
     there: int = 0

@@ -48,7 +48,7 @@ def path_of(one: LabelSet, sources: tuple[str, ...]) -> dict[str, Any]:
             if none or p is None
             else [f for f, ok in verdict(p, row, meant).items() if f in FIELDS and not ok]
         )
-        missed = p is None and not none  # it was left aside, and is a clip like the others
+        missed = p is None and not none  # it was skipped, and is a clip like the others
         unwanted = p is not None and none
         if off or missed or unwanted:
             wrong += 1

@@ -1,4 +1,4 @@
-"""How often bind poses left in takes are found, and how often one is seen where there is none.
+"""How often bind poses left in takes are found, and how often one is seen if there is none.
 
 Run: python -m tests.benchmarks.bench_stray_poses [FOLDER ...] [--every N] [--show]. Takes of the folders (by
 default the sample clips, and ../shared/data where it is) get bind poses put in, in many ways, which must all

@@ -25,7 +25,13 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.foot_slides import SIDES, WINDOW, clip_speeds, feet_joints, slide_speeds
+from metagraph.playback.posing.foot_slides import (
+    SIDES,
+    WINDOW,
+    clip_speeds,
+    find_feet_joints,
+    measure_slide_speeds,
+)
 from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
@@ -53,7 +59,7 @@ class Watched:
     def __init__(self, plan: Plan, project: Project, times: Array, alive: bool = True) -> None:
         roles, skeleton = anatomy.project_roles(project), project.skeleton
         assert skeleton is not None
-        self.feet = [joint for side in feet_joints(project) for joint in side]
+        self.feet = [joint for side in find_feet_joints(project) for joint in side]
         legs = [[roles[f"{s}_{p}"] for p in ("upper_leg", "lower_leg", "foot")] for s in SIDES]
         parts = []
         for some in np.array_split(times, max(1, len(times) // 1000)):
@@ -110,7 +116,7 @@ def slides(plan: Plan, project: Project, times: Array, ways: dict[str, Watched])
             continue
         line = [f"clips {np.mean(own[:-window][here]) * 1000:.1f}"]
         for name, of in ways.items():
-            speed = slide_speeds(of.at, FPS)[here] * 1000
+            speed = measure_slide_speeds(of.at, FPS)[here] * 1000
             level, most, over = np.percentile(speed, 95), speed.max(), (speed > 2).mean()
             line.append(f"{name} 95 % {level:.1f}, most {most:.1f}, {over:.2%} over 2")
         print(f"    {word:22} {here.sum() / FPS / here.shape[1]:7.1f} s  " + "; ".join(line))

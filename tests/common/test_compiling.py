@@ -104,7 +104,7 @@ def test_an_environment_of_somebody_else_is_left_alone_and_its_command_is_told(
     with pytest.raises(CompilerError) as told:
         find_compiler()
     assert f'"{sys.executable}" -m pip install "numba>=' in str(told.value) and not setup.started
-    monkeypatch.setattr(compiling, "ROOT", tmp_path)  # nor where there is no run.py
+    monkeypatch.setattr(compiling, "ROOT", tmp_path)  # nor if there is no run.py
     (tmp_path / ".installed").write_text("")
     with pytest.raises(CompilerError, match="pip install"):
         find_compiler()

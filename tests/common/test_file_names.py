@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.common.budgets import NAME_BYTES
-from metagraph.common.file_names import file_stem, file_stems, fold_file_name
+from metagraph.common.file_names import file_stem, fold_file_name, make_file_stems
 
 DEVICES = ("CON", "nul", "Aux", "PRN", "COM1", "lpt9", "COM¹", "CONIN$")
 
@@ -83,7 +83,7 @@ def test_cut_names_stay_apart() -> None:
 
 
 def test_names_that_some_system_cannot_tell_apart_get_numbers() -> None:
-    assert file_stems(["Wave", "wave", "WAVE", "wave-2", "bow"]) == [
+    assert make_file_stems(["Wave", "wave", "WAVE", "wave-2", "bow"]) == [
         "Wave",
         "wave-2",
         "WAVE-3",
@@ -91,11 +91,14 @@ def test_names_that_some_system_cannot_tell_apart_get_numbers() -> None:
         "bow",
     ]
     composed, apart = "\u00e9", "e\u0301"
-    assert fold_file_name(composed) == fold_file_name(apart) and len(set(file_stems([composed, apart]))) == 2
-    assert file_stems(["a:", "a?"]) == ["a_", "a_-2"]
+    assert (
+        fold_file_name(composed) == fold_file_name(apart)
+        and len(set(make_file_stems([composed, apart]))) == 2
+    )
+    assert make_file_stems(["a:", "a?"]) == ["a_", "a_-2"]
 
 
 @given(st.lists(st.text(max_size=8), max_size=20))
 def test_names_of_many_are_apart_on_any_disk(texts: list[str]) -> None:
-    names = file_stems(texts)
+    names = make_file_stems(texts)
     assert len({fold_file_name(n) for n in names}) == len(texts)

@@ -149,7 +149,7 @@ def test_a_child_finds_what_its_parent_does_and_nothing_of_the_working_folder(
     assert code == 0, said
     assert (
         str(ROOT / "metagraph" / "__init__.py") in said
-        and f" {programs.working_folder()} 1 ['a b', '']" in said
+        and f" {programs.find_working_folder()} 1 ['a b', '']" in said
     )
     assert "__main__" in said and f"'{tmp_path}'" not in said
 
@@ -163,7 +163,7 @@ def test_variables_that_name_code_are_not_passed_on(monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("PATH", os.pathsep.join(["", ".", "bin", str(tmp_path)]))
     monkeypatch.setenv("LD_LIBRARY_PATH", os.pathsep.join(["", "lib", "/opt/lib"]))
     monkeypatch.setenv("DISPLAY", ":7")
-    given = programs.program_environment({"OURS": "1"})
+    given = programs.make_program_environment({"OURS": "1"})
     assert not set(code) & set(given)
     assert given["DISPLAY"] == ":7" and given["OURS"] == "1"
     if os.name != "nt":
@@ -184,7 +184,7 @@ def test_programs_begin_in_an_empty_folder_of_the_users(
 ) -> None:
     for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(name, str(tmp_path / "home"))
-    place = programs.working_folder()
+    place = programs.find_working_folder()
     assert place.is_dir() and not list(place.iterdir()) and place.is_relative_to(tmp_path)
     if os.name != "nt":
         assert stat.S_IMODE(place.stat().st_mode) == 0o700

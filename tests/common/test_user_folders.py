@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.common.user_folders import user_folder
+from metagraph.common.user_folders import find_user_folder
 
 
 @pytest.fixture(autouse=True)
@@ -30,7 +30,7 @@ def test_each_system_has_its_places(
     home: Path, monkeypatch: pytest.MonkeyPatch, system: str, caches: str, data: str
 ) -> None:
     monkeypatch.setattr(sys, "platform", system)
-    assert user_folder("caches") == home / caches and user_folder("data") == home / data
+    assert find_user_folder("caches") == home / caches and find_user_folder("data") == home / data
 
 
 def test_a_variable_goes_first_and_an_empty_one_says_nothing(
@@ -39,7 +39,7 @@ def test_a_variable_goes_first_and_an_empty_one_says_nothing(
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", "/elsewhere")
     monkeypatch.setenv("XDG_CACHE_HOME", "")
-    assert user_folder("data") == Path("/elsewhere") and user_folder("caches") == home / ".cache"
+    assert find_user_folder("data") == Path("/elsewhere") and find_user_folder("caches") == home / ".cache"
 
 
 def test_where_nobodys_home_is_known_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,4 +47,4 @@ def test_where_nobodys_home_is_known_there_is_none(monkeypatch: pytest.MonkeyPat
         raise RuntimeError
 
     monkeypatch.setattr(Path, "home", homeless)
-    assert user_folder("caches") is None
+    assert find_user_folder("caches") is None

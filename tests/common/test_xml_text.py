@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from metagraph.common import svg
-from metagraph.common.xml_text import INSTEAD, escape, quote_xml, replaced_note, xml_text
+from metagraph.common.xml_text import INSTEAD, describe_replaced, escape, quote_xml, xml_text
 from metagraph.research.study.reports.figure_files import standalone
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,15 +28,15 @@ def test_any_text_stands_in_an_element_and_an_attribute(text: str) -> None:
 
 @given(st.text(st.characters(exclude_categories=("Cs",))))
 def test_what_xml_can_hold_stays_as_it_is(text: str) -> None:
-    if replaced_note([text]) is None:
+    if describe_replaced([text]) is None:
         assert xml_text(text) == text
     else:
         assert INSTEAD in xml_text(text)
 
 
 def test_what_is_replaced_is_counted_and_told() -> None:
-    assert replaced_note(["plain", {"a": ["b", 3, None]}]) is None
-    assert str(replaced_note(["a\x00", {"k\x01": ["b\x02", "c"]}])).startswith("3 texts hold")
+    assert describe_replaced(["plain", {"a": ["b", 3, None]}]) is None
+    assert str(describe_replaced(["a\x00", {"k\x01": ["b\x02", "c"]}])).startswith("3 texts hold")
 
 
 def test_a_figure_with_control_characters_in_its_words_is_read() -> None:

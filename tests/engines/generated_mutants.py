@@ -35,7 +35,7 @@ SECONDS = 60.0  # what takes longer than this goes round for ever
 @dataclass(frozen=True)
 class Language:
     """A runtime and what of it is changed. folder: where it is. ends: of its sources' names. left_out: parts
-    of paths of what vectors cannot see. silent: what a line holds that tells of errors alone.
+    of paths of what vectors cannot see. silent: what a line holds that reports errors alone.
     """
 
     folder: str
@@ -140,7 +140,7 @@ def _of(language: Language, name: str, source: str) -> Iterator[Edit]:
 
 
 def _instead(token: re.Match[str], line: str) -> str | None:
-    """Return what a token becomes; None where it stays."""
+    """Return what a token becomes; None if it stays."""
     old, before, after = token[0], line[: token.start()], line[token.end() :]
     if token["number"]:
         number = float(old.rstrip("f"))
@@ -184,7 +184,7 @@ class NodeRunner:
         self.process: subprocess.Popen[bytes] | None = None
 
     def notices(self, edit: Edit | None) -> str:
-        """Return how vectors notice a change: "" where they do not."""
+        """Return how vectors notice a change: "" if they do not."""
         self.count += 1
         folder = self.scratch / f"runtime{self.count}"
         shutil.copytree(RUNTIMES / "javascript", folder)
@@ -236,7 +236,7 @@ class CommandRunner:
         shutil.copytree(source, self.runtime)
 
     def notices(self, edit: Edit | None) -> str:
-        """Return how vectors notice a change: "" where they do not."""
+        """Return how vectors notice a change: "" if they do not."""
         before = apply(edit, self.runtime) if edit is not None else ""
         try:
             for command in self._commands():

@@ -156,7 +156,7 @@ def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: 
             assert a.keys() == b.keys()
             assert all(np.allclose(a[field], b[field], atol=1e-4) for field in a)
     assert mine == other
-    for field in ("glb_bytes", "glb_sha256"):  # of keys that were chosen anew
+    for field in ("glb_bytes", "glb_sha256"):  # of keys that were chosen again
         ours.pop(field), theirs.pop(field)
     for layer in LAYERS:  # found in twice as many frames
         both = (data["layers"][layer]["actions"] for data in (ours, theirs))

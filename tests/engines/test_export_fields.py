@@ -1,5 +1,5 @@
 """Every number that an export says of an action is heard by this library and by each runtime: change it, and
-both play otherwise, in the same way.
+both play differently, in the same way.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Exports written by earlier versions load and play, in the library and in JavaScript; what they lack takes
 its usual value.
 
-`old/<format>/` holds exports as they were written then; they are never made anew.
+`old/<format>/` holds exports as they were written then; they are never made again.
 """
 
 from __future__ import annotations

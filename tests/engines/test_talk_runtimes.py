@@ -335,5 +335,5 @@ def test_gdscript_says_what_javascript_says(wanted: Any, sample_export: Path, ga
 
 
 def test_every_language_has_the_lists() -> None:
-    """That they are equal to the files is told by `test_talk`."""
+    """That they are equal to the files is given by `test_talk`."""
     assert set(gesture_word_lists()) == {JAVASCRIPT, GODOT, UNITY, CPP}

@@ -212,7 +212,7 @@ def test_names_that_are_no_identifiers_become_ones_and_none_is_twice() -> None:
         and len(set(paths)) == 5
     )
     assert all(part.isidentifier() and part.isascii() for path in paths for part in path.split("/"))
-    assert usda.usda_string('a"\\\n\x01é') == '"a\\"\\\\\\n\\x01é"'
+    assert usda.format_usda_string('a"\\\n\x01é') == '"a\\"\\\\\\n\\x01é"'
 
 
 def test_a_skeleton_alone_and_a_clip_of_one_frame_are_stages_too(tmp_path: Path, still: Clip) -> None:

@@ -460,7 +460,9 @@ def test_gesture_json_holds_a_gesture_that_repeats_for_its_whole_cycles(sample: 
 
 
 def test_control_characters_in_names_and_texts_spoil_no_export(sample: Project, tmp_path: Path) -> None:
-    """Whatever a target writes as XML is read by a parser; what was replaced is told, and the rest is whole."""
+    """Whatever a target writes as XML is read by a parser; what was replaced is reported, and the rest is
+    whole.
+    """
     bad = "bell \x07 and \x1b[31m \ufffe"
     first, *rest = sample.actions()
     project = edits.update_actions(sample, [first.id, rest[0].id], tags=(bad,))

@@ -1,4 +1,4 @@
-"""Verifying an export tells of each file that is not the one that was written, and of exports that were
+"""Verifying an export reports each file that is not the one that was written, and of exports that were
 interrupted.
 """
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.formats.clip_identity import DIGITS, with_clip_identity, without_clip_identity
+from metagraph.formats.clip_identity import DIGITS, remove_clip_identity, with_clip_identity
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.store import encode_project, parse_project
 from metagraph.graph import edits
@@ -76,7 +76,7 @@ def test_a_renamed_moved_or_exchanged_file_is_the_same_clip(changed: dict[str, o
         a for a in with_clip_identity(to_data(project()))["layers"]["arms"]["actions"] if a["id"] == "a5"
     )
     entry = replace(project().clips["c4"], **changed)
-    assert without_clip_identity(action, {"c4": entry}) == to_data(project())["layers"]["arms"]["actions"][1]
+    assert remove_clip_identity(action, {"c4": entry}) == to_data(project())["layers"]["arms"]["actions"][1]
 
 
 @pytest.mark.parametrize("digest", [WAVE, ""])
@@ -95,7 +95,7 @@ def test_another_clip_under_the_id_is_an_error_until_a_person_decides(digest: st
 
 def test_files_without_it_are_read_and_nothing_is_claimed() -> None:
     action = {"id": "a1", "clip": "c1", "name": "wave"}
-    assert without_clip_identity(action, {"c1": ClipEntry("c1", "other", "x.glb")}) is action
+    assert remove_clip_identity(action, {"c1": ClipEntry("c1", "other", "x.glb")}) is action
     assert Action("a", "c", "gesture", "arms", "s", "x").clip_name == ""
 
 

@@ -185,7 +185,7 @@ def test_what_is_true_of_many_files_is_said_once(shared_data: Path) -> None:
     result = import_files(Project(), None, [shared_data / "bandai-namco-1"])
     assert len(result.notes) == 1
     assert result.notes[0].startswith(
-        "63 files (dataset-1_bow_active_001.bvh ...): units taken for centimetres"
+        "63 files (dataset-1_bow_active_001.bvh …): units taken for centimetres"
     )
 
 
@@ -233,7 +233,7 @@ def test_bones_of_another_length_are_told_once_with_a_count(tmp_path: Path) -> N
     result = import_files(Project(), tmp_path, [tmp_path])
     assert len(result.loaded) == 5
     (told,) = (n for n in result.notes if "bones" in n)
-    assert told.startswith("2 clips ('long' ...) have bones up to 8%")
+    assert told.startswith("2 clips ('long' …) keep their bones, which are up to 8 %")
 
 
 def test_a_files_prefix_on_the_joints_names_makes_no_stranger(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from metagraph.graph import edits
 from metagraph.graph.face.arkit import ARKIT
 from metagraph.graph.face.curves import fit_curves_to_face
 from metagraph.graph.face.rig import with_morphs
-from metagraph.graph.face.takes import face_joints
+from metagraph.graph.face.takes import find_face_joints
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.playback.planner import make_plan
@@ -150,7 +150,9 @@ def test_on_a_character_the_face_moves_and_nothing_else(sample: Project, tmp_pat
     clip = list(after.clips)[-1]
     after = edits.place_clips(after, [clip], "head", "gesture", stance)
     action = list(after.graphs["head"].actions.values())[-1]
-    assert action.joints == face_joints(after) and "Head" in action.joints and "Hips" not in action.joints
+    assert (
+        action.joints == find_face_joints(after) and "Head" in action.joints and "Hips" not in action.joints
+    )
     entry = after.clips[clip]
     assert entry.motion is not None
     made = fit_curves_to_face(after, entry.motion)

@@ -1,4 +1,4 @@
-"""Links from a spreadsheet: what its cells may say, and what is told of those that cannot be read."""
+"""Links from a spreadsheet: what its cells may say, and what is reported about those that cannot be read."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_a_table_that_was_written_gives_the_same_links() -> None:
     p = m.add_link(p, "arms", alias, ids["wave"])
     p = m.update_links(p, [*p.manual["arms"].links][:1], exit_time=0.3, blend=0.1)
     bare = m.remove_states(p, links=[*p.manual["arms"].links])
-    out = t.fill_machine(bare, "arms", t.parse_manual_table(t.machine_as_table(p.manual["arms"])))
+    out = t.fill_machine(bare, "arms", t.parse_manual_table(t.encode_machine_as_table(p.manual["arms"])))
     keys = [
         [
             (x.source, x.target, x.condition, x.exit_time, x.exit_part, x.blend)

@@ -172,7 +172,7 @@ def test_where_nothing_can_be_kept_it_is_read(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "caches"))
     monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "caches"))
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
-    kept = motion_cache.motion_cache_folder()
+    kept = motion_cache.find_motion_cache_folder()
     assert kept is not None and kept.name == "motion" and kept.is_relative_to(tmp_path)
 
 

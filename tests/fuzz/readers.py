@@ -225,7 +225,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.research.study.perceive.answers import read_answers
     from metagraph.research.study.perceive.perceive_plan import read_perceive_plan
     from metagraph.research.study.study_plan import read_study
-    from metagraph.speech.lines import read_line_voice, voice_from_phones
+    from metagraph.speech.lines import make_voice_from_phones, read_line_voice
 
     def drawn(path: Path) -> None:
         for read in (read_character, read_vrm_roles, morph_targets, has_skinned_mesh):
@@ -290,7 +290,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
-        "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
+        "textgrid": Fuzzed(make_voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
         "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),
         "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm", ".tsv"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),

@@ -24,7 +24,7 @@ from metagraph.formats.gltf.reader import read_character, read_gltf_clips, read_
 from metagraph.formats.imports import import_files
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.model import Project
-from metagraph.speech.lines import read_line_voice, voice_from_phones
+from metagraph.speech.lines import make_voice_from_phones, read_line_voice
 from tests.fuzz.spoiling import packed
 from tests.wavs import wav
 
@@ -63,13 +63,13 @@ def grid(end: float, intervals: list[tuple[float, float]]) -> str:
 @pytest.mark.parametrize("end", [1e5, 9_999_999])
 def test_a_textgrid_of_a_day_is_no_line(tmp_path: Path, end: float) -> None:
     (tmp_path / "a.TextGrid").write_text(grid(end, [(0, end)]))
-    assert "1800 s" in refused(voice_from_phones, tmp_path / "a.TextGrid").cause
+    assert "1800 s" in refused(make_voice_from_phones, tmp_path / "a.TextGrid").cause
 
 
 def test_intervals_over_each_other_cost_no_more_than_in_turn(tmp_path: Path) -> None:
     """Kept apart, 800 sounds of 425 s would be 17 million shapes at 50 a second, of 32 bytes and more each."""
     (tmp_path / "a.TextGrid").write_text(grid(425, [(n * 1e-3, 425) for n in range(800)]))
-    frugal(voice_from_phones, tmp_path / "a.TextGrid")
+    frugal(make_voice_from_phones, tmp_path / "a.TextGrid")
 
 
 @pytest.mark.parametrize("rate", [400_000_000, 2_000_000_000, budgets.SOUND_RATES[1] + 1])

@@ -61,9 +61,9 @@ def test_tokens_of_all_components_give_their_poses_back():
     sizes = MatchingSizes(pose=5, dims=20)
     poses = np.cumsum(CHANCE.standard_normal((400, 5)), 0)
     w = vae.principal(vae.list_spans(poses, 4), 20, "tokens")
-    tokens = chunks.tokens_of(w, sizes, poses)
+    tokens = chunks.make_tokens(w, sizes, poses)
     assert tokens.shape == (100, 20)
-    assert np.abs(chunks.poses_from_tokens(w, sizes, tokens) - poses).max() < 1e-3
+    assert np.abs(chunks.join_token_poses(w, sizes, tokens) - poses).max() < 1e-3
     held = chunks.tokens_of_still_pose(w, sizes, poses[7])
     assert held.shape == (6, 20)
     assert np.ptp(held, axis=0).max() == 0
@@ -75,7 +75,7 @@ def _few_components():
     rows = np.cumsum(CHANCE.standard_normal((4000, 5)), 0)
     poses = np.stack([np.convolve(r, np.ones(5) / 5, "same") for r in rows.T], 1)
     w = vae.principal(vae.list_spans(poses, 4), 7, "tokens")
-    tokens = chunks.tokens_of(w, sizes, poses)
+    tokens = chunks.make_tokens(w, sizes, poses)
     w["tokens.joined"] = chunks.join_by_least_squares(
         [(tokens, vae.list_spans(poses, 4) - w["tokens.mean"])], 1
     )
@@ -84,7 +84,7 @@ def _few_components():
 
 def test_pieces_told_by_their_neighbours_meet():
     sizes, w, poses, tokens = _few_components()
-    apart = chunks.poses_from_tokens(w, sizes, tokens)
+    apart = chunks.join_token_poses(w, sizes, tokens)
     joining = chunks.Joining(w, sizes, len(tokens))
     together = np.concatenate([joining.of(tokens), joining.rest()])
     assert together.shape == poses.shape
@@ -115,7 +115,7 @@ def test_a_model_whose_pieces_are_told_alone_gives_them_at_once():
     alone = MatchingSizes(pose=5, dims=7)
     joining = chunks.Joining(w, alone, 2)
     assert joining.delay == 0
-    assert np.array_equal(joining.of(tokens[:2]), chunks.poses_from_tokens(w, alone, tokens[:2]))
+    assert np.array_equal(joining.of(tokens[:2]), chunks.join_token_poses(w, alone, tokens[:2]))
     assert not len(joining.rest())
 
 

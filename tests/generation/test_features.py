@@ -19,11 +19,11 @@ from metagraph.generation.features import (
     as_heard,
     compute_features,
     conversation_activity,
+    detect_voice_activity,
     frames_of,
     one_hot,
     silence,
     speaking,
-    voice_activity,
     with_edges,
 )
 from metagraph.generation.poses import Standardisation
@@ -162,10 +162,10 @@ def test_without_words_loudness_tells_who_speaks():
     own, other = babble(8, 3), babble(8, 4)
     own[: 4 * RATE] *= 1e-3
     other[4 * RATE :] *= 1e-3
-    told = voice_activity(own, other, RATE, 200)
+    told = detect_voice_activity(own, other, RATE, 200)
     assert told[:100, 0].mean() < 0.05 < 0.2 < told[100:, 0].mean()
     assert told[100:, 1].mean() < 0.05 < 0.2 < told[:100, 1].mean()
-    alone = voice_activity(own, None, RATE, 200)
+    alone = detect_voice_activity(own, None, RATE, 200)
     assert not alone[:, 1].any()
     assert not alone[:, 2].any()
 

@@ -24,8 +24,8 @@ from metagraph.generation.performing import (
     hear_side,
     moves_skeleton,
     project_rig,
+    read_side_sound,
     side_clip,
-    side_sound,
 )
 from metagraph.generation.poses import PoseError
 from metagraph.generation.sampler import hear_activity, sample_whole
@@ -113,24 +113,26 @@ def test_a_short_sound_is_moved_to_again_each_time_otherwise(sample, model):
 def test_sides_hear_their_own_voice_first_and_what_is_missing_is_told(sample, tmp_path):
     project = talking(sample, tmp_path)
     talk = project.conversations["v1"]
-    ada, ben = (side_sound(talk, n, tmp_path)[0] for n in (0, 1))
+    ada, ben = (read_side_sound(talk, n, tmp_path)[0] for n in (0, 1))
     assert np.allclose(ada, ben[::-1]) and ada.shape == (2, 6 * RATE)
     mute = msgspec.structs.replace(
         talk, sides=(msgspec.structs.replace(talk.sides[0], audio=None, channel=None), talk.sides[1])
     )
-    samples, notes = side_sound(mute, 0, tmp_path)
+    samples, notes = read_side_sound(mute, 0, tmp_path)
     assert not samples[0].any() and samples[1].any() and len(notes) == 1 and notes[0].startswith("Ada ")
 
 
 def test_of_three_all_others_are_one_voice_each_heard_once(sample, tmp_path):
     talk = talking(sample, tmp_path).conversations["v1"]
-    ada, ben = side_sound(talk, 0, tmp_path)[0]
+    ada, ben = read_side_sound(talk, 0, tmp_path)[0]
     three = msgspec.structs.replace(talk, sides=(*talk.sides, talk.sides[1]))
-    assert np.allclose(side_sound(three, 0, tmp_path)[0], (ada, ben)), "the third shares the second's channel"
+    assert np.allclose(read_side_sound(three, 0, tmp_path)[0], (ada, ben)), (
+        "the third shares the second's channel"
+    )
     other = msgspec.structs.replace(talk, sides=(*talk.sides, talk.sides[0]))
-    assert np.allclose(side_sound(other, 1, tmp_path)[0], (ben, ada))
+    assert np.allclose(read_side_sound(other, 1, tmp_path)[0], (ben, ada))
     apart = msgspec.structs.replace(talk, sides=(talk.sides[0], *talk.sides))
-    assert np.allclose(side_sound(apart, 0, tmp_path)[0], (ada, ada + ben))
+    assert np.allclose(read_side_sound(apart, 0, tmp_path)[0], (ada, ada + ben))
 
 
 def test_a_sound_that_is_gone_is_an_error_that_names_it(sample, tmp_path):

@@ -1,4 +1,4 @@
-"""Skeletons of other studios: whatever has arms and a head is told in numbers and comes back."""
+"""Skeletons of other studios: whatever has arms and a head is given in numbers and comes back."""
 
 from __future__ import annotations
 

@@ -16,9 +16,9 @@ from metagraph.generation.poses import PoseError
 from metagraph.generation.sampler import (
     TakeSampler,
     clip_of,
-    conversation_motion,
     first_pose,
     hear_activity,
+    make_conversation_motion,
     sample_whole,
 )
 from metagraph.generation.stored import Model
@@ -160,7 +160,7 @@ def test_weights_that_run_away_give_rotations_all_the_same(kind):
 
 def test_a_conversation_gives_a_clip_of_its_length_on_the_models_skeleton():
     talk = conversation(3)
-    clip = conversation_motion(MODELS["flow-vae"], talk, 1, SOUND[::-1], seed=2)
+    clip = make_conversation_motion(MODELS["flow-vae"], talk, 1, SOUND[::-1], seed=2)
     assert clip.skeleton == stance().skeleton
     assert clip.duration == pytest.approx(3.0)
     assert clip.name == "talk, side 2"

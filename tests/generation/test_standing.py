@@ -1,4 +1,4 @@
-"""How far a training got is told from its folder, whatever became of it."""
+"""How far a training got is read from its folder, whatever became of it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from metagraph.generation.standing import (
     find_begun_trainings,
     hold,
     is_busy,
+    measure_training_share,
     standing_of,
-    training_share,
 )
 from metagraph.generation.takes import Take, TakeMarks, TakeSource
 from metagraph.generation.train_plan import TrainingPlan, folder_of, plan_of, write_training
@@ -87,7 +87,7 @@ def test_trainings_are_listed_wherever_they_were_moved_those_that_are_over_last(
 @pytest.mark.parametrize(("limits", "share"), [({}, 0.4), ({"seconds": 200.0}, 0.6), ({"steps": 10}, 1.0)])
 def test_what_is_over_first_counts(tmp_path: Path, limits: dict[str, float], share: float) -> None:
     plan = made(tmp_path / "a.mgmodel", minutes=5.0, **limits)
-    assert training_share(plan, 20, 120.0, 2.0) == pytest.approx(share)
+    assert measure_training_share(plan, 20, 120.0, 2.0) == pytest.approx(share)
 
 
 def test_a_folder_is_held_by_one_process_until_that_ends_however_it_ends(tmp_path: Path) -> None:

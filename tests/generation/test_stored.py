@@ -59,7 +59,7 @@ def test_a_model_comes_back_to_the_bit(tmp_path, kind):
 
 
 def test_a_model_of_the_first_format_moves_as_it_did(tmp_path):
-    """Its pieces are told by their own tokens alone, and no file says so."""
+    """Its pieces are given by their own tokens alone, and no file says so."""
     sizes = msgspec.structs.replace(tiny("matching"), around=0)
     model = untrained("matching", sizes=sizes)
     write_model(model, tmp_path / "new.mgmodel")

@@ -19,7 +19,7 @@ from metagraph.generation.take_files import (
     UNLICENSED,
     TakeFiles,
     find_takes,
-    licence_of,
+    read_licence,
     read_speech,
     read_take_batch,
 )
@@ -155,7 +155,7 @@ def test_where_a_take_is_from_is_kept(tmp_path):
     assert take.source.digests == (digest(folder / "talk.bvh"), digest(folder / "talk.wav"))
     assert take.source.licence == "LICENSE.txt: CC BY-NC 4.0"
     (tmp_path / "LICENSE.txt").unlink()
-    assert licence_of(folder) == UNLICENSED
+    assert read_licence(folder) == UNLICENSED
 
 
 def test_reading_can_be_stopped_and_a_missing_folder_is_told(tmp_path):

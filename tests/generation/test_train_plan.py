@@ -1,4 +1,4 @@
-"""What a training is asked to do is kept whole; what is damaged is told."""
+"""What a training is asked to do is kept whole; what is damaged is reported."""
 
 from __future__ import annotations
 

@@ -65,8 +65,8 @@ def test_joints_move_as_far_as_their_weights_say_where_the_action_moves_them_at_
     mask = anatomy.action_mask(project, project.action(ident))
     found = {project.skeleton.names[i]: float(mask[i]) for i in np.flatnonzero(mask)}
     assert found == {"Head": 0.25}, "one hand is the other arm's, the other is not among its joints"
-    assert anatomy.unknown_joints(project.skeleton, project.action(ident)) == ["Nowhere"]
-    assert anatomy.unknown_joints(None, project.action(ident)) == []
+    assert anatomy.list_unknown_joints(project.skeleton, project.action(ident)) == ["Nowhere"]
+    assert anatomy.list_unknown_joints(None, project.action(ident)) == []
 
 
 def test_a_mask_is_told_by_what_does_not_move_wholly(toy: Any) -> None:

@@ -212,9 +212,9 @@ def test_an_open_loop_gets_a_blended_seam(toy: Any) -> None:
         Project(),
         [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5)), ("one.glb", 0, "", toy.clip("one", 0.0))],
     )
-    assert edits.default_timing(project.clips["c1"], "stance").blend_in == 0.4
-    assert edits.default_timing(project.clips["c2"], "stance").blend_in == 0.0
-    assert edits.default_timing(project.clips["c2"], "gesture") == Timing(blend_in=0.0, blend_out=0.0)
+    assert edits.make_default_timing(project.clips["c1"], "stance").blend_in == 0.4
+    assert edits.make_default_timing(project.clips["c2"], "stance").blend_in == 0.0
+    assert edits.make_default_timing(project.clips["c2"], "gesture") == Timing(blend_in=0.0, blend_out=0.0)
 
 
 def test_updating_many_actions_changes_only_what_is_named(toy: Any) -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.formats.project.data import from_data, struct_data, struct_from, to_data
+from metagraph.formats.project.data import decode_struct, encode_struct, from_data, to_data
 from metagraph.graph.life import (
     DIALS,
     MANNER_DIALS,
@@ -97,7 +97,7 @@ def test_a_mode_that_does_not_exist_is_refused() -> None:
 
 
 def test_life_at_its_defaults_takes_no_room_in_a_file() -> None:
-    assert struct_data(Life()) == {} and struct_data(Face()) == {}
+    assert encode_struct(Life()) == {} and encode_struct(Face()) == {}
 
 
 lives = st.builds(
@@ -118,7 +118,7 @@ lives = st.builds(
 
 @given(lives)
 def test_whatever_is_set_comes_back_from_the_file(life: Life) -> None:
-    assert struct_from(struct_data(life), Life, "life") == life
+    assert decode_struct(encode_struct(life), Life, "life") == life
 
 
 def test_a_face_comes_back_from_the_file() -> None:

@@ -1,4 +1,4 @@
-"""The values of a project: ids, spans, and an index that is patched as if it had been built anew."""
+"""The values of a project: ids, spans, and an index that is patched as if it had been built again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Requests on the clipboard: gaps are kept, what the other project has is found by name, the rest is told."""
+"""Requests on the clipboard: gaps are kept, what the other project has is found by name, the rest is
+reported.
+"""
 
 from __future__ import annotations
 

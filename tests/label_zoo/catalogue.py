@@ -126,7 +126,7 @@ RECIPES: Mapping[str, Recipe] = {
 
 @lru_cache(maxsize=6)  # a set is tens of megabytes; the tests of a file go through few
 def named(name: str) -> MadeSet:
-    """Make a set of RECIPES. Raises KeyError where there is none of that name."""
+    """Make a set of RECIPES. Raises KeyError if there is none of that name."""
     return make(name, RECIPES[name], 0)
 
 

@@ -2,8 +2,8 @@
 and axes, other poses, lengths and words.
 
 Each kind writes a small set of clips, reads and labels it, and says what a person would complain of: nothing
-where the program mends the fault and says so, or reports it. The figures are those of `tests.zoo`; the motion
-is made here, of a few poses.
+if the program mends the fault and says so, or reports it. The figures are those of `tests.zoo`; the motion is
+made here, of a few poses.
 """
 
 from __future__ import annotations

@@ -61,9 +61,9 @@ def others(sets: Iterable[LabelSet], one: LabelSet, siblings: bool = False) -> l
 @dataclass
 class Tally:
     """What was counted. right, there: by field; "none": clips that are none of the four kinds, and how many
-    of them are told so; "clip": all that decides is right. flags: flagged, wrong, both (of those that should
-    be), clips, and causes. sure: by field, for each of BINS how many, how many right, and the sum of what was
-    said. placed: how many of clips the product places by itself.
+    of them are marked so; "clip": all that decides is right. flags: flagged, wrong, both (of those that
+    should be), clips, and causes. sure: by field, for each of BINS how many, how many right, and the sum of
+    what was said. placed: how many of clips the product places by itself.
     """
 
     right: Counter[str] = field(default_factory=Counter)
@@ -241,7 +241,7 @@ def _proposals(project: Project, clips: list[str] | None, memory: Memory, propos
 
 
 def read(project: Project, truth: Truth, found: Proposals) -> dict[str, str]:
-    """Return which stance of the truth a person takes each proposed one for: by its name where that is one's,
+    """Return which stance of the truth a person takes each proposed one for: by its name if that is one's,
     else by its clips.
     """
     stances = {_alike(row["stance"]): row["stance"] for row in truth.values() if row["stance"]}

@@ -1,4 +1,4 @@
-"""The zoo of made label sets: what is told of a clip is what its motion does; a seed gives one set."""
+"""The zoo of made label sets: what is reported about a clip is what its motion does; a seed gives one set."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def posed(clip: Clip, frames: Any = slice(None)) -> dict[str, Any]:
 
 def vector(clip: Clip, frame: int, layer: str) -> Any:
     pose = posed(clip, [frame])
-    if layer == "head":  # how the head is turned tells of it; the rest sways
+    if layer == "head":  # how the head is turned reports it; the rest sways
         head = find_roles(clip.skeleton)["head"]
         up = clip.skeleton.globals(clip.poses()[[frame]])[0][0, head]
         rest = clip.skeleton.globals(clip.skeleton.rest)[0][head]

@@ -27,7 +27,7 @@ def small() -> MadeSet:
 def told(
     made: MadeSet, change: Callable[[str, dict[str, Any]], None] = lambda n, r: None, sure: float = 0.99
 ) -> Any:
-    """Return a proposer that says the truth, but for what `change` does to its row, as sure as told."""
+    """Return a proposer that says the truth, except for what `change` does to its row, as sure as told."""
 
     def propose(project: Project, clips: Any = None, **_: Any) -> Proposals:
         out, places = {}, {}

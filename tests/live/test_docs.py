@@ -34,7 +34,7 @@ def section(name: str, title: str) -> str:
 
 
 def test_the_published_schemas_are_those_of_the_code() -> None:
-    for path, text in schemas.schema_texts().items():
+    for path, text in schemas.make_schema_texts().items():
         assert path.read_bytes() == text, "write them anew: .venv/bin/python -m metagraph.live.schemas"
 
 
@@ -164,7 +164,7 @@ def test_the_python_client_runs(port: str, tmp_path: Path) -> None:
 
 
 def test_the_talking_agent_talks_with_voice_lips_and_gestures(port: str, tmp_path: Path) -> None:
-    """It is told something, and what it does about it is what was played: most gestures on their words."""
+    """It hears something, and what it does about it is what was played: most gestures on their words."""
     if shutil.which("espeak-ng") is None:
         pytest.skip("espeak-ng is not here (python3 run.py test installs it)")
     text = (CLIENTS / "talking_agent.py").read_text(encoding="utf-8")

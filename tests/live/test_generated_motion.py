@@ -164,7 +164,7 @@ def test_a_model_of_another_skeleton_and_one_too_large_are_refused(session, samp
     write_model(untrained("flow-vae", sizes=FlowSizes(pose=rig().numbers, dims=24, units=1000)), huge, True)
     session = LiveSession(sample, models={"huge": huge})
     session.join(1)
-    assert "million numbers" in ask(session, {"do": "generate", "model": "huge"})["why"]
+    assert "million parameters" in ask(session, {"do": "generate", "model": "huge"})["why"]
 
 
 def _renamed(clip, names):
@@ -194,11 +194,11 @@ def test_what_is_heard_is_checked(session, request_, words):
 
 def test_sound_that_comes_too_fast_or_from_somebody_else_is_refused(session):
     session.join(2)
-    assert "ask to `generate`" in ask(session, {"do": "hear", "audio": sound(0.1)})["why"]
+    assert "send `generate` first" in ask(session, {"do": "hear", "audio": sound(0.1)})["why"]
     ask(session, {"do": "generate", "model": "cvae"})
     assert "another client" in ask(session, {"do": "hear", "audio": sound(0.1)}, client=2)["why"]
     replies = [ask(session, {"do": "hear", "audio": sound(1.0)}) for _ in range(4)]
-    assert replies[0]["state"] == "done" and "not faster" in replies[-1]["why"]
+    assert replies[0]["state"] == "done" and "in real time" in replies[-1]["why"]
     status = ask(session, {"do": "status"})["generating"]
     assert status["model"] == "cvae" and 2.0 < status["waits"] <= 3.0
 

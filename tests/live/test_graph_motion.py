@@ -185,7 +185,7 @@ def test_a_flood_is_refused_and_what_is_kept_stays_small(session) -> None:
     assert any("too much at once" in r.get("why", "") for r in replies) and len(motion._news) <= NEWS
     piece = sound(voice(1.4, [], 0.0, 0.0))
     why = [ask(session, {"do": "hear", "audio": piece}).get("why", "") for _ in range(4)]
-    assert "not faster" in why[-1] and motion.waiting <= WAITS
+    assert "in real time" in why[-1] and motion.waiting <= WAITS
 
 
 def test_a_skeleton_other_than_the_characters_is_refused_with_a_remedy(graph) -> None:

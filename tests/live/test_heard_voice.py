@@ -27,7 +27,7 @@ def voice(seconds: float, tops: list[float], before: float = 0.5, after: float =
 
 
 def told(samples: np.ndarray, noise: float = 1e-4) -> list[tuple[float, SpeechNews]]:
-    """What is told, and when it is."""
+    """What is reported, and when it is."""
     samples = samples + noise * np.random.default_rng(1).standard_normal(len(samples)).astype("f4")
     heard, out = HeardVoice(10.0), []
     for n in range(0, len(samples) - SIZE + 1, SIZE):

@@ -29,12 +29,12 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"", "no motion that was kept"),
-        (b"[1, 2]", "no motion that was kept"),
-        (b"[" * 100_000, "no motion that was kept"),
-        (b'{"format": "other", "version": 1, "motions": []}', "of the format 'other' 1"),
+        (b"", "not a motion of a live session"),
+        (b"[1, 2]", "not a motion of a live session"),
+        (b"[" * 100_000, "not a motion of a live session"),
+        (b'{"format": "other", "version": 1, "motions": []}', "has the format 'other' 1"),
         (b'{"format": "metagraph live motion", "version": 2, "motions": []}', "2"),
-        (b'{"format": "metagraph live motion", "version": 1, "motions": []}', "holds no motion"),
+        (b'{"format": "metagraph live motion", "version": 1, "motions": []}', "has no motion"),
         (b'{"format": "metagraph live motion", "version": 1, "motions": [{"seed": "x"}]}', "motions"),
     ],
 )

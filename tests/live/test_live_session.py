@@ -62,7 +62,7 @@ def one(session: LiveSession, request: dict[str, Any] | str, client: int = 1) ->
 def heard(
     session: LiveSession, request: dict[str, Any], client: int = 1
 ) -> tuple[dict[str, Any], list[tuple[int, Event]]]:
-    """Return the reply to a request, and what is told at the same tick."""
+    """Return the reply to a request, and what is reported at the same tick."""
     session.receive(client, json.dumps(request))
     out = session.tick(session.now + TICK)
     return msgspec.to_builtins(out.replies[0]), out.events
@@ -73,7 +73,7 @@ def listen(session: LiveSession, client: int = 1, events: Any = True) -> None:
 
 
 def events(session: LiveSession, until: float) -> list[tuple[int, Event]]:
-    """Go on until a time; return all that was told."""
+    """Go on until a time; return all that was reported."""
     out = []
     while session.now < until:
         out += session.tick(session.now + TICK).events
@@ -225,7 +225,7 @@ def test_words_that_come_after_their_time_are_said_when_they_come(session: LiveS
 
 def test_what_has_nothing_to_be_heard_is_refused(session: LiveSession) -> None:
     reply = one(session, {"do": "say", "text": "\U0001f600 ..."})
-    assert (reply["state"], reply["why"]) == ("refused", "nothing of the text is to be said")
+    assert (reply["state"], reply["why"]) == ("refused", "the text has nothing to say")
     left = one(session, {"do": "say", "text": "<think>Well?</think>Good."})
     assert (left["state"], *left["notes"]) == ("planned", "left out: thinking")
 
@@ -405,14 +405,14 @@ def test_what_was_wanted_a_little_ago_is_late_and_long_ago_refused(session: Live
     late = one(session, {"do": do, "at": 29.0, **more})
     assert late["state"] == "late" and late["at"] > 30.0 and "1.0" in late["why"]
     past = one(session, {"do": do, "at": 20.0, **more})
-    assert past["state"] == "refused" and "ago" in past["why"]
+    assert past["state"] == "refused" and "too late by" in past["why"]
 
 
 def test_a_stroke_lands_when_it_was_asked_for_and_a_missed_one_is_told(session: LiveSession) -> None:
     session.warm()
     assert one(session, {"do": "gesture", "stroke": 4.0})["state"] == "planned"
     events(session, 20.0)
-    assert "ago" in one(session, {"do": "gesture", "stroke": 5.0})["why"]
+    assert "too late by" in one(session, {"do": "gesture", "stroke": 5.0})["why"]
 
 
 # --- the session's own requests
@@ -421,9 +421,9 @@ def test_a_stroke_lands_when_it_was_asked_for_and_a_missed_one_is_told(session: 
 def test_what_may_not_be_late_counts_from_when_it_was_wanted(session: LiveSession) -> None:
     session.tick(10.0)
     found = one(session, {"do": "gesture", "at": 9.5, "late": 0.3})
-    assert found["state"] == "refused" and "may come 0.3 s late" in found["why"]
+    assert found["state"] == "refused" and "with 0.3 s allowed" in found["why"]
     found = one(session, {"do": "gesture", "stroke": 9.9, "late": 0})
-    assert found["state"] == "refused" and "ago" in found["why"]
+    assert found["state"] == "refused" and "too late by" in found["why"]
     assert one(session, {"do": "gesture", "at": 9.5, "late": 2.0, "id": "a"})["state"] == "late"
     wanted = [{"do": "gesture", "id": f"g{n}", "stroke": 14.0 + 0.4 * n, "late": 0} for n in range(2)]
     first, second = ask(session, *wanted)
@@ -748,7 +748,7 @@ def test_of_a_session_too_long_to_be_kept_the_beginning_is_and_that_is_said(sess
     kept = session.performance("x")
     assert 1 <= len(kept.asks) < 40
     assert max(ask.told or 0 for ask in kept.asks) < kept.length < session.now
-    assert "of 1 are kept" in session.kept_words()
+    assert "of 1 minutes are saved" in session.kept_words()
 
 
 def test_a_session_longer_than_any_performance_is_kept_as_far_as_one_goes(session: LiveSession) -> None:
@@ -756,7 +756,7 @@ def test_a_session_longer_than_any_performance_is_kept_as_far_as_one_goes(sessio
     session.now = a.LONGEST_PERFORMANCE + 600.0
     kept = session.performance("x")
     assert kept.length == a.LONGEST_PERFORMANCE and len(kept.asks) == 1
-    assert "600 minutes of 610" in session.kept_words()
+    assert "600 of 610 minutes" in session.kept_words()
     read = msgspec.json.decode(msgspec.json.encode(kept), type=a.Performance)
     assert read == kept
 

@@ -189,7 +189,7 @@ def message(address: str, value: Any) -> bytes:
 @pytest.mark.parametrize("value", [0, 0.0, False])
 def test_a_button_that_is_let_go_asks_for_nothing_and_is_told_so(value: Any) -> None:
     ((_, let_go),) = texts_of(message("/metagraph/nod", value))
-    assert isinstance(let_go, Reply) and let_go.state == "done" and "let go" in let_go.why
+    assert isinstance(let_go, Reply) and let_go.state == "done" and "released button" in let_go.why
     ((_, pressed),) = texts_of(message("/metagraph/nod", 1))
     assert isinstance(pressed, bytes)
     ((_, line),) = texts_of(message("/metagraph/say", value))

@@ -79,7 +79,7 @@ def test_a_port_that_is_taken_is_told_to_the_window(sample: Project) -> None:
 
 
 def test_what_is_not_safe_is_not_even_started() -> None:
-    with pytest.raises(LiveError, match="a token is needed"):
+    with pytest.raises(LiveError, match="needs a token"):
         Relay(Options(host="0.0.0.0"))
 
 

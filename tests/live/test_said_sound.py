@@ -91,9 +91,9 @@ def test_a_kept_session_needs_no_sound(sample: Project) -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"audio": "???"}, "audio: should be base64"),
-        ({"audio": base64.b64encode(b"abc").decode()}, "an even count of bytes"),
-        ({"audio": ""}, "an even count of bytes"),
+        ({"audio": "???"}, "audio: give base64"),
+        ({"audio": base64.b64encode(b"abc").decode()}, "an even number of bytes"),
+        ({"audio": ""}, "an even number of bytes"),
     ],
 )
 def test_what_is_no_sound_is_told(sample: Project, fields: dict[str, Any], words: str) -> None:

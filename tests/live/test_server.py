@@ -88,7 +88,7 @@ def test_nothing_listens_beyond_loopback_without_a_token(host: str) -> None:
 def test_options_that_make_no_sense_are_refused() -> None:
     with pytest.raises(LiveError, match="the token is empty"):
         check_live_options(Options(token=""))
-    with pytest.raises(LiveError, match="between 0 and 65535"):
+    with pytest.raises(LiveError, match="from 0 to 65535"):
         check_live_options(Options(port=70000))
 
 

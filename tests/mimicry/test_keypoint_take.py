@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from metagraph.formats.clips import read_clips
 from metagraph.graph.model import Project
 from metagraph.mimicry.keypoint_layouts import POINTS, KeypointTrack
-from metagraph.mimicry.keypoint_take import KeypointTakeError, clip_from_keypoints
+from metagraph.mimicry.keypoint_take import KeypointTakeError, make_clip_from_keypoints
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
@@ -75,23 +75,23 @@ def test_flat_or_single_keypoints_are_refused_with_what_to_do(sample: Project) -
     clip = next(c.motion for c in sample.clips.values() if c.motion is not None)
     whole = seen(clip)
     with pytest.raises(KeypointTakeError, match="no depth"):
-        clip_from_keypoints(replace(whole, dims=2), clip.skeleton, "x")
+        make_clip_from_keypoints(replace(whole, dims=2), clip.skeleton, "x")
     one = KeypointTrack(whole.times[:1], whole.points[:1], whole.confidence[:1], POINTS, 3)
     with pytest.raises(KeypointTakeError, match="one frame"):
-        clip_from_keypoints(one, clip.skeleton, "x")
+        make_clip_from_keypoints(one, clip.skeleton, "x")
     blind = whole.confidence.copy()
     blind[:, POINTS.index("left_wrist")] = 0
     with pytest.raises(KeypointTakeError, match="left wrist"):
-        clip_from_keypoints(replace(whole, confidence=blind), clip.skeleton, "x")
+        make_clip_from_keypoints(replace(whole, confidence=blind), clip.skeleton, "x")
     ball = Skeleton(("root",), np.array([-1]), np.array([[0, 0, 0, 1.0]]), np.zeros((1, 3)))
     with pytest.raises(KeypointTakeError, match="no hips"):
-        clip_from_keypoints(whole, ball, "x")
+        make_clip_from_keypoints(whole, ball, "x")
 
 
 def test_the_samples_gestures_are_made_again_from_what_is_seen_of_them(sample: Project) -> None:
     clips = [c.motion for c in sample.clips.values() if c.motion is not None][::12]
     errors = np.concatenate(
-        [off(c, clip_from_keypoints(seen(c), c.skeleton, c.name)).reshape(-1, 7) for c in clips]
+        [off(c, make_clip_from_keypoints(seen(c), c.skeleton, c.name)).reshape(-1, 7) for c in clips]
     )
     assert np.median(errors) < 0.02 and np.percentile(errors, 95) < 0.06
 
@@ -101,7 +101,7 @@ def test_a_face_that_is_not_seen_lets_the_head_follow_the_chest(sample: Project)
     whole = seen(clip)
     hidden = whole.confidence.copy()
     hidden[:, :5] = 0
-    made = clip_from_keypoints(replace(whole, confidence=hidden), clip.skeleton, "x")
+    made = make_clip_from_keypoints(replace(whole, confidence=hidden), clip.skeleton, "x")
     assert np.isfinite(made.rotations).all()
 
 
@@ -110,7 +110,7 @@ def test_gaps_are_bridged_and_noise_does_not_tremble(sample: Project) -> None:
     whole = seen(clip, noise=0.004)
     gone = whole.confidence.copy()
     gone[20:28, POINTS.index("left_wrist")] = 0
-    made = clip_from_keypoints(replace(whole, confidence=gone), clip.skeleton, "x")
+    made = make_clip_from_keypoints(replace(whole, confidence=gone), clip.skeleton, "x")
     assert np.percentile(off(clip, made), 95) < 0.08
     steps = np.abs(np.diff(made.rotations, 3, axis=0)).max()
     assert steps < 0.2
@@ -121,8 +121,8 @@ def test_feet_stay_on_the_floor_whatever_size_the_person_has(sample: Project) ->
     small = seen(clip)
     small = replace(small, points=small.points * 0.4)
     made, same = (
-        clip_from_keypoints(small, clip.skeleton, "x"),
-        clip_from_keypoints(seen(clip), clip.skeleton, "x"),
+        make_clip_from_keypoints(small, clip.skeleton, "x"),
+        make_clip_from_keypoints(seen(clip), clip.skeleton, "x"),
     )
     assert np.abs(made.rotations - same.rotations).max() < 1e-4
     roles = find_roles(clip.skeleton)
@@ -137,7 +137,9 @@ def test_other_studios_takes_are_made_again_too(shared_data: Path) -> None:
     errors = []
     for path in some:
         clip = read_clips(path)[0]
-        errors.append(off(clip, clip_from_keypoints(seen(clip), clip.skeleton, clip.name)).reshape(-1, 7))
+        errors.append(
+            off(clip, make_clip_from_keypoints(seen(clip), clip.skeleton, clip.name)).reshape(-1, 7)
+        )
     assert np.median(np.concatenate(errors)) < 0.045
 
 
@@ -148,7 +150,7 @@ def test_elbows_and_knees_bend_in_one_plane_of_the_upper_limb(sample: Project) -
     clips = [c.motion for c in sample.clips.values() if c.motion is not None][::24]
     turned = []
     for clip in clips:
-        made = clip_from_keypoints(seen(clip), clip.skeleton, clip.name)
+        made = make_clip_from_keypoints(seen(clip), clip.skeleton, clip.name)
         roles = find_roles(clip.skeleton)
         turns, places = made.skeleton.globals(made.poses())
         for side in ("left", "right"):
@@ -177,7 +179,9 @@ def test_who_is_unseen_for_long_stays_as_last_seen(sample: Project) -> None:
     still[:, wrist] = elbow + bent * np.stack([0 * angle, np.sin(angle) - 0.5, np.cos(angle)], -1)
     sure = np.ones(still.shape[:2])
     sure[20:70, wrist] = 0
-    made = clip_from_keypoints(KeypointTrack(np.arange(90) / 30, still, sure, POINTS, 3), clip.skeleton, "x")
+    made = make_clip_from_keypoints(
+        KeypointTrack(np.arange(90) / 30, still, sure, POINTS, 3), clip.skeleton, "x"
+    )
     hand = find_roles(clip.skeleton)["left_hand"]
     places = made.skeleton.globals(made.poses())[1][:, hand]
     gap = places[26:64]

@@ -45,7 +45,7 @@ def talk(sample: Project) -> Talk:
 def feed(
     mimic: Mimic, points: Any, seconds: float, start: float = 0.0, sure: Any = None, goals: Any = None
 ) -> list[Any]:
-    """Show the same points for a while; return what is asked for."""
+    """Show the same points for a while; return what is requested."""
     out = []
     for n in range(round(seconds * FPS)):
         out += mimic.feed(start + n / FPS, points, sure, goals)

@@ -1,4 +1,4 @@
-"""Stances of characters made by others are told apart, each on its own skeleton, under jitter."""
+"""Stances of characters made by others are distinguished, each on its own skeleton, under jitter."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.in_place import keep_in_place, travel_of
+from metagraph.motion.in_place import keep_in_place, measure_travel
 
 
 def going(clip: Clip, metres: float, degrees: float) -> Clip:
@@ -46,7 +46,7 @@ def test_it_ends_where_it_began_whichever_way_it_went_and_turned(
     kept = keep_in_place(going(toy.clip("walk", 2.0), metres, degrees))
     turns, places = ends(kept)
     np.testing.assert_allclose(places[0, :, (0, 2)], places[1, :, (0, 2)], atol=2e-3)
-    assert travel_of(kept, 0, 0.0, kept.duration) < 1e-3
+    assert measure_travel(kept, 0, 0.0, kept.duration) < 1e-3
     assert rotation.angle_between(turns[0, :1], turns[1, :1]).max() < 0.01
 
 
@@ -68,5 +68,5 @@ def test_what_is_not_the_way_stays(toy: Any) -> None:
 
 def test_how_far_it_goes_is_measured_between_the_seconds_that_play(toy: Any) -> None:
     clip = going(toy.clip("walk", 2.0, swing=0.0), 2.0, 0.0)
-    assert travel_of(clip, 0, 0.0, 2.0) == pytest.approx(2.0, abs=1e-3)
-    assert travel_of(clip, 0, 0.5, 1.0) == pytest.approx(0.5, abs=0.05)
+    assert measure_travel(clip, 0, 0.0, 2.0) == pytest.approx(2.0, abs=1e-3)
+    assert measure_travel(clip, 0, 0.5, 1.0) == pytest.approx(0.5, abs=0.05)

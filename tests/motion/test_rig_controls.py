@@ -1,4 +1,4 @@
-"""Joints that steer a rig are told by name, and no measure of a pose counts them."""
+"""Joints that steer a rig are identified by name, and no measure of a pose counts them."""
 
 from __future__ import annotations
 

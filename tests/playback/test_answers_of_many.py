@@ -1,4 +1,4 @@
-"""What became of many asks is told in one pass over the plan."""
+"""What became of many asks is given in one pass over the plan."""
 
 from __future__ import annotations
 

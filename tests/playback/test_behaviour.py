@@ -13,7 +13,7 @@ from metagraph.playback.behaviour import (
     BehaviourCount,
     describe_lack,
     measure_behaviour,
-    repeated_share,
+    measure_repeated_share,
 )
 from metagraph.playback.planning.running_plan import improvise
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
@@ -68,8 +68,8 @@ def test_without_variety_all_of_it_is_plan_as_in_paper(sample: Project) -> None:
 def test_a_repetition_is_counted_within_its_time_alone(sample: Project) -> None:
     cue = improvise(sample, 120.0).layers["arms"].cues[0]
     at = [replace(cue, start=t) for t in (0.0, 20.0, 60.0, 400.0)]
-    assert repeated_share(at, 30.0) == 0.25 and repeated_share(at, 50.0) == 0.5
-    assert repeated_share([], LATER) == 0.0
+    assert measure_repeated_share(at, 30.0) == 0.25 and measure_repeated_share(at, 50.0) == 0.5
+    assert measure_repeated_share([], LATER) == 0.0
 
 
 def test_a_stance_lacks_as_many_actions_as_would_end_the_repetition(sample: Project) -> None:

@@ -23,9 +23,9 @@ from metagraph.playback.continuity import (
     MOST_WAY,
     RATE,
     ContinuityLaw,
-    added_moves,
     blending,
-    moved_joints,
+    find_moved_joints,
+    measure_added_moves,
 )
 from metagraph.playback.evaluator import CONTACTS, STAGES, Evaluator
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
@@ -50,20 +50,20 @@ def still(count: int) -> list[tuple[float, float, float]]:
 
 def test_what_the_clips_do_themselves_is_not_added() -> None:
     moving = globals_(*still(3), at=[[0, 0, 0], [0.2, 0, 0], [0.5, 0, 0]])
-    found = added_moves(moving, moving)
+    found = measure_added_moves(moving, moving)
     assert found.breaks.max() == 0
 
 
 def test_a_joint_may_do_less_than_its_clip_and_may_be_elsewhere() -> None:
     clip = globals_(*still(3), at=[[0, 0, 0], [0.2, 0, 0], [0.5, 0, 0]])
     held = globals_(*still(3), at=[[1, 0, 0], [1.1, 0, 0], [1.1, 0, 0]])
-    assert_allclose(added_moves(clip, held).ways, 0, atol=1e-12)
+    assert_allclose(measure_added_moves(clip, held).ways, 0, atol=1e-12)
 
 
 def test_a_joint_that_goes_another_way_or_farther_breaks_the_law() -> None:
     clip = globals_(*still(3), at=[[0, 0, 0], [0.02, 0, 0], [0.04, 0, 0]])
     other = globals_(*still(3), at=[[0, 0, 0], [0.02, 0.031, 0], [0.08, 0.031, 0]])
-    found = added_moves(clip, other)
+    found = measure_added_moves(clip, other)
     assert_allclose(found.ways[:, 0], [0.031, 0.04], atol=1e-9)
     assert (found.breaks > 1).all()
 
@@ -71,13 +71,13 @@ def test_a_joint_that_goes_another_way_or_farther_breaks_the_law() -> None:
 def test_turns_count_and_so_does_the_size_of_the_figure() -> None:
     clip = globals_((0, 0, 0), (0, 0.1, 0), at=[[0, 0, 0], [0, 0, 0]])
     turned = globals_((0, 0, 0), (0, 0.1 + MOST_TURN, 0), at=[[0, 0, 0], [2 * MOST_WAY, 0, 0]])
-    found = added_moves(clip, turned, size=2.0)
+    found = measure_added_moves(clip, turned, size=2.0)
     assert_allclose([found.turns[0, 0] / MOST_TURN, found.ways[0, 0] / MOST_WAY], 1, atol=1e-6)
 
 
 def test_the_face_is_not_looked_at(sample: Project) -> None:
     assert sample.skeleton is not None
-    names = {sample.skeleton.names[j] for j in moved_joints(sample)}
+    names = {sample.skeleton.names[j] for j in find_moved_joints(sample)}
     assert {"Head", "LeftHand", "LeftIndex3", "RightFoot"} <= names
     assert not any("Lid" in name or "Eye" in name for name in names)
 
@@ -212,7 +212,7 @@ def test_nothing_that_is_added_jumps_in_ten_minutes(sample: Project) -> None:
 def test_contacts_of_an_action_that_repeats_go_over_the_seam_with_its_pose(
     sample: Project, name: str, start: float, end: float
 ) -> None:
-    """Contacts began anew with the clip's time at each seam, and threw a hand 41 cm in a sixtieth."""
+    """Contacts began again with the clip's time at each seam, and threw a hand 41 cm in a sixtieth."""
     action = next(a for a in sample.graphs["arms"].actions.values() if a.name.endswith(name) and a.contacts)
     timing = {"start": start, "end": end, "repeat": 6.0, "earliest_exit": None, "stroke": None}
     project = edits.update_actions(sample, [action.id], timing=timing)

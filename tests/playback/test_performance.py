@@ -191,8 +191,8 @@ def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(
     performances: list[Performance], sample: Project, layer: Layer
 ) -> None:
     """Within 0.1 s of where an action begins, is fully there, begins to leave or ends, each joint of the
-    layer alone turns and moves no faster than it does somewhere in the layer's own clips, but for 5 % and 3
-    degrees a second: what the loop's swaying adds.
+    layer alone turns and moves no faster than it does somewhere in the layer's own clips, except for 5 % and
+    3 degrees a second: what the loop's swaying adds.
     """
     joints = rig(sample).reach[layer].joints
     turn, move = np.zeros(len(joints)), np.zeros(len(joints))

@@ -34,7 +34,7 @@ def played(plan: Plan) -> Any:
 
 
 def told(plan: Plan) -> list[Any]:
-    """What was said about requests; what the models wrote is fitted in anew each time, and why it was left
+    """What was said about requests; what the models wrote is fitted in again each time, and why it was left
     out may be said otherwise.
     """
     return sorted((r for r in plan.reports if not r.written), key=repr)

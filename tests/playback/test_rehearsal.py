@@ -14,7 +14,7 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback import continuity
-from metagraph.playback.own_moves import body_joints
+from metagraph.playback.own_moves import find_body_joints
 from metagraph.playback.rehearsal import LEAST_MINUTES, rehearse
 
 SECONDS = 40.0
@@ -81,7 +81,7 @@ def test_of_a_sound_project_nothing_is_reported(sound: Project) -> None:
 def test_a_figure_above_or_under_the_floor_is_an_error_with_its_moment(sound: Project) -> None:
     for metres, code in ((0.6, "play-in-air"), (-0.6, "play-under-floor")):
         found = [p for p in rehearse(changed(sound, lifted(metres)), SECONDS) if p.code == code]
-        assert found and found[0].severity == "error" and "100%" in found[0].message
+        assert found and found[0].severity == "error" and "100 %" in found[0].message
         assert found[0].moment is not None and 0 <= found[0].moment < SECONDS
 
 
@@ -96,9 +96,9 @@ def test_a_control_joint_under_the_floor_is_no_part_of_the_figure(toy: Any) -> N
         np.vstack([bones.rest_rotations, [0, 0, 0, 1]]),
         np.vstack([bones.rest_translations, [0, -5.0, 0]]),
     )
-    body = body_joints(control, find_roles(control))
+    body = find_body_joints(control, find_roles(control))
     assert len(bones) not in body and set(find_roles(control).values()) <= set(body)
-    assert body_joints(bones, {}) == list(range(len(bones)))
+    assert find_body_joints(bones, {}) == list(range(len(bones)))
 
 
 def test_what_a_clip_in_place_still_does_gets_another_advice(sound: Project, toy: Any) -> None:

@@ -12,7 +12,7 @@ import pytest
 from metagraph.engines.engine_machine import animations, clip_as_played, count_unrepeated, machines
 from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
-from metagraph.formats.project.data import action_data, action_from
+from metagraph.formats.project.data import decode_action, encode_action
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Play, request_from
@@ -160,7 +160,7 @@ def test_the_same_shows_one_cycle_later(project: Project, wave: str) -> None:
     plan = planned(project, asked(wave, duration=4.0))
     times = np.linspace(2.0, 2.0 + CYCLE, 20)
     later = hand(project, plan, times + CYCLE)
-    assert later == pytest.approx(hand(project, plan, times), abs=0.02)  # but for what the stance does
+    assert later == pytest.approx(hand(project, plan, times), abs=0.02)  # except for what the stance does
 
 
 def test_plain_numbers_say_the_same_as_arrays(project: Project, wave: str) -> None:
@@ -176,9 +176,9 @@ def test_plain_numbers_say_the_same_as_arrays(project: Project, wave: str) -> No
 def test_a_gesture_of_an_older_file_that_loops_plays_once(project: Project, wave: str) -> None:
     action = project.action(wave)
     assert action is not None
-    data = action_data(replace(action, timing=replace(action.timing, loop=True, repeat=0.0)))
+    data = encode_action(replace(action, timing=replace(action.timing, loop=True, repeat=0.0)))
     assert "repeat" not in data and data["loop"] is True
-    old = edits.update_actions(project, [wave], timing=action_from(data, "arms", "$").timing)
+    old = edits.update_actions(project, [wave], timing=decode_action(data, "arms", "$").timing)
     cue = played(planned(old, asked(wave, duration=3.0)))
     assert cue.end - cue.start == pytest.approx(CYCLE) and not cue.repeats
 

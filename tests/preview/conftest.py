@@ -1,4 +1,4 @@
-"""Scenes and golden pictures. Set METAGRAPH_UPDATE_GOLDEN=1 to write the pictures anew."""
+"""Scenes and golden pictures. Set METAGRAPH_UPDATE_GOLDEN=1 to write the pictures again."""
 
 from __future__ import annotations
 

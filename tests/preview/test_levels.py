@@ -9,7 +9,7 @@ import pytest
 
 from preview import levels
 from preview.figure import MeshFigure
-from preview.levels import ERRORS, Level, levels_folder, levels_of
+from preview.levels import ERRORS, Level, find_levels_folder, levels_of
 from preview.mesh import ball, egg
 from tests.preview.test_simplify import mesh_of
 
@@ -93,9 +93,9 @@ def test_a_level_with_hardly_fewer_triangles_is_none(folder):
 
 def test_a_folder_is_named_by_the_environment_or_there_is_none(monkeypatch):
     monkeypatch.setenv("METAGRAPH_MESH_CACHE", "")
-    assert levels_folder() is None
+    assert find_levels_folder() is None
     monkeypatch.delenv("METAGRAPH_MESH_CACHE")
-    found = levels_folder()
+    found = find_levels_folder()
     assert found is not None and found.name == "meshes"
 
 

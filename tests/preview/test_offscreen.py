@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from preview.camera import Camera
-from preview.offscreen import Offscreen, OpenGLError, standalone_context
+from preview.offscreen import Offscreen, OpenGLError, make_standalone_context
 from preview.scene import Scene
 
 
@@ -18,7 +18,7 @@ def test_without_opengl_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setattr(moderngl, "create_context", fail)
     monkeypatch.setattr("sys.platform", "linux")
     with pytest.raises(OpenGLError, match=r"libEGL.*apt install libegl1"):
-        standalone_context()
+        make_standalone_context()
 
 
 @pytest.mark.gl

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from preview.shots import camera_from, camera_side, lamp_side, shot_camera
+from preview.shots import camera_side, lamp_side, place_camera, shot_camera
 
 HEADS = np.array([[-0.65, 1.6, 0.0], [0.65, 1.7, 0.0]])
 HEIGHTS = [1.7, 1.8, 1.6]
@@ -52,7 +52,7 @@ def test_who_looks_to_the_right_does_so_in_every_picture():
 
 
 def test_a_camera_is_where_it_was_put():
-    camera = camera_from((1.0, 2.0, 3.0), (0.5, 1.0, -1.0), 0.5)
+    camera = place_camera((1.0, 2.0, 3.0), (0.5, 1.0, -1.0), 0.5)
     assert camera.eye == pytest.approx([1.0, 2.0, 3.0]) and camera.target == (0.5, 1.0, -1.0)
 
 

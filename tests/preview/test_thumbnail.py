@@ -9,7 +9,7 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.clip import Clip
 from preview.figure import SkinnedFigure, StickFigure
-from preview.thumbnail import ThumbnailStyle, clip_thumbnail, telling_frame, thumbnail, thumbnails
+from preview.thumbnail import ThumbnailStyle, draw_clip_thumbnail, find_telling_frame, thumbnail, thumbnails
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 SKELETON = mannequin_skeleton()
@@ -23,29 +23,31 @@ def clip(angles, joint="LeftUpperArm", walk=0.0):
 
 
 def test_one_frame_is_the_telling_one():
-    assert telling_frame(clip([0.0])) == 0
+    assert find_telling_frame(clip([0.0])) == 0
 
 
 def test_the_telling_frame_is_where_the_arm_is_farthest_from_the_start():
-    assert telling_frame(clip([0.0, 0.4, 1.2, 0.5, 0.1])) == 2
+    assert find_telling_frame(clip([0.0, 0.4, 1.2, 0.5, 0.1])) == 2
 
 
 def test_walking_away_does_not_make_a_frame_telling():
-    assert telling_frame(clip([0.0, 0.0, 0.9, 0.0, 0.0], walk=9.0)) == 2
+    assert find_telling_frame(clip([0.0, 0.0, 0.9, 0.0, 0.0], walk=9.0)) == 2
 
 
 def test_long_clips_are_looked_at_here_and_there():
     angles = np.zeros(3000)
     angles[1400:1600] = 1.0
-    assert 1400 <= telling_frame(clip(angles)) < 1600
+    assert 1400 <= find_telling_frame(clip(angles)) < 1600
 
 
 @pytest.mark.gl
 def test_a_thumbnail_shows_the_figure_on_tinted_paper(offscreen):
     figure = StickFigure(SKELETON)
-    plain = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40))
-    tinted = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40, tint=(0.94, 0.65, 0.24)))
-    clear = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40, paper=None))
+    plain = draw_clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40))
+    tinted = draw_clip_thumbnail(
+        offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40, tint=(0.94, 0.65, 0.24))
+    )
+    clear = draw_clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40, paper=None))
     assert plain.shape == (80, 80, 4)
     assert plain[0, 0].tolist() == [28, 29, 33, 255]
     assert tinted[0, 0, 0] > tinted[0, 0, 2] + 10

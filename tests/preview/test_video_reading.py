@@ -10,7 +10,7 @@ from PIL import Image
 
 from metagraph.errors import FileError
 from preview.video import write_video
-from preview.video_reading import VideoPictures, read_pictures, read_video_sound, video_seconds
+from preview.video_reading import VideoPictures, measure_video_seconds, read_pictures, read_video_sound
 
 
 def grey(count: int, size: tuple[int, int] = (64, 64)) -> list[np.ndarray]:
@@ -28,7 +28,7 @@ def path(tmp_path: Path) -> Path:
 
 
 def test_each_time_has_the_picture_that_is_shown_then(path: Path) -> None:
-    assert video_seconds(path) == pytest.approx(1.0, abs=0.01)
+    assert measure_video_seconds(path) == pytest.approx(1.0, abs=0.01)
     assert shades(path, [0.0, 0.05, 0.1, 0.55, 0.9]) == [0, 0, 1, 5, 9]
     assert shades(path, [k / 30 for k in range(30)]) == [k // 3 for k in range(30)]
     assert shades(path, [0.5]) == [5] and shades(path, [0.7, 0.7, 0.7]) == [7, 7, 7]
@@ -57,12 +57,12 @@ def test_sound_is_read_at_the_rate_that_is_asked_for_and_may_be_missing(path: Pa
 
 def test_what_is_no_video_is_told(tmp_path: Path) -> None:
     (tmp_path / "x.mp4").write_bytes(b"no video" * 100)
-    for read in (video_seconds, lambda p: shades(p, [0.0]), lambda p: read_video_sound(p, 44100)):
+    for read in (measure_video_seconds, lambda p: shades(p, [0.0]), lambda p: read_video_sound(p, 44100)):
         with pytest.raises(FileError) as told:
             read(tmp_path / "x.mp4")
         assert told.value.remedy
     with pytest.raises(FileError):
-        video_seconds(tmp_path / "none.mp4")
+        measure_video_seconds(tmp_path / "none.mp4")
 
 
 def test_a_video_is_asked_at_any_time_forwards_and_backwards(tmp_path: Path) -> None:

@@ -130,7 +130,7 @@ def zoo(name: str, seconds: float) -> Row:
 
 
 def labelled(name: str, folder: Path, seconds: float) -> Row:
-    """Return the row of a set as it is labelled. Raises FileNotFoundError where it is not there."""
+    """Return the row of a set as it is labelled. Raises FileNotFoundError if it is not there."""
     clips = SHARED / name
     if not clips.is_dir():
         raise FileNotFoundError(f"{clips} is not there")

@@ -33,11 +33,11 @@ from PySide6.QtWidgets import QApplication
 from app import faults
 from app.main import open_window, prepare_application
 from app.project.recovering import RecoverDialog
-from app.shell.fault_dialog import fault_folder
+from app.shell.fault_dialog import find_fault_folder
 from metagraph.graph import edits
 
 app = prepare_application()
-faults.install(fault_folder())
+faults.install(find_fault_folder())
 faults.listeners.append(lambda told: print("fault", told, flush=True))
 chance, ready = random.Random(int(sys.argv[2])), []
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.formats.project.data import struct_data
+from metagraph.formats.project.data import encode_struct
 from metagraph.speech.lines import read_line_voice
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import read_sound
@@ -45,5 +45,5 @@ def test_its_syllables_are_heard_where_its_vowels_are(name: str) -> None:
 
 def test_lines_name_their_files_beside_the_project() -> None:
     lines = sample_lines()
-    assert [struct_data(x)["audio"] for x in lines.values()] == [f"lines/{n}.flac" for n in NAMES]
+    assert [encode_struct(x)["audio"] for x in lines.values()] == [f"lines/{n}.flac" for n in NAMES]
     assert all((FOLDER.parent / str(x.audio)).is_file() and x.text for x in lines.values())

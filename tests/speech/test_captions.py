@@ -22,12 +22,12 @@ def words(text: str, start: float = 0.0, each: float = 0.3) -> tuple[Word, ...]:
 
 def test_a_new_caption_begins_after_a_sentence_and_after_a_pause():
     some = (*words("So it is. Yes"), *words("and then", 5.0))
-    assert [x.text for x in c.captions_of(some)] == ["So it is.", "Yes", "and then"]
+    assert [x.text for x in c.make_captions(some)] == ["So it is.", "Yes", "and then"]
 
 
 @given(st.lists(st.text("abcdefgh", min_size=1, max_size=20), min_size=1, max_size=80))
 def test_captions_hold_all_words_in_two_lines_of_42_and_never_overlap(texts):
-    found = c.captions_of(words(" ".join(texts)))
+    found = c.make_captions(words(" ".join(texts)))
     assert " ".join(x.text.replace("\n", " ") for x in found) == " ".join(texts)
     for x in found:
         lines = x.text.split("\n")
@@ -36,7 +36,7 @@ def test_captions_hold_all_words_in_two_lines_of_42_and_never_overlap(texts):
 
 
 def test_a_short_word_stands_long_enough_to_be_seen():
-    (found,) = c.captions_of([Word(text="Yes.", start=2.0, end=2.2)])
+    (found,) = c.make_captions([Word(text="Yes.", start=2.0, end=2.2)])
     assert found.end == 2.0 + c.BRIEFEST
 
 
@@ -60,11 +60,11 @@ def test_words_come_from_what_a_synthesiser_told_or_a_textgrid(tmp_path):
 
 
 def test_a_text_without_times_is_shared_out_over_what_it_takes():
-    found = c.captions_of_text(Speech("r1", 1.0, 9.0), "One two three. Four five six.")
+    found = c.make_captions_of_text(Speech("r1", 1.0, 9.0), "One two three. Four five six.")
     assert [x.text for x in found] == ["One two three.", "Four five six."] and found[1].end == 9.0
 
 
 def test_all_who_talk_have_captions_and_both_are_read_at_once():
     sides = (Side(name="Ada", words=words("so it was")), Side(name="Bo", words=words("yes", 0.2)))
-    found = c.conversation_captions(Conversation(name="x", length=4.0, sides=sides))
-    assert [x.side for x in c.captions_at(found, 0.5)] == [0, 1] and c.captions_at(found, 3.0) == []
+    found = c.make_conversation_captions(Conversation(name="x", length=4.0, sides=sides))
+    assert [x.side for x in c.find_captions_at(found, 0.5)] == [0, 1] and c.find_captions_at(found, 3.0) == []

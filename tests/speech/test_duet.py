@@ -11,7 +11,7 @@ import pytest
 from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
-from metagraph.speech.drive import drive, partner_points
+from metagraph.speech.drive import drive, find_partner_points
 from metagraph.speech.duet import duet, place_sides, voices
 from metagraph.speech.mirroring import Mover, list_mirrored_stances
 from metagraph.speech.peak_blinks import peak_blinks
@@ -194,7 +194,7 @@ def test_two_with_places_are_looked_at_there(sample: Project) -> None:
 def test_three_look_at_the_eyes_of_each_other(sample: Project) -> None:
     made = duet(three(), "v1", (sample,) * 3, (None,) * 3)
     for n, part in enumerate(made.parts):
-        points = partner_points(part.plan)
+        points = find_partner_points(part.plan)
         assert sorted(points) == [m for m in range(3) if m != n]
         for m, point in points.items():
             seen = np.array(part.stand.world(point)) - np.array(

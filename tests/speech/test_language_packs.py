@@ -21,10 +21,10 @@ from metagraph.speech.language_packs import (
     LanguagePack,
     PackError,
     PackFile,
-    english_pack,
     language_of,
     list_language_packs,
     list_pack_words,
+    read_english_pack,
 )
 from metagraph.speech.pitch import Pitch
 from metagraph.speech.sound import analyse_sound
@@ -85,8 +85,8 @@ def test_the_packs_are_ten_and_say_what_they_rest_on() -> None:
 
 
 def test_english_is_what_projects_mean_that_say_nothing() -> None:
-    assert (english_pack().responses, english_pack().hesitations) == (RESPONSES, HESITATIONS)
-    assert not english_pack().elided and not english_pack().closing
+    assert (read_english_pack().responses, read_english_pack().hesitations) == (RESPONSES, HESITATIONS)
+    assert not read_english_pack().elided and not read_english_pack().closing
 
 
 def test_no_answer_or_sound_of_hesitation_is_a_small_word() -> None:
@@ -98,13 +98,13 @@ def test_no_answer_or_sound_of_hesitation_is_a_small_word() -> None:
 
 
 def test_words_that_lose_their_vowel_are_words() -> None:
-    fr, en = list_language_packs()["fr"], english_pack()
+    fr, en = list_language_packs()["fr"], read_english_pack()
     assert fr.parted(("l'eau",)) == ("l", "eau") and fr.parted(("qu'l'eau",)) == ("qu", "l", "eau")
     assert fr.parted(("aujourd'hui",)) == ("aujourd'hui",) and en.parted(("i'm",)) == ("i'm",)
 
 
 def test_words_of_a_writing_without_blanks_count_by_their_letters() -> None:
-    ja, en = list_language_packs()["ja"], english_pack()
+    ja, en = list_language_packs()["ja"], read_english_pack()
     assert ja.is_small("ですけど") and not ja.is_small("学校") and ja.is_small("は")
     assert ja.size(("学校",)) == pytest.approx(2 / 2.2) and ja.size(("ok",)) == 1 and ja.size(()) == 1
     assert en.size(("anything",)) == 1

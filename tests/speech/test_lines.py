@@ -1,4 +1,4 @@
-"""Lines of dialogue become voices; what is broken is told and spoils nothing else."""
+"""Lines of dialogue become voices; what is broken is reported and spoils nothing else."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Speech, track_of
-from metagraph.speech.lines import load_voices, read_line, read_line_voice, voice_from_phones
+from metagraph.speech.lines import load_voices, make_voice_from_phones, read_line, read_line_voice
 
 GRID = """File type = "ooTextFile"
 Object class = "TextGrid"
@@ -59,7 +59,7 @@ def test_phones_that_go_on_after_the_sound_are_cut(folder: Path) -> None:
 
 
 def test_phones_alone_are_a_voice_with_a_syllable_for_each_vowel(folder: Path) -> None:
-    voice = voice_from_phones(folder / "good.TextGrid")
+    voice = make_voice_from_phones(folder / "good.TextGrid")
     assert (
         voice.duration == 1.0 and voice.peaks.tolist() == pytest.approx([0.6]) and len(voice.strengths) == 1
     )

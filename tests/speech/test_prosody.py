@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.formats.transcripts.reader import read_transcript
 from metagraph.graph.conversation.model import Segment, Word
-from metagraph.speech.loudness import loudness_of, loudness_within
+from metagraph.speech.loudness import measure_loudness, measure_loudness_within
 from metagraph.speech.prosody import letters, prosody
 from metagraph.speech.sound import read_sound
 
@@ -26,11 +26,13 @@ def word(text: str, start: float, end: float) -> Word:
 
 def test_spans_are_as_loud_as_the_standard_says_and_silence_is_not_known() -> None:
     samples = np.concatenate([tone(1, 0.1), np.zeros(RATE), tone(1, 0.2)])
-    found = loudness_within(samples, RATE, [(0.2, 0.8), (1.3, 1.7), (2.2, 2.8), (5.0, 6.0), (0.5, 0.5)])
+    found = measure_loudness_within(
+        samples, RATE, [(0.2, 0.8), (1.3, 1.7), (2.2, 2.8), (5.0, 6.0), (0.5, 0.5)]
+    )
     assert np.isnan(found[[1, 3, 4]]).all()
     assert found[2] - found[0] == pytest.approx(20 * np.log10(2), abs=0.05)
-    assert found[0] == pytest.approx(loudness_of(tone(1, 0.1), RATE) or 0, abs=0.3)
-    assert len(loudness_within(samples, RATE, [])) == 0
+    assert found[0] == pytest.approx(measure_loudness(tone(1, 0.1), RATE) or 0, abs=0.3)
+    assert len(measure_loudness_within(samples, RATE, [])) == 0
 
 
 def test_the_rate_is_of_letters_in_any_writing() -> None:

@@ -16,7 +16,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.speech.lines import load_voices
-from metagraph.speech.soundtrack import RATE, line_sounds, mix_track, place_lines, resample_sound
+from metagraph.speech.soundtrack import RATE, mix_track, place_line_sounds, place_lines, resample_sound
 
 
 def tone(seconds: float, rate: int = 16000, hertz: float = 300.0) -> np.ndarray:
@@ -40,7 +40,7 @@ def spoken(toy: Any, tmp_path: Path) -> tuple[Project, Path]:
 
 
 def test_sounds_come_at_one_rate_and_a_broken_one_is_told_and_spoils_nothing(spoken: Any) -> None:
-    sounds, notes = line_sounds(spoken[0].lines, spoken[1])
+    sounds, notes = place_line_sounds(spoken[0].lines, spoken[1])
     assert set(sounds) == {"1", "2"}
     assert [len(s) / RATE for s in sounds.values()] == pytest.approx([1.0, 2.0], abs=1e-3)
     assert len(notes) == 1 and "'4'" in notes[0] and "bad.wav" in notes[0]
@@ -61,7 +61,7 @@ def test_lines_sound_where_they_are_said_and_one_that_is_cut_fades(spoken: Any) 
     plan = plan_performance(
         project, [a.Say(line="2", at=1.0), a.Say(line="1", at=2.0), a.Say(text="mute", at=5.0)], 10
     )
-    sounds, _ = line_sounds(project.lines, folder)
+    sounds, _ = place_line_sounds(project.lines, folder)
     parts = place_lines(plan, sounds)
     assert [(round(at, 3), round(len(s) / RATE, 2)) for at, s in parts] == [(1.0, 1.0), (2.0, 1.0)]
     assert abs(parts[0][1][-1]) < 0.02 and np.abs(parts[0][1][: RATE // 2]).max() > 0.4

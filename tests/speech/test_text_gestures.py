@@ -17,9 +17,9 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
 from metagraph.speech.text_gestures import (
     TextStream,
-    gesture_requests,
-    gesture_words_for,
+    find_gesture_words,
     list_lexicon_languages,
+    make_gesture_requests,
     propose_gestures,
     read_gesture_words,
     timed_words,
@@ -110,7 +110,7 @@ def test_whatever_the_text_none_is_in_anothers_way_and_nothing_depends_on_when_i
     for layer in LAYERS:
         times = [one.at for one in made if one.layer == layer]
         assert all(b - a >= APART[layer] for a, b in pairwise(times))
-    for request in gesture_requests(made, 1.0, "x"):
+    for request in make_gesture_requests(made, 1.0, "x"):
         request_from(json.loads(json.dumps(request)))
 
 
@@ -195,7 +195,7 @@ SPOKEN = {
 @pytest.mark.parametrize("language", SPOKEN)
 def test_other_languages_have_lexicons_of_their_own_found_by_the_words(language: str) -> None:
     text, least = SPOKEN[language]
-    lexicon = gesture_words_for(text)
+    lexicon = find_gesture_words(text)
     assert lexicon.language == language
     assert least <= {what for what, _ in found(text, lexicon=lexicon)}
 
@@ -213,7 +213,7 @@ def test_every_lexicon_says_the_same_things_in_its_language() -> None:
 
 
 def test_a_language_without_a_lexicon_and_none_that_is_told_have_the_english_one() -> None:
-    assert words_for_gesture("xx") == gesture_words_for("") == words_for_gesture("en")
+    assert words_for_gesture("xx") == find_gesture_words("") == words_for_gesture("en")
 
 
 def test_a_stream_goes_on_in_the_language_it_has_been_in() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.speech.voice_mood import MOST, VoiceFeatures, arousals, measure_voice, with_voice_moods
+from metagraph.speech.voice_mood import MOST, VoiceFeatures, measure_arousals, measure_voice, with_voice_moods
 from tests.wavs import wav
 
 RATE = 16000
@@ -32,20 +32,20 @@ def test_silence_and_moments_tell_nothing() -> None:
         found = measure_voice(samples, RATE)
         assert np.isnan([found.loudness, found.rate, found.range]).all()
     nan = float("nan")
-    assert arousals([VoiceFeatures(nan, nan, nan)] * 4) == [0.0] * 4 and arousals([]) == []
+    assert measure_arousals([VoiceFeatures(nan, nan, nan)] * 4) == [0.0] * 4 and measure_arousals([]) == []
 
 
 def test_of_two_lines_nothing_is_told() -> None:
-    assert arousals([VoiceFeatures(-20, 4, 5), VoiceFeatures(-10, 6, 9)]) == [0.0, 0.0]
+    assert measure_arousals([VoiceFeatures(-20, 4, 5), VoiceFeatures(-10, 6, 9)]) == [0.0, 0.0]
 
 
 def test_louder_faster_and_wider_than_usual_is_more_aroused_and_never_extreme() -> None:
     usual = [VoiceFeatures(-23, 4.0, 5.0)] * 4
     for more in (VoiceFeatures(-17, 4.0, 5.0), VoiceFeatures(-23, 5.0, 5.0), VoiceFeatures(-23, 4.0, 9.0)):
-        found = arousals([*usual, more])
+        found = measure_arousals([*usual, more])
         assert found[:4] == [0.0] * 4 and 0 < found[4] < MOST
-    assert arousals([*usual, VoiceFeatures(0, 40, 60)])[4] == pytest.approx(MOST)
-    assert arousals([*usual, VoiceFeatures(-60, 0.1, 0)])[4] == pytest.approx(-MOST, abs=0.15)
+    assert measure_arousals([*usual, VoiceFeatures(0, 40, 60)])[4] == pytest.approx(MOST)
+    assert measure_arousals([*usual, VoiceFeatures(-60, 0.1, 0)])[4] == pytest.approx(-MOST, abs=0.15)
 
 
 def test_what_is_heard_is_how_it_was_said() -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from metagraph.speech import pitch as pitch_module
 from metagraph.speech.pitch import pitch
-from metagraph.speech.yin import yin, yin_differences
+from metagraph.speech.yin import measure_yin_differences, yin
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = np.load(Path(__file__).with_name("yin_librosa.npz"))
@@ -110,12 +110,14 @@ def test_differences_are_those_of_the_paper_where_nothing_is_heard_behind_a_fram
         [((frame[: 400 - k] - frame[k:]) ** 2).sum() + (frame[400 - k :] ** 2).sum() for k in range(1, 101)]
     )
     # The samples that are shifted out of the frame are compared with nothing.
-    assert np.allclose(yin_differences(frame[None], 100)[0], apart / (np.cumsum(apart) / np.arange(1, 101)))
+    assert np.allclose(
+        measure_yin_differences(frame[None], 100)[0], apart / (np.cumsum(apart) / np.arange(1, 101))
+    )
 
 
 def test_silence_and_a_steady_level_have_no_period_and_give_the_highest_pitch() -> None:
     assert np.array_equal(yin(np.zeros((2, 512)), 8000, 60, 600), [8000 / 13] * 2)
-    assert np.array_equal(yin_differences(np.zeros((1, 64)), 20), np.ones((1, 20)))
+    assert np.array_equal(measure_yin_differences(np.zeros((1, 64)), 20), np.ones((1, 20)))
     assert np.isfinite(yin(np.ones((1, 512)), 8000, 60, 600)).all()
 
 

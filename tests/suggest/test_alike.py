@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.suggest.alike import LEAST, Alike, LabelledExample, example_from
+from metagraph.suggest.alike import LEAST, Alike, LabelledExample, decode_example
 
 NONE = np.zeros(0)
 
@@ -103,7 +103,7 @@ def test_whatever_is_labelled_a_guess_is_one_of_its_labels_and_surely_between_0_
 @settings(max_examples=30, deadline=None)
 def test_examples_come_back_from_their_data(examples: list[LabelledExample]) -> None:
     for example in examples:
-        back = example_from(json.loads(json.dumps(example.to_data(), allow_nan=False)))
+        back = decode_example(json.loads(json.dumps(example.to_data(), allow_nan=False)))
         assert back.words == example.words and back.labels == example.labels
         assert np.allclose(back.measures, example.measures, atol=1e-5, equal_nan=True)
 
@@ -120,4 +120,4 @@ def test_examples_come_back_from_their_data(examples: list[LabelledExample]) -> 
 )
 def test_broken_examples_are_told(data: object, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        example_from(data)
+        decode_example(data)

@@ -1,4 +1,4 @@
-"""What is told of a clip beside the others of its set: the tremble of a recording is not a clip's."""
+"""What is reported about a clip beside the others of its set: the tremble of a recording is not a clip's."""
 
 from __future__ import annotations
 

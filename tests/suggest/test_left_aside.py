@@ -1,4 +1,4 @@
-"""Clips left aside: which, why, and how one is taken up all the same."""
+"""Clips skipped: which, why, and how one is taken up all the same."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clips that are told from their motion by a rule of their own: walks, short loops, clips of the face, clips
+"""Clips that are given from their motion by a rule of their own: walks, short loops, clips of the face, clips
 that end nowhere.
 """
 

@@ -51,7 +51,7 @@ def talking(
     sizes: Sequence[float] = (),
 ) -> Clip:
     """A take in which the right arm is fastest at the stress of each clause, and answers and hesitations go
-    with a nod. sizes: how large the swing of each segment is, 1 where nothing is said.
+    with a nod. sizes: how large the swing of each segment is, 1 if nothing is said.
     """
     base = read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
     chance = np.random.default_rng(seed)

@@ -12,7 +12,7 @@ import pytest
 from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.suggest.tracks import facing_and_standing, track_rig
+from metagraph.suggest.tracks import measure_facing_and_standing, track_rig
 from metagraph.synthesis.assemble import BLEND, assemble
 from metagraph.synthesis.constraints import ALL, HeardStates, WantedSegment
 from metagraph.synthesis.graph import build_graph
@@ -53,7 +53,7 @@ def test_it_begins_over_the_origin_and_faces_ahead(takes: list[Clip]) -> None:
     states = read_states(takes)
     out = assemble(states, takes, plain(list(range(5, 40))))
     rig = track_rig(out, None)
-    facing, at = facing_and_standing(rig, out.poses())
+    facing, at = measure_facing_and_standing(rig, out.poses())
     assert np.abs(at[0, rig.root][[0, 2]]).max() < 1e-5 and facing[0] == pytest.approx([0, 1], abs=1e-5)
 
 
@@ -77,7 +77,7 @@ def test_the_root_goes_on_from_where_it_is(takes: list[Clip]) -> None:
     once = list(range(60))
     out = assemble(states, [walk, *takes], plain([*once, *once]), blend=0)
     rig = track_rig(out, None)
-    facing, at = facing_and_standing(rig, out.poses())
+    facing, at = measure_facing_and_standing(rig, out.poses())
     steps = np.linalg.norm(np.diff(at[:, rig.root][:, [0, 2]], axis=0), axis=-1)
     assert np.delete(steps, 59) == pytest.approx(
         np.full(118, 1 / 30), rel=0.02

@@ -42,7 +42,7 @@ def moving(
     nods: list[tuple[float, float]] = (),
     arm: str = "right",
 ) -> Clip:  # type: ignore[assignment]
-    """Somebody who stands still but for swings of an arm and nods, from when to when."""
+    """Somebody who stands still except for swings of an arm and nods, from when to when."""
     frames = round(seconds * FPS)
     t = np.arange(frames) / FPS
     rotations = np.repeat(base.rotations[:1], frames, 0).copy()

@@ -12,11 +12,11 @@ from metagraph.synthesis.iconic_words import (
     WordWish,
     describe_words,
     find_phrase_spans,
+    find_word_places,
     find_words_shown,
+    measure_word_cost,
     only_states_of_words,
     unsaid,
-    word_cost,
-    word_places,
     word_wish,
 )
 from metagraph.synthesis.prosody_costs import SpokenTake
@@ -56,9 +56,9 @@ def test_motion_comes_from_around_the_word_in_the_take() -> None:
     graph = graph_of(300, [0, 150, 300], {(9, 200): 0.1, (9, 100): 0.1})
     takes = [words(("small", 3.0, 3.4)), words(("huge", 2.0, 2.4))]  # huge: states 210 to 221
     new = words(("a", 0.0, 0.3), ("big", 0.6, 1.0))
-    places = word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
+    places = find_word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
     assert [(p.text, p.known, p.frames) for p in places] == [("big", True, (18 - AROUND, 30 + AROUND))]
-    charged = join_costs([word_cost(places, 60, 2.0, 1.0)])
+    charged = join_costs([measure_word_cost(places, 60, 2.0, 1.0)])
     anything = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
     for search in ("exact", "greedy"):
         path = find_path(
@@ -81,27 +81,27 @@ def test_words_beyond_the_window_and_words_no_take_says_want_nothing() -> None:
     graph = graph_of(90, [0, 90], {})
     new = words(("big", 0.2, 0.4), ("round", 1.0, 1.3), ("big", 5.0, 5.2))
     wishes = [word_wish("big"), word_wish("round")]
-    places = word_places(wishes, graph.states, [words(("round", 1.0, 1.3))], new, 0.0, 2.0)
+    places = find_word_places(wishes, graph.states, [words(("round", 1.0, 1.3))], new, 0.0, 2.0)
     assert [(p.text, p.known) for p in places] == [("big", False), ("round", True)]
     assert set(only_states_of_words(places)) == set(range(30 - AROUND, 39 + AROUND))
     told = describe_words(find_words_shown(places, graph.states, np.arange(60)))
     assert told.startswith("1 of 2 words ") and "'big'" in told
-    assert word_cost(places[:1], 60, 2.0, 1.0) is None and describe_words(()) == ""
-    begins = word_places([word_wish("big")], graph.states, [new], new, 0.3, 1.0)
+    assert measure_word_cost(places[:1], 60, 2.0, 1.0) is None and describe_words(()) == ""
+    begins = find_word_places([word_wish("big")], graph.states, [new], new, 0.3, 1.0)
     assert [p.frames for p in begins] == [(0, 3 + AROUND)]
     assert unsaid([*wishes, word_wish("ball, cube")], new, 0.0, 2.0) == ("ball",)
     assert unsaid(wishes, new, 4.0, 2.0) == ("round",)
-    assert describe_words((), ("ball",)) == "not said now: 'ball'"
+    assert describe_words((), ("ball",)) == "not in this speech: 'ball'"
     assert describe_words((), [str(n) for n in range(7)]).endswith("'4' and 2 more")
     close = words(("big", 1.0, 1.2), ("round", 1.3, 1.5), ("round", 1.5, 1.7))
-    beside = word_places(wishes, graph.states, [new], close, 0.0, 2.0)
+    beside = find_word_places(wishes, graph.states, [new], close, 0.0, 2.0)
     assert [p.frames for p in beside] == [(30 - AROUND, 38), (38, 45), (45, 51 + AROUND)]
-    twice = word_places([word_wish("big"), word_wish("big")], graph.states, [new], close, 0.0, 2.0)
+    twice = find_word_places([word_wish("big"), word_wish("big")], graph.states, [new], close, 0.0, 2.0)
     assert len(twice) == 1, "one moment wants one motion"
     with pytest.raises(SynthesisError, match="the new speech"):
-        word_places(wishes, graph.states, [new], words(), 0.0, 2.0)
+        find_word_places(wishes, graph.states, [new], words(), 0.0, 2.0)
     with pytest.raises(SynthesisError, match="of the takes"):
-        word_places(wishes, graph.states, [words()], new, 0.0, 2.0)
+        find_word_places(wishes, graph.states, [words()], new, 0.0, 2.0)
 
 
 def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
@@ -110,8 +110,8 @@ def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
     anything = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
 
     def found(new: SpokenTake, hard: bool) -> tuple[bool, tuple[str, ...]]:
-        places = word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
-        charged = join_costs([word_cost(places, 60, 2.0, 1.0)])
+        places = find_word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
+        charged = join_costs([measure_word_cost(places, 60, 2.0, 1.0)])
         soft = SoftConstraints(charged, places, hard)
         made = answer_speech(graph, anything, [], 2.0, Constraints(rules=FREE), soft=soft)
         (shown,) = find_words_shown(places, graph.states, made.path.states)
@@ -122,7 +122,7 @@ def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
     assert found(once, False) == found(once, True) == (True, ())
     small = graph_of(300, [0, 150, 300], {})
     late = words(("big", 1.2, 1.6))
-    places = word_places([word_wish("big=small")], small.states, takes, late, 0.0, 4.0)
+    places = find_word_places([word_wish("big=small")], small.states, takes, late, 0.0, 4.0)
     soft = SoftConstraints(None, places, True)
     made = answer_speech(small, anything, [], 4.0, Constraints(use=(), rules=FREE), soft=soft)
     (given_up,) = made.given_up

@@ -11,10 +11,10 @@ from metagraph.synthesis.prosody_costs import (
     FARTHEST,
     UNKNOWN,
     SpokenTake,
+    measure_prosody_cost,
+    measure_prosody_match,
     of_speech,
     of_states,
-    prosody_cost,
-    prosody_match,
     standardise_prosody,
 )
 from metagraph.synthesis.states import SynthesisError
@@ -58,7 +58,7 @@ def test_what_is_off_costs_by_the_second_and_what_is_unknown_as_much_as_chance()
     assert np.isnan(of_state[90:]).all() and of_state[0] == of_state[60] > 0 > of_state[30]
     of_frame = of_speech(said([-10, -16, np.nan, -10]), 0.5, 3.0, "loudness")
     assert np.isnan(of_frame[45:75]).all() and of_frame[0] == of_frame[-1]
-    cost = prosody_cost("loudness", 0.5, of_state, of_frame, 2.0)
+    cost = measure_prosody_cost("loudness", 0.5, of_state, of_frame, 2.0)
     assert cost.at[0] == cost.at[-1] >= 0 and (cost.at[45:75] == -1).all()
     a_second = 30 * cost.rows
     off = abs(of_frame[0] - of_state[30])
@@ -70,12 +70,12 @@ def test_what_is_off_costs_by_the_second_and_what_is_unknown_as_much_as_chance()
 def test_how_well_a_path_goes_with_speech_is_told_in_spreads() -> None:
     of_state = np.array([-1.0, 0.0, 1.0, np.nan])
     of_frame = np.array([-1.0, 0.0, 1.0, 1.0, np.nan])
-    same = prosody_match("rate", of_state, of_frame, np.array([0, 1, 2, 2, 0]))
+    same = measure_prosody_match("rate", of_state, of_frame, np.array([0, 1, 2, 2, 0]))
     assert same is not None and same.off == 0 and same.correlation == pytest.approx(1) and same.known == 1
-    other = prosody_match("rate", of_state, of_frame, np.array([2, 1, 0, 3, 0]))
+    other = measure_prosody_match("rate", of_state, of_frame, np.array([2, 1, 0, 3, 0]))
     assert other is not None and other.correlation == pytest.approx(-1) and other.known == 0.75
-    assert other.words() == "rate 1.33 spreads off, correlation -1.00"
-    assert prosody_match("rate", of_state, of_frame, np.full(5, 3)) is None
+    assert other.words() == "rate differs by 1.33 standard deviations, correlation -1.00"
+    assert measure_prosody_match("rate", of_state, of_frame, np.full(5, 3)) is None
 
 
 def test_takes_and_speech_that_do_not_go_together_are_told() -> None:

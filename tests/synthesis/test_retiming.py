@@ -121,7 +121,7 @@ def test_a_path_is_found_where_there_is_none_without() -> None:
     with pytest.raises(SynthesisError):
         answer_speech(graph, spoken, new, 5.0, searching=Searching(strict=True))
     without = answer_speech(graph, spoken, new, 5.0)
-    assert without.given_up == ("exactness, 0.2 s instead",) and without.misses
+    assert without.given_up == ("exact timing (0.2 s allowed)",) and without.misses
     for strict in (True, False):
         found = answer_speech(graph, spoken, new, 5.0, searching=Searching(strict=strict), soft=soft)
         assert found.retiming is not None and found.given_up == () and found.misses == ()

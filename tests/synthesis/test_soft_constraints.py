@@ -7,7 +7,7 @@ import pytest
 
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
-from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
+from metagraph.research.motion_graph.evaluation_table import format_cases_as_csv, format_cases_as_text
 from metagraph.research.motion_graph.search_evaluation import (
     SETTINGS,
     Beside,
@@ -155,7 +155,7 @@ def test_an_evaluation_tells_what_became_of_a_wish() -> None:
     (row,) = found.rows
     assert row.loudness is not None and row.pace is not None and row.off is not None and row.was is not None
     assert 0 < row.off <= row.was and row.words is not None and 0 <= row.words <= 1
-    assert "spreads off" in cases_as_text(found) and "before retiming" in cases_as_text(found)
-    assert cases_as_csv(found.cases).splitlines()[0].endswith("loudness,pace,words,off,was")
+    assert "spreads off" in format_cases_as_text(found) and "before retiming" in format_cases_as_text(found)
+    assert format_cases_as_csv(found.cases).splitlines()[0].endswith("loudness,pace,words,off,was")
     plain = evaluate_search(few.clips, few.said, SETTINGS[:1], Trials(("exact",)))
-    assert plain.rows[0].loudness is None and "spreads" not in cases_as_text(plain)
+    assert plain.rows[0].loudness is None and "spreads" not in format_cases_as_text(plain)

@@ -1,6 +1,6 @@
 """What earlier versions wrote is opened for ever: projects, journals, logs of studies, settings.
 
-`<format>/` holds files as they were written then; none is ever made anew or changed, each released format
+`<format>/` holds files as they were written then; none is ever made again or changed, each released format
 adds a folder of its own. Exports have theirs in tests/engines/old.
 """
 

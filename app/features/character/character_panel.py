@@ -143,7 +143,7 @@ class PreviewPanel(QWidget):
         self.view.setAccessibleDescription(words)
 
     def _follow(self) -> None:
-        """Draw again, and show anew, what changes."""
+        """Draw again, and show again, what changes."""
         session, performance = self.session, self.performance
         session.transport.moved.connect(lambda _: self.view.update())
         session.transport.playing_changed.connect(self._show_state)
@@ -260,7 +260,7 @@ class PreviewPanel(QWidget):
         seats = (seat for one in shown.everyone for seat in stools(one))
         behind = self.reference.picture if self.reference.behind else None
         scene = Scene((*actors, *seats), picture=behind)
-        shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
+        shape = round(self.view.width() / max(1, self.view.height()), 1)  # frame it again for another size
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
         self.composed = scene
@@ -433,7 +433,7 @@ class PreviewPanel(QWidget):
             )
         if after.skeleton is None:
             self._tell_mesh()
-        # What plays follows when it is planned anew; the marks of a mask are the project's own.
+        # What plays follows when it is planned again; the marks of a mask are the project's own.
         if before.skeleton is not after.skeleton or mask_marks(self.performance, self.session) != self._marks:
             self.view.update()
 

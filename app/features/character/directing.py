@@ -102,10 +102,10 @@ class Directing:
         from pathlib import Path
 
         from app.stage.cutting import list_captions
-        from metagraph.speech.captions import captions_at
+        from metagraph.speech.captions import find_captions_at
 
         shown, document = performance.shown, performance.document
         talk = document.project.conversations.get(performance.conversation or "")
         folder = document.folder or Path()
         found = self._captions.of((), (shown, talk), lambda: list_captions(shown, talk, folder))
-        self.label.say(captions_at(found, seconds))
+        self.label.say(find_captions_at(found, seconds))

@@ -1,5 +1,6 @@
-"""Marks of the feet over the character: which is held, steps or is lifted, by shape; one that stands and
-slides has its speed beside it. A line below tells it of the seconds round now, and when the worst slide is.
+"""Draw marks of the feet over the character. A shape shows whether a foot is planted, steps or is lifted; a
+planted foot that slides has its speed beside it. A line below shows the seconds around now, and the time of
+the worst slide.
 """
 
 from __future__ import annotations
@@ -16,9 +17,16 @@ from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import WindowTheme, theme
 from app.translation import lazy_texts, tr, tr_noop
-from metagraph.playback.posing.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
+from metagraph.playback.posing.foot_slides import (
+    RATE,
+    SLIDES,
+    FeetSeen,
+    FeetWatch,
+    FootState,
+    find_worst_slide,
+)
 
-SPAN = 1.5  # seconds before and after now that the line tells of
+SPAN = 1.5  # seconds before and after now that the line reports
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
 HIGH = 42  # pixels of the line
 SIDES = lazy_texts(lambda: (tr("Left foot"), tr("Right foot")))
@@ -31,7 +39,7 @@ LEGEND = tr_noop(
 
 
 class FootMarks(QWidget):
-    """A pane over the view of a preview panel that lets everything through but what it draws."""
+    """A pane over the view of a preview panel. It passes all mouse events on."""
 
     def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
@@ -64,14 +72,16 @@ class FootMarks(QWidget):
             lie_over(self, self.panel.view)
 
     def watching(self) -> FeetWatch | None:
-        """Return who watches the feet of what is shown; None of who has none."""
+        """Return the watcher of the feet on screen, or None if the character has no feet."""
         shown = self.panel.performance.shown
         if shown is not self._of:
             self._of, self.watch = shown, watch_of(shown)
         return self.watch
 
     def seen(self, most: int | None = AT_ONCE) -> FeetSeen | None:
-        """Return what is known of the feet round now; None while it is not. most: poses composed for it."""
+        """Return what is known about the feet around now, or None while nothing is known. most: poses
+        composed for it.
+        """
         watch = self.watching()
         if watch is None:
             return None
@@ -124,7 +134,9 @@ class FootMarks(QWidget):
 
 
 class FootLine(QWidget):
-    """A line below the view: a row for each foot, now in the middle, and words of the worst slide."""
+    """A line below the view with a row for each foot (now is in the middle), and a text about the worst
+    slide.
+    """
 
     def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
@@ -136,7 +148,7 @@ class FootLine(QWidget):
         self.hide()
 
     def show_feet(self, seen: FeetSeen | None) -> None:
-        """Show what is known of the feet round now; None where nothing is."""
+        """Show what is known about the feet around now. None: nothing is known."""
         if seen is not None and len(seen.times) > 1:  # until it is known again, what was stands
             self._known = seen
             self.setAccessibleDescription(describe_slide(seen))
@@ -179,7 +191,7 @@ class FootLine(QWidget):
 
 
 def find_foot_states(seen: FeetSeen, side: int) -> list[tuple[float, float, int, bool]]:
-    """Return of one foot when each state begins and ends, the state, and whether it slides."""
+    """Return, for one foot, the start and end of each state, the state, and whether the foot slides."""
     key = seen.states[:, side] * 2 + seen.sliding()[:, side]
     edges = np.flatnonzero(np.diff(key)) + 1
     starts, ends = [0, *edges.tolist()], [*edges.tolist(), len(key)]
@@ -191,8 +203,8 @@ def find_foot_states(seen: FeetSeen, side: int) -> list[tuple[float, float, int,
 
 
 def describe_slide(seen: FeetSeen) -> str:
-    """Say which foot slides fastest round now and when, or that none does."""
-    worst = worst_slide(seen)
+    """Return which foot slides fastest around now and when, or that none slides."""
+    worst = find_worst_slide(seen)
     if worst is None:
         return tr("No planted foot slides") if len(seen.times) > 1 else ""
     time, side, speed = worst
@@ -206,7 +218,7 @@ def describe_slide(seen: FeetSeen) -> str:
 
 
 def watch_of(shown: Any) -> FeetWatch | None:
-    """Return who watches the feet of what is shown; None of who has no two feet."""
+    """Return the watcher of the feet on screen, or None if the character does not have two feet."""
     skeleton = shown.skeleton
     if skeleton is None or skeleton != shown.project.skeleton:
         return None

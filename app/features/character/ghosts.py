@@ -1,5 +1,5 @@
-"""Ghosts beside the character: moments before now and after it (onion skin), the stance it rests in
-underneath, and what the timing editor wants seen; each with its name where it is farthest from now.
+"""Make ghosts beside the character: moments before and after now (onion skin), the stance below, and moments
+that the timing editor wants to show. Each has its name where it is farthest from the present pose.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ ASIDE = 0.02  # of the height: a stance ghost whose joints are all that near wou
 
 
 class Ghosts(QWidget):
-    """Makes the ghosts of a preview panel, and is the pane over its view on which they are named."""
+    """Makes the ghosts of a preview panel. It is also the pane over the view that shows their names."""
 
     def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
@@ -52,7 +52,7 @@ class Ghosts(QWidget):
         self.panel.view.update()
 
     def made(self, figure: MeshFigure, seconds: float) -> list[Actor]:
-        """Return all ghosts at a time."""
+        """Return the ghosts at a time."""
         shown, watch = self.panel.performance.shown, self.panel.session.watch.now
         self._labels = []
         if shown.skeleton is None or shown.others:
@@ -64,7 +64,7 @@ class Ghosts(QWidget):
         ]
 
     def _of_action(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[Actor]:
-        """Return the moments of an action that are to be seen through, but for those that are now."""
+        """Return the moments of an action that are to be seen through, except for those that are now."""
         skin, out = self.panel.session.onion.skin, []
         for moment, opacity in skin.moments if skin is not None else ():
             at = shown.seconds_of(skin.action, moment) if skin is not None else None

@@ -26,7 +26,7 @@ BESIDE = 20.0  # pixels from a mark to its words
 
 
 class HandMarks(QWidget):
-    """A pane over the view of a preview panel that lets everything through but what it draws."""
+    """A pane over the view of a preview panel. It passes all mouse events on."""
 
     def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
@@ -47,7 +47,7 @@ class HandMarks(QWidget):
             lie_over(self, self.panel.view)
 
     def touches(self) -> list[HandTouch]:
-        """Return what contacts keep the hands of the picture; nothing where none are known."""
+        """Return what contacts keep the hands of the picture; nothing if none are known."""
         shown, drawn = self.panel.performance.shown, self.panel.drawn
         moved = shown.manual is not None or shown.motion is not None
         if drawn is None or moved or shown.skeleton is None or shown.skeleton != shown.project.skeleton:

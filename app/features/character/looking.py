@@ -32,7 +32,7 @@ ROUND = 8.0  # seconds of a turn of the turntable
 TURN = 33  # milliseconds between its steps
 DARKEST = 0.35  # of its colour, a joint that hardly moves
 LOOKS = 24  # poses of a clip that are looked at to see whether it stays in the picture
-CUT = 0.03  # of the picture: what a box round a figure may reach beyond it before it is framed anew
+CUT = 0.03  # of the picture: what a box round a figure may reach beyond it before it is framed again
 HANDS = 0.16  # metres round the hands that are in the picture
 
 
@@ -78,7 +78,7 @@ class Looking(QObject):
             self._aim(view.camera.frame(room, view.width() / max(1, view.height())))
 
     def hands(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Return the lowest and highest corner of a box round the hands; None where no hand is known."""
+        """Return the lowest and highest corner of a box round the hands; None if no hand is known."""
         last, project = self.panel.drawn, self.panel.performance.shown.project
         if last is None or project.skeleton is None or len(last[2]) != len(project.skeleton):
             return None
@@ -89,7 +89,7 @@ class Looking(QObject):
     def keep_in_picture(self, shown: ShownPlayback, figure: MeshFigure) -> None:
         """Step back where a clip that plays alone would leave the picture, and go to a performance that plays
         outside it; once until something else plays, unless the camera was moved. What plays after a step back
-        is framed anew.
+        is framed again.
         """
         view, clip = self.panel.view, shown.clip
         entry = shown.project.clips.get(clip) if clip is not None else None

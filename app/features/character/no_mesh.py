@@ -46,7 +46,7 @@ class NoMesh(QFrame):
         self.hide()
 
     def tell(self, words: str | None) -> None:
-        """Show why no mesh of a character is drawn, "" where no character is chosen; hide for None."""
+        """Show why no mesh of a character is drawn, "" if no character is chosen; hide for None."""
         shown = words is not None and self._may()
         if words is not None and self.words.text() != words:
             self.words.setText(words)

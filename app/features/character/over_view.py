@@ -1,4 +1,4 @@
-"""Panes that lie over a view, which lets them be drawn whenever it is drawn itself."""
+"""Panes over a view, which are drawn whenever the view is drawn."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from app.stage.gl_view import GLView, ImageView
 
 
 def lie_over(pane: QWidget, view: GLView | ImageView) -> None:
-    """Keep a pane over a view that was drawn. What lies over an image is drawn with it: to ask for it would
-    draw the image once more, and so on for ever.
+    """Keep a pane over a view. The pane is drawn with the view's image: an update of the pane would draw the
+    image again, endlessly.
     """
     if pane.geometry() != view.rect():
         pane.setGeometry(view.rect())

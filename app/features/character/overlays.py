@@ -54,7 +54,7 @@ class Overlays:
         return Ghosts(self.panel)
 
     def made(self, figure: MeshFigure, seconds: float) -> list[Actor]:
-        """Return all ghosts at a time."""
+        """Return the ghosts at a time."""
         session, watch = self.panel.session, self.panel.session.watch.now
         wanted = watch.stance or watch.before or watch.after or session.onion.skin is not None
         return self.ghosts.made(figure, seconds) if wanted or "ghosts" in self.__dict__ else []

@@ -69,7 +69,7 @@ class Pane:
             menu.addAction(action)
 
     def choose(self, side: str) -> None:
-        """Show another side, framed anew."""
+        """Show another side, framed again."""
         watch = self.panes.panel.session.watch
         sides = watch.now.sides.split()
         sides[self.number] = side

@@ -15,8 +15,8 @@ ROUND = 4.0  # pixels, of corners and above the highest
 def draw_plate(
     painter: QPainter, look: WindowTheme, at: QPointF, words: str, taken: Iterable[QRectF] = ()
 ) -> QRectF:
-    """Draw words on a plate about a place; below what is taken, where it would cover that. Return where it
-    is.
+    """Draw words on a plate at a place, or lower if it would cover one of the `taken` rectangles. Return the
+    plate's rectangle.
     """
     size = painter.fontMetrics().boundingRect(words)
     room = QRectF(0, 0, size.width() + 10, size.height() + 4)

@@ -1,5 +1,5 @@
-"""A video the character is compared with, beside it or behind it, at the playhead's time and an offset. Its
-pictures are read on a thread of its own. Which video belongs to which project is in the person's settings.
+"""Show a reference video beside or behind the character, at the playhead's time plus an offset. A thread
+reads its pictures. The user's settings store which video belongs to which project.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ FILES = tr_noop("Videos and pictures (*.mp4 *.mov *.mkv *.webm *.avi *.m4v *.png
 
 
 class _Reader(QObject):
-    """Reads pictures of a file on a thread; of what is asked for meanwhile only the last. came: a picture.
+    """Reads pictures of a file on a thread; of what is requested meanwhile only the last. came: a picture.
     failed: why there is none, in words.
     """
 
@@ -44,7 +44,7 @@ class _Reader(QObject):
         self._thread = threading.Thread(target=self._read, daemon=True)
 
     def start(self) -> None:
-        """Begin; once somebody hears it."""
+        """Start. Call it after the signals are connected."""
         self._thread.start()
 
     def ask(self, seconds: float) -> None:
@@ -53,7 +53,7 @@ class _Reader(QObject):
             self._turn.notify()
 
     def stop(self) -> None:
-        """End, after the picture that is being read."""
+        """Stop after the picture that is being read."""
         with self._turn:
             self._over = True
             self._turn.notify()
@@ -85,8 +85,8 @@ class _Reader(QObject):
 
 
 class Reference(QObject):
-    """changed: another video, another place. pictured: another picture of it. picture: uint8 `[H, W, 3]`,
-    None while there is none. trouble: why there is none, in words.
+    """The reference video. changed: signals another video or place. pictured: signals another picture.
+    picture: uint8 `[H, W, 3]`, or None. trouble: in words why there is no picture.
     """
 
     changed = Signal()
@@ -114,7 +114,7 @@ class Reference(QObject):
         self._keep()
 
     def set_offset(self, seconds: float) -> None:
-        """Show what is so many seconds later in the video than the playhead is."""
+        """Show the video this many seconds after the playhead."""
         if seconds != self.offset:
             self.offset = seconds
             self._keep()
@@ -128,7 +128,7 @@ class Reference(QObject):
             self.changed.emit()
 
     def stop(self) -> None:
-        """Read no more; at closing."""
+        """Stop reading, when the window closes."""
         if self._reader is not None:
             self._reader.stop()
             self._reader = None
@@ -199,7 +199,7 @@ def _kept() -> dict[str, list[str | float | bool]]:
 
 
 class ReferencePicture(QWidget):
-    """The picture beside the view; dragged to the left or right it is at another time."""
+    """The picture beside the view. A drag to the left or right changes its time."""
 
     def __init__(self, reference: Reference, parent: QWidget) -> None:
         super().__init__(parent)
@@ -250,7 +250,7 @@ class ReferencePicture(QWidget):
 
 
 class ReferenceBar(QWidget):
-    """A row below the view: which video it is, its offset, its place, and a way to be rid of it."""
+    """A row below the view with the video's name, offset and place, and a button that closes it."""
 
     def __init__(self, reference: Reference, parent: QWidget) -> None:
         super().__init__(parent)

@@ -1,5 +1,5 @@
-"""Trails of hands and head over the character: where they were and will be within a second and a half, by
-which arcs, spacing and pops are seen at a glance.
+"""Draw trails of hands and head over the character: where they were and will be within 1.5 s. They show arcs,
+spacing and pops at a glance.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ KEPT = 600  # samples
 
 
 class Trails(QWidget):
-    """A pane over the view of a preview panel that lets everything through but what it draws."""
+    """A pane over the view of a preview panel. It passes all mouse events on."""
 
     def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
@@ -53,7 +53,7 @@ class Trails(QWidget):
             lie_over(self, self.panel.view)
 
     def places(self) -> tuple[np.ndarray, np.ndarray, list[str]]:
-        """Return times `[N]`, places `[N, R, 3]` and the roles: of those that the character has."""
+        """Return times `[N]`, places `[N, R, 3]` and roles, of the roles that the character has."""
         shown = self.panel.performance.shown
         nothing: tuple[np.ndarray, np.ndarray, list[str]] = (np.zeros(0), np.zeros((0, 0, 3)), [])
         skeleton = shown.skeleton

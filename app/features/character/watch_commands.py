@@ -15,7 +15,7 @@ from app.shell.actions import Command
 from app.shell.command_table import Feature
 from app.shell.context import Shell
 from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch, Watched
-from app.translation import tr, tr_error, tr_noop
+from app.translation import format_number, tr, tr_error, tr_noop
 
 if TYPE_CHECKING:
     from app.features.character.reference import Reference
@@ -296,14 +296,14 @@ def fill_onion(shell: Shell, menu: QMenu) -> None:
     """Fill the menu of how many ghosts there are on each side and how far apart."""
     watch = shell.stage.session.watch
     for title, name, values, words in (
-        (tr("Before"), "before", range(MOST_GHOSTS + 1), "{:d}"),
-        (tr("After"), "after", range(MOST_GHOSTS + 1), "{:d}"),
-        (tr("Spacing"), "spacing", SPACINGS, "{:g} s"),
+        (tr("Before"), "before", range(MOST_GHOSTS + 1), "{}"),
+        (tr("After"), "after", range(MOST_GHOSTS + 1), "{}"),
+        (tr("Spacing"), "spacing", SPACINGS, "{} s"),
     ):
         part = menu.addMenu(title)
         group = QActionGroup(part)
         for value in values:
-            action = QAction(words.format(value), part, checkable=True)
+            action = QAction(words.format(format_number(value, "g")), part, checkable=True)
             action.setChecked(abs(getattr(watch.now, name) - value) < 1e-6)
             action.triggered.connect(lambda _=False, n=name, v=value: watch.set(**{n: v}))
             group.addAction(action)

@@ -173,7 +173,7 @@ class MatrixDialog(QDialog):
             self.refresh()
 
     def refresh(self) -> None:
-        """Show the current layer as it was last compared; what is stale is compared anew meanwhile."""
+        """Show the current layer as it was last compared; what is stale is compared again meanwhile."""
         layer, project = self.session.place.layer, self.document.project
         matrix = self.compatibility.matrix(layer)
         stances = tuple(project.graphs[layer].stances)

@@ -241,7 +241,7 @@ class MatrixModel(QAbstractTableModel):
         return None
 
 
-def half_disc(rect: QRectF, side: str) -> QPainterPath:
+def draw_half_disc(rect: QRectF, side: str) -> QPainterPath:
     """Return half a disc: "in" is the left one, its arrow's way into the clip, "out" the right one."""
     path = QPainterPath(rect.center())
     path.arcTo(rect, 90, 180 if side == "in" else -180)
@@ -256,11 +256,11 @@ def draw_half(painter: QPainter, t: WindowTheme, rect: QRectF, side: str, cost: 
     if level == 0:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.kind("stance"))
-        painter.drawPath(half_disc(moved, side))
+        painter.drawPath(draw_half_disc(moved, side))
     elif level == 1:
         painter.setPen(QPen(QColor(t.warning), 1.4))
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawPath(half_disc(moved.adjusted(0.7, 0.7, -0.7, -0.7), side))
+        painter.drawPath(draw_half_disc(moved.adjusted(0.7, 0.7, -0.7, -0.7), side))
     else:
         x = rect.center().x() + (-0.32 if side == "in" else 0.32) * rect.width()
         y, r = rect.center().y(), 3.2 if level == 2 else 0.8

@@ -1,4 +1,4 @@
-"""Those who talk: lanes of sound, words and segments."""
+"""The Conversation panel: lanes of sound, words and segments."""
 
 from __future__ import annotations
 

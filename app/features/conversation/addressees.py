@@ -1,4 +1,4 @@
-"""Whom a segment is said to, where three or more talk: in words, and as a menu to say so."""
+"""Show and set the addressee of a segment in a conversation of three or more."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from metagraph.speech.addressing import turns_of
 
 
 def offer_addressees(menu: QMenu, editing: Editing) -> None:
-    """Offer whom the selected segments are said to, where there is more than one to say them to."""
+    """Add the addressees of the selected segments to a menu, if there is a choice."""
     of, sides = editing.conversation, {side for side, _ in editing.chosen}
     if of is None or len(of.sides) < 3:
         return
@@ -32,8 +32,8 @@ def offer_addressees(menu: QMenu, editing: Editing) -> None:
 
 
 def describe_addressee(conversation: Conversation, side: int, at: int) -> str:
-    """Return a line that says whom a segment is said to; nothing of two, who have nobody else, and of what
-    takes no turn.
+    """Return a line with the addressee of a segment, or "" in a conversation of two and for segments that
+    take no turn.
     """
     segment = conversation.sides[side].segments[at]
     if len(conversation.sides) < 3:

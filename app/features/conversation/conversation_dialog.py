@@ -28,11 +28,11 @@ from PySide6.QtWidgets import (
 
 from app.features.conversation.conversation_settings import make_caption
 from app.features.conversation.speaker_card import Cards, SpeakerCard
-from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, language_name
+from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, name_language
 from app.look.theme import strengthen, theme
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
-from app.project.speech_files import TRANSCRIPTS, facts_of
+from app.project.speech_files import TRANSCRIPTS, describe_sound_file
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_phrase
 from app.widgets.act_strip import format_clock
@@ -58,7 +58,7 @@ MOST = 6  # notes that are shown; more of them do not help
 
 
 class ImportDialog(QDialog):
-    """imported: the id of the conversation that was added. It is read on a thread, anew whenever files or
+    """imported: the id of the conversation that was added. It is read on a thread, again whenever files or
     lists change.
     """
 
@@ -76,7 +76,7 @@ class ImportDialog(QDialog):
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.sounds, self.transcripts = tuple(sounds), tuple(transcripts)[:MOST_SPEAKERS]
-        self.facts = tuple(facts_of(p) for p in self.sounds)
+        self.facts = tuple(describe_sound_file(p) for p in self.sounds)
         self.read: Read | None = None
         self.typed: list[Lists | None] = []  # lists that were typed, by the sides as they are read
         self.order = [0, 1]  # of the cards: which of those that were read each shows
@@ -316,14 +316,14 @@ class ImportDialog(QDialog):
                 lists.show_lists(lists_of(read, side), code)
             if apart and read is not None:
                 of = read.sides[side]
-                label.setText(f"{side_name(read, side)}: {language_name(of.language) or tr('no words')}")
+                label.setText(f"{side_name(read, side)}: {name_language(of.language) or tr('no words')}")
             label.setVisible(apart and not several)
             lists.set_low(apart or several)
         self.lists.setVisible(not (apart and several))
         self.others.setVisible(apart and not several)
         if apart and several and read is not None:
             each = [
-                f"{side_name(read, n)} {language_name(read.sides[n].language) or tr('without words')}"
+                f"{side_name(read, n)} {name_language(read.sides[n].language) or tr('without words')}"
                 for n in self.order
             ]
             self.whose[0].setText(

@@ -1,4 +1,4 @@
-"""The commands of the menu Conversation; what does them is imported when the first of them is wanted."""
+"""The commands of the Conversation menu. The code behind them is imported when the first one runs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHORT = "conversation"  # the panel's own menu
 
 
 class ConversationFeature(Feature):
-    """Makes the panel of the conversation, and does the commands of this module."""
+    """Makes the Conversation panel and runs the commands of this module."""
 
     def make_panel(self) -> QWidget:
         from app.features.conversation.conversation_panel import ConversationPanel
@@ -36,7 +36,7 @@ class ConversationFeature(Feature):
         return panel
 
     def drop(self) -> FileDrop:
-        """Return what a drop of sounds on the window does."""
+        """Return what happens when sounds are dropped on the window."""
         return FileDrop(SOUNDS, self._claim, self._take)
 
     def _claim(self, paths: Sequence[Path]) -> Sequence[Path]:
@@ -53,7 +53,7 @@ class ConversationFeature(Feature):
         return self.document.project.conversations.get(self.session.onstage.conversation or "")
 
     def do(self, name: str) -> None:
-        """Do one of `conversation_commands`."""
+        """Run one of `conversation_commands`."""
         from app.features.conversation import conversation_commands
 
         getattr(conversation_commands, name)(self.shell)
@@ -67,14 +67,14 @@ class ConversationFeature(Feature):
         self.do("edit_side_sounds")
 
     def fill_partners(self, menu: QMenu) -> None:
-        """Fill the menu of who is drawn, moved and heard how."""
+        """Fill the menu of characters, body language and voices."""
         from app.features.conversation.partner_menu import fill_all
 
         if self.talk() is not None:
             fill_all(menu, self.document, str(self.session.onstage.conversation), self.edit_sounds)
 
     def show_next_side(self) -> None:
-        """Show the plan of the next of those who talk."""
+        """Show the plan of the next speaker."""
         talk, onstage = self.talk(), self.session.onstage
         onstage.set_side((onstage.side + 1) % (len(talk.sides) if talk is not None else 2))
 
@@ -82,7 +82,7 @@ class ConversationFeature(Feature):
         self.performance.keep_conversation()
 
     def moves_without_graph(self) -> bool:
-        """Whether somebody on stage moves with new motion instead of a graph."""
+        """Whether a speaker on stage moves with generated motion instead of a graph."""
         talk = self.talk()
         return talk is not None and any(side.motion is not None for side in talk.sides)
 

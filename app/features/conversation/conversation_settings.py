@@ -24,7 +24,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.stage.performance import StagePerformance
 from app.stage.playback_source import ShownPlayback
-from app.translation import lazy_texts, tr, tr_error, tr_noop
+from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_phrase
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation import edits as conversation_edits
@@ -145,17 +145,19 @@ class SettingDialog(QDialog):
 
 
 def describe_delivered(shown: ShownPlayback, conversation: Conversation) -> str:
-    """Return what becomes of all sides' rates in what is shown, a line for each, and of three or more where
-    they look; empty where nothing is.
+    """Return how the performance on the stage meets the rates, with a line for each side and rate, and with
+    three or more speakers where they look. Return "" if there is nothing to report.
     """
     rates = [
-        f"{side_name(conversation, one.side)}: {told.words()}"
+        f"{side_name(conversation, one.side)}: {tr_phrase(told.words())}"
         for one in shown.everyone
         for told in one.told
         if told.count
     ]
     looks = join_shares([share for one in shown.everyone for share in one.looks])
-    return "\n".join((*rates, *(tr("Whoever is {words}", words=share.words()) for share in looks)))
+    return "\n".join(
+        (*rates, *(tr("All speakers: {words}", words=tr_phrase(share.words())) for share in looks))
+    )
 
 
 class Tall(QScrollArea):

@@ -11,7 +11,7 @@ from pathlib import Path
 from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.document import Document
-from app.project.speech_files import SOUNDS, channels_of
+from app.project.speech_files import SOUNDS, count_channels
 from app.translation import lazy_texts, tr, tr_error
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph.conversation.edits import change_side
@@ -56,7 +56,7 @@ def fill_partner(menu: QMenu, document: Document, ident: str, side: int, more: o
     voice = menu.addMenu(tr("Voice"))
     offer(voice, tr("No sound"), of.audio is None, audio=None, channel=None)
     for path in _beside(document, SOUNDS, (s.audio for s in conversation.sides)):
-        count = channels_of((document.folder or Path()) / path)
+        count = count_channels((document.folder or Path()) / path)
         name = Path(path).name
         for channel in (None,) if count < 2 else range(count):
             ear = (

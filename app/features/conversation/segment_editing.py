@@ -128,8 +128,8 @@ class Editing(QObject):
     # --- edits
 
     def edit(self, text: str, function: Edit) -> bool:
-        """Change the project in one step; what cannot be done is told in the status bar. Return whether it
-        was done.
+        """Change the project in one step; what cannot be done is reported in the status bar. Return whether
+        it was done.
         """
         try:
             self.document.edit(text, function)
@@ -276,14 +276,14 @@ class Editing(QObject):
             self.change(tr("Move stress"), conversation_edits.set_peak, *self.last, peak)
 
     def highest(self, side: int, start: float, end: float) -> float | None:
-        """Return when in a stretch the voice is highest; None where none is heard."""
+        """Return when in a stretch the voice is highest; None if none is heard."""
         of = self.conversation
         heard = self.sounds.of(of, side) if of is not None else None
         return find_highest_pitch(heard, min(start, end), max(start, end)) if heard is not None else None
 
 
 def find_highest_pitch(heard: SideSound, start: float, end: float) -> float | None:
-    """Return when in a stretch a pitch is highest; None where there is none."""
+    """Return when in a stretch a pitch is highest; None if there is none."""
     if heard.pitch is None:
         return None
     rate = heard.pitch.rate

@@ -94,14 +94,14 @@ def _segment(conversation: Conversation, side: int, scale: LaneScale, x: float) 
 # --- snapping
 
 
-def word_edges(words: Sequence[Word], around: float, within: float = 30.0) -> list[float]:
+def find_word_edges(words: Sequence[Word], around: float, within: float = 30.0) -> list[float]:
     """Return where words begin and end, some seconds either side of a time."""
     first = bisect_left(words, around - within, key=lambda w: w.start)
     last = bisect_left(words, around + within, key=lambda w: w.start)
     return [t for w in words[first:last] for t in (w.start, w.end)]
 
 
-def pitch_maxima(times: Any, hertz: Any) -> Any:
+def find_pitch_maxima(times: Any, hertz: Any) -> Any:
     """Return when F0 `[K]` is higher than at the voiced moments beside it; of an even top, its middle."""
     with np.errstate(invalid="ignore"):
         filled = np.where(np.isnan(hertz), -np.inf, hertz)

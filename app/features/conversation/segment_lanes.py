@@ -47,7 +47,7 @@ class SegmentLane:
         return self.wave.united(self.segments)
 
 
-def least_lane_height(sides: int) -> int:
+def measure_least_lane_height(sides: int) -> int:
     """Return how many pixels the lanes of so many need."""
     return round(sides * _low(sides) + (sides - 1) * GAP + 4 + RULER)
 
@@ -79,7 +79,7 @@ def least_scale(width: float, length: float) -> float:
     return min(2.0, max(40.0, width - LEFT - 8) / max(length, 1e-3))
 
 
-def pitch_y(hertz: Any, wave: QRectF) -> Any:
+def measure_pitch_y(hertz: Any, wave: QRectF) -> Any:
     """Return how high a pitch stands in its waveform's lane; hertz: a number or an array."""
     low, high = np.log2(HERTZ[0]), np.log2(HERTZ[1])
     part = (np.log2(np.clip(hertz, *HERTZ)) - low) / (high - low)
@@ -98,7 +98,7 @@ def find_words_between(words: Sequence[Word], begin: float, end: float) -> Seque
     return words[max(0, first - 1) : bisect_right(words, end, key=lambda w: w.start)]
 
 
-def segment_rect(segment: Segment, scale: LaneScale, lane: SegmentLane) -> QRectF:
+def measure_segment_rect(segment: Segment, scale: LaneScale, lane: SegmentLane) -> QRectF:
     left = scale.x(segment.start)
     return QRectF(left, lane.segments.top(), max(1.5, scale.x(segment.end) - left), lane.segments.height())
 

@@ -1,4 +1,4 @@
-"""What a conversation's lanes look like. Functions of values; only what is in sight is looked at."""
+"""Paint a conversation's lanes. All functions are pure and only treat what is visible."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from app.features.conversation.segment_lanes import (
     SegmentLane,
     find_visible_segments,
     find_words_between,
-    pitch_y,
+    measure_pitch_y,
+    measure_segment_rect,
     place_segment_lanes,
-    segment_rect,
 )
 from app.features.conversation.sound_reading import SideSound
 from app.look.theme import SOUND_MARKS, WindowTheme
@@ -38,8 +38,8 @@ SMALL = 13  # pixels of what stands beside
 
 @dataclass(frozen=True)
 class SegmentScene:
-    """All that is painted. heard: the sound of each side. ratio: pixels of the screen to one of the window.
-    chosen: (side, place) of the selected segments. over: what the pointer is on.
+    """Everything that is painted. heard: the sound of each side. ratio: screen pixels per window pixel.
+    chosen: (side, index) of the selected segments. over: what is under the pointer.
     """
 
     conversation: Conversation
@@ -114,7 +114,7 @@ def _titles(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, l
     painter.setPen(QColor(t.dim))
     right = Qt.AlignmentFlag.AlignRight | MIDDLE
     for hertz in AXIS:
-        y = float(pitch_y(hertz, lane.wave))
+        y = float(measure_pitch_y(hertz, lane.wave))
         if y > lane.wave.top() + 26 and y < lane.wave.bottom() - 5:
             painter.drawText(QRectF(12, y - 8, LEFT - 18, 16), right, f"{hertz:.0f} Hz")
     if lane.wave.height() > 34:
@@ -137,7 +137,7 @@ def _wave(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lan
     _strokes(painter, t, scene, segments, behind, (26, 70), chosen)
     painter.setPen(QPen(QColor(t.line), 1, Qt.PenStyle.DotLine))
     for hertz in AXIS:
-        y = round(float(pitch_y(hertz, area))) + 0.5
+        y = round(float(measure_pitch_y(hertz, area))) + 0.5
         painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
     if heard is not None and heard.wave is not None:
         middle, half = area.height() / 2, area.height() / 2 - 3
@@ -147,7 +147,13 @@ def _wave(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lan
         _curve(painter, heard.wave, scene, area, color, lambda v: middle - v * grow, 1.0)
     if heard is not None and heard.pitch is not None:
         _curve(
-            painter, heard.pitch, scene, area, QColor(t.text), lambda v: pitch_y(v, area) - area.top(), 1.7
+            painter,
+            heard.pitch,
+            scene,
+            area,
+            QColor(t.text),
+            lambda v: measure_pitch_y(v, area) - area.top(),
+            1.7,
         )
     _told(painter, t, heard, area)
 
@@ -236,7 +242,7 @@ def _segments(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int,
     for n in wide:
         segment = segments[n]
         rect, fill, chosen = (
-            segment_rect(segment, scale, lane),
+            measure_segment_rect(segment, scale, lane),
             QColor(t.sounds[segment.kind]),
             (side, n) in scene.chosen,
         )
@@ -267,7 +273,7 @@ def _peaks(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, la
         segment = segments[n]
         if segment.kind != "clause" or segment.peak is None:
             continue
-        at = QPointF(scale.x(segment.peak), peak_y(segment.peak, heard, lane))
+        at = QPointF(scale.x(segment.peak), measure_peak_y(segment.peak, heard, lane))
         held = scene.over.part == "peak" and (scene.over.side, scene.over.at) == (side, n)
         painter.setPen(QPen(stem, 1.4))
         painter.drawLine(at, QPointF(at.x(), lane.segments.top()))
@@ -314,19 +320,19 @@ def _premultiplied(color: QColor, alpha: int) -> tuple[int, int, int, int]:
     return round(color.blue() * part), round(color.green() * part), round(color.red() * part), alpha
 
 
-def peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
-    """Return how high a peak's dot stands: on the pitch, or below all of it where there is none."""
+def measure_peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
+    """Return the height of a peak's dot: on the pitch curve, or below it if there is no pitch."""
     if heard is not None and heard.pitch is not None:
         values, at = heard.pitch.lows[0], round(seconds * heard.pitch.rate)
         near = values[max(0, at - 5) : at + 6]
         near = near[np.isfinite(near)]
         if len(near):
-            return float(pitch_y(float(near.max()), lane.wave))
+            return float(measure_pitch_y(float(near.max()), lane.wave))
     return lane.wave.bottom() - 8
 
 
 def paint_empty_conversation(painter: QPainter, t: WindowTheme, area: QRectF, lines: Sequence[str]) -> None:
-    """Paint what an empty panel says: two who talk, and how to bring them in."""
+    """Paint the empty panel: two speakers, and how to add them."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     middle, top = area.center().x(), area.center().y() - 62
     for side, (shift, kind, high) in enumerate(((-58.0, "clause", 0.0), (4.0, "response", 12.0))):

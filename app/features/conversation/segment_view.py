@@ -23,7 +23,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.conversation.addressees import describe_addressee, offer_addressees
-from app.features.conversation.drags.choice import gesture_for
+from app.features.conversation.drags.choice import begin_segment_gesture
 from app.features.conversation.drags.pan import SegmentPan
 from app.features.conversation.drags.segment import SegmentDrag
 from app.features.conversation.segment_editing import Editing
@@ -33,8 +33,8 @@ from app.features.conversation.segment_lanes import (
     NEAREST,
     describe_segment,
     find_words_between,
-    least_lane_height,
     least_scale,
+    measure_least_lane_height,
 )
 from app.features.conversation.segment_paint import SegmentScene, paint_empty_conversation, paint_segments
 from app.features.conversation.sound_reading import Sounds
@@ -90,7 +90,7 @@ class SegmentView(QWidget):
         self._came = 0  # how often more of a sound has come
         self._by_keys = False
         self._ident: str | None = None  # of the conversation on stage
-        self.setMinimumHeight(least_lane_height(2))
+        self.setMinimumHeight(measure_least_lane_height(2))
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Conversation"))
@@ -165,7 +165,7 @@ class SegmentView(QWidget):
     def _make_room(self) -> None:
         """Be as high as the lanes need; the panel scrolls where there is less."""
         of = self.editing.conversation
-        self.setMinimumHeight(least_lane_height(len(of.sides) if of is not None else 2))
+        self.setMinimumHeight(measure_least_lane_height(len(of.sides) if of is not None else 2))
 
     def _read(self) -> None:
         self._came += 1
@@ -207,7 +207,7 @@ class SegmentView(QWidget):
         painter.end()
 
     def _picture(self, of: Conversation) -> QPixmap:
-        """Return everything but the playhead, made anew only when something else than the playhead has
+        """Return everything but the playhead, made again only when something else than the playhead has
         changed.
         """
         ratio, chosen, s = self.devicePixelRatioF(), self.editing.chosen, self.session
@@ -265,7 +265,7 @@ class SegmentView(QWidget):
                 self._select(hit, event.modifiers())
             elif not event.modifiers():
                 self.editing.select(())
-            self.hand.take(gesture_for(self, hit), at)
+            self.hand.take(begin_segment_gesture(self, hit), at)
         self._show_cursor(hit)
 
     def _select(self, hit: SegmentHit, modifiers: Qt.KeyboardModifier) -> None:
@@ -372,7 +372,7 @@ class SegmentView(QWidget):
         return menu
 
     def _seconds(self) -> float:
-        """Return the time keys are about: under the pointer where that is on a segment, else the playhead."""
+        """Return the time keys are about: under the pointer if that is on a segment, else the playhead."""
         hit = self._hit(self.pointer)
         return (
             self.scale().seconds(self.pointer.x())

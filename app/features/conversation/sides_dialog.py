@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.conversation.conversation_settings import ORDINALS, SettingDialog, Tall, make_caption
-from app.project.speech_files import SOUNDS, channels_of
+from app.project.speech_files import SOUNDS, count_channels
 from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -165,7 +165,7 @@ class SidesDialog(SettingDialog):
     def _show_channels(self, side: int, chosen: int | None) -> None:
         """Offer the channels that the sound has, as far as that is known."""
         name = self.sounds[side].text().strip()
-        count = channels_of((self.document.folder or Path()) / name) if name else 0
+        count = count_channels((self.document.folder or Path()) / name) if name else 0
         box = self.channels[side]
         box.clear()
         box.addItem(tr("All channels, mixed"), None)
@@ -199,7 +199,7 @@ class SidesDialog(SettingDialog):
         return bool(name)
 
     def _mover(self, side: int) -> str | None:
-        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where
+        """Return the path of the project that moves a side, None for the one at hand. Raises EditError if
         there is none.
         """
         text = self.movers[side].text().strip()
@@ -218,8 +218,8 @@ class SidesDialog(SettingDialog):
         return None if own is not None and own.exists() and whole.samefile(own) else text
 
     def _body(self, side: int) -> str | None:
-        """Return the path of the character a side is drawn with, None for its project's. Raises EditError
-        where there is no file.
+        """Return the path of the character a side is drawn with, None for its project's. Raises EditError if
+        there is no file.
         """
         text = self.bodies[side].text().strip()
         if text and text != self.conversation.sides[side].character:

@@ -13,12 +13,12 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Qt, Signal
 
-from app.features.conversation.segment_hits import pitch_maxima
+from app.features.conversation.segment_hits import find_pitch_maxima
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop
-from app.widgets.waveforms import Envelope, bin_values
+from app.widgets.waveforms import Envelope, measure_bins
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Conversation
 
@@ -69,12 +69,12 @@ class Sounds(QObject):
         self._follow()  # the conversation may be on stage before its panel is opened
 
     def of(self, conversation: Conversation, side: int) -> SideSound | None:
-        """Return a side's sound as far as it is read; None where the side has none."""
+        """Return a side's sound as far as it is read; None if the side has none."""
         key = self._key(conversation, side)
         return self.heard.get(key) if key is not None else None
 
     def forget(self) -> None:
-        """Read everything anew when it is wanted next: files may be there now that were missing."""
+        """Read everything again when it is wanted next: files may be there now that were missing."""
         if self._job is not None:
             self._job.cancel()
         self._job = None
@@ -111,7 +111,7 @@ class Sounds(QObject):
         if self._job is not None:
             self._job.cancel()
             self._job = None
-        # What a job before has only begun is begun anew: its thread may still be at it.
+        # What a job before has only begun is begun again: its thread may still be at it.
         self.heard = {
             k: h if (h := self.heard.get(k)) is not None and not h.told else SideSound() for k in keys
         }
@@ -211,7 +211,7 @@ class _Work:
             if begin >= len(samples) or job.cancelled:
                 break
             piece = samples[begin : round((first + step) * each)]
-            self.hand_over(partial(wave.put, first, *bin_values(piece, each)))
+            self.hand_over(partial(wave.put, first, *measure_bins(piece, each)))
             loudest = max(loudest, float(abs(piece).max()))
             self.set(heard, loudest=loudest, part=0.5 * begin / len(samples))
             job.tell(*progress, tr("waveform"))
@@ -224,7 +224,7 @@ class _Work:
         found = pitch(samples, rate)
         curve = Envelope(len(samples) / rate, HOPS)
         curve.fill(0, found.hertz)
-        self.set(heard, maxima=pitch_maxima(found.times, found.hertz), pitch=curve, part=1.0, told="")
+        self.set(heard, maxima=find_pitch_maxima(found.times, found.hertz), pitch=curve, part=1.0, told="")
 
 
 def _set(heard: SideSound, values: dict[str, Any]) -> None:

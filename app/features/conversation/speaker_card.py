@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 
 from app.features.conversation.conversation_settings import ORDINALS, Tall, make_caption
 from app.features.conversation.segment_lanes import KINDS, PLURALS
-from app.features.conversation.word_lists import language_name
+from app.features.conversation.word_lists import name_language
 from app.look.theme import SOUND_MARKS
 from app.translation import group_thousands, tr, tr_plural
 from app.widgets.making import make_widget
@@ -86,7 +86,7 @@ class SpeakerCard(QFrame):
             if side.channel is not None
             else sound
         )
-        spoken = f", {language_name(side.language)}" if side.language else ""
+        spoken = f", {name_language(side.language)}" if side.language else ""
         self.words.setText(
             tr_plural("{count:,} word", "{count:,} words", len(side.words)) + spoken
             if side.words

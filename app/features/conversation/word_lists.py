@@ -30,22 +30,35 @@ from metagraph.speech.language_packs import list_language_packs
 
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
 LOW = 74  # pixels
+# Names of the languages that come with Metagraph, as their files have them.
+NAMES = (
+    *(tr_noop("English"), tr_noop("German"), tr_noop("French"), tr_noop("Spanish"), tr_noop("Italian")),
+    *(tr_noop("Portuguese"), tr_noop("Dutch"), tr_noop("Japanese"), tr_noop("Chinese (Mandarin)")),
+    tr_noop("Hindi"),
+)
 
 
-def language_name(code: str) -> str:
-    """Return what the language of a code is called; "" of none."""
+def name_language(code: str) -> str:
+    """Return the name of the language with a code, or "" for no code."""
     pack = list_language_packs().get(code)
-    return pack.name if pack is not None else {"": "", "und": tr("language not known")}.get(code, f"'{code}'")
+    return (
+        tr(pack.name)
+        if pack is not None
+        else {"": "", "und": tr("language not known")}.get(code, f"'{code}'")
+    )
 
 
 class LanguageBox(ComboBox):
-    """Automatic first, then the languages there are lists of."""
+    """A choice of languages: automatic first, then those that have word lists."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.addItem(tr("Automatic"), AUTO)
         for pack in list_language_packs().values():
-            self.addItem(pack.name if pack.name == pack.own else f"{pack.name} · {pack.own}", pack.code)
+            name = tr(pack.name)
+            self.addItem(
+                name if name.casefold() == pack.own.casefold() else f"{name} · {pack.own}", pack.code
+            )
         self.setAccessibleName(tr("Language"))
         self.setToolTip(
             tr(
@@ -55,10 +68,10 @@ class LanguageBox(ComboBox):
         )
 
     def show_code(self, code: str) -> None:
-        """Show a code without telling of it; of a list of one's own it is only named."""
+        """Show a language without emitting a signal. One that is not in the box is added to it."""
         with QSignalBlocker(self):
             if code and self.findData(code) < 0:
-                self.addItem(language_name(code).capitalize(), code)
+                self.addItem(name_language(code).capitalize(), code)
             self.setCurrentIndex(max(0, self.findData(code)))
 
 

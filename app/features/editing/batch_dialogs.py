@@ -132,9 +132,9 @@ class RenameDialog(BatchDialog):
         self.names, words = {}, ""
         try:
             if self.tabs.currentIndex() == 0:
-                self.names = batch.names_by_pattern(project, self.edited, self.pattern.text())
+                self.names = batch.rename_by_pattern(project, self.edited, self.pattern.text())
             elif self.sought.text():
-                self.names = batch.names_replaced(
+                self.names = batch.rename_by_replacing(
                     project, self.edited, self.sought.text(), self.put.text(), self.regex.isChecked()
                 )
         except EditError as error:

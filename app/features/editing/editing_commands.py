@@ -1,4 +1,4 @@
-"""The commands of the menu Edit: each verb means what is selected, wherever that is."""
+"""The commands of the Edit menu. Each works on the selection, in any panel."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MENU = "&Edit"
 
 
 class EditingFeature(Feature):
-    """Makes the history of what was done, and does the commands of this module."""
+    """Makes the History panel and runs the commands of this module."""
 
     def __init__(self, shell: Shell) -> None:
         super().__init__(shell)

@@ -1,4 +1,4 @@
-"""New, open, save, import: the document's files as commands, and what is told of an import."""
+"""New, open, save, import: the document's files as commands, and what is reported about an import."""
 
 from __future__ import annotations
 

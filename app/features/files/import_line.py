@@ -1,6 +1,4 @@
-"""What came of an import, in one line over the status bar, with a button for everything there is to do
-about it.
-"""
+"""Show the result of an import in one line above the status bar, with a button for each remedy."""
 
 from __future__ import annotations
 
@@ -71,7 +69,7 @@ class ImportLine(QToolBar):
         self._document = document
 
     def tell(self, result: Imported) -> None:
-        """Show what came of an import."""
+        """Show the result of an import."""
         self.forget()
         words = describe_import(result)
         unlabelled = self._unlabelled(result)
@@ -114,7 +112,7 @@ class ImportLine(QToolBar):
     _fresh = False  # all came in, and it says what to do next
 
     def forget(self) -> None:
-        """Hide it; what it said is done, or of another project."""
+        """Hide the line, when its task is done or another project is opened."""
         self.result, self._fresh = None, False
         self.words.clear()
         for button in self.offered:

@@ -1,4 +1,4 @@
-"""Shows what is told of an import or of opening a project."""
+"""Shows what is reported about an import, or about opening a project."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LINES = 6  # of a report that are shown at once
 
 
 def show_report(shell: Shell, title: str, lines: Sequence[str]) -> None:
-    """Show a report's first lines, and the rest on demand."""
+    """Show the first lines of a report, and all of it on demand."""
     box = QMessageBox(
         QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, shell.widget
     )

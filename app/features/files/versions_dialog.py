@@ -41,8 +41,8 @@ LINES = 500  # changes of a version that are listed
 
 @dataclass(frozen=True)
 class Found:
-    """An earlier version. project: None where it cannot be read, and then why. changes: what was done since,
-    in words. pose: for its picture, a clip of it where one could be read.
+    """An earlier version. project: None if it cannot be read, and then why. changes: what was done since, in
+    words. pose: for its picture, a clip of it where one could be read.
     """
 
     version: Version

@@ -14,8 +14,8 @@ from metagraph.generation.standing import Standing
 
 
 class BegunRow(QWidget):
-    """Shown where there are any. resumed: one is to be gone on with; kept: the model of its last checkpoint
-    is wanted; both a Standing.
+    """Shown if there are any. resumed: one is to be gone on with; kept: the model of its last checkpoint is
+    wanted; both a Standing.
     """
 
     resumed = Signal(object)

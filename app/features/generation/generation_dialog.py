@@ -18,7 +18,9 @@ from metagraph.graph.model import Project
 
 
 class GenerationDialog(QDialog):
-    """Stays open beside the window; a training ends with it, and keeps what it has."""
+    """The dialog of generated motion, which stays open beside the window. Closing it stops a training and
+    keeps its last checkpoint.
+    """
 
     def __init__(
         self, document: Document, session: StageSession, jobs: Jobs, parent: QWidget | None = None
@@ -69,7 +71,7 @@ class GenerationDialog(QDialog):
         self.said.setText(words)
 
     def _say_begun(self) -> None:
-        """Tell of a training that was cut short: it may have been forgotten."""
+        """Report a training that was cut short: it may have been forgotten."""
         cut = self.learn.begun.cut_short()
         if cut:
             for page in (self.use, self.learn):

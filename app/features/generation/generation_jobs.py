@@ -58,9 +58,7 @@ class TakeRow:
 
 @dataclass(frozen=True, eq=False)
 class TakeListing:
-    """What came of looking through folders. batch: takes that can be learned from, None where there are
-    none.
-    """
+    """What came of looking through folders. batch: takes that can be learned from, None if there are none."""
 
     rows: tuple[TakeRow, ...] = ()
     batch: TakeBatch | None = None
@@ -73,8 +71,8 @@ class TakeListing:
 def list_takes(
     folders: Sequence[Path], project: Project, progress: Progress, cancelled: Cancelled
 ) -> TakeListing:
-    """Look through folders, and read what can be learned from; what cannot is told, and spoils nothing else.
-    Raises CancelledError.
+    """Look through folders, and read what can be learned from; what cannot is reported, and spoils nothing
+    else. Raises CancelledError.
     """
     from metagraph.generation.take_files import find_takes, read_take_batch
 

@@ -42,7 +42,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_plural
+from app.translation import lazy_texts, tr, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from metagraph.generation.standing import Standing, is_busy
@@ -67,7 +67,7 @@ HEADS = lazy_texts(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("Notes"))
 
 
 def describe_missing_training() -> str | None:
-    """Return what has to be installed before anything can be trained, in words; None where all is there."""
+    """Return in words what must be installed for training, or None if nothing is missing."""
     from metagraph.generation import train_process
 
     return train_process.find_missing_tools()
@@ -183,7 +183,7 @@ class LearnPage(GenerationPage):
         self.begun.resumed.connect(lambda one: self._go_on(one, False))
         self.begun.kept.connect(lambda one: self._go_on(one, True))
         box.addWidget(self.begun)
-        self.needs = QLabel(describe_missing_training() or "", self, wordWrap=True)
+        self.needs = QLabel(tr_phrase(describe_missing_training() or ""), self, wordWrap=True)
         self.needs.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.needs.setVisible(bool(self.needs.text()))
         box.addWidget(self.needs)

@@ -29,8 +29,8 @@ LINES = tuple((LANDMARKS.index(a), LANDMARKS.index(b)) for a, b in _LINES)
 
 
 class FigurePreview(QWidget):
-    """Figures beside each other that move again and again, each over its words. empty: words where nobody
-    moves. rate: of landmarks, a second.
+    """Figures beside each other that move again and again, each over its words. empty: words if nobody moves.
+    rate: of landmarks, a second.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""How a training goes: how near it is to its goal, and its samples' statistics beside what they should be."""
+"""Plot a training: the distance to its goal, and the statistics of its samples beside their targets."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 from app.look.theme import theme
 from app.stage.session import StageSession
 from app.translation import lazy_texts, tr
-from app.widgets.still_plot import empty_plot, still_plot
+from app.widgets.still_plot import clear_plot, still_plot
 
-# Statistics of which 1 is right, as people read them; others are told in words.
+# Statistics of which 1 is right, as people read them; others are reported in words.
 RATIOS = lazy_texts(
     lambda: {
         "speed": tr("speed"),
@@ -35,7 +35,7 @@ MOST = 2000  # points of a line, the rest is thinned out
 
 
 class TrainingPlots(QWidget):
-    """Two plots beside each other, over minutes."""
+    """Two plots side by side, over minutes."""
 
     def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -61,7 +61,7 @@ class TrainingPlots(QWidget):
         self._draw()
 
     def add(self, minutes: float, goals: Mapping[str, float], ratios: Mapping[str, float]) -> None:
-        """Add a moment. goals: how near it is to its goal, by what that is. ratios: of which 1 is right."""
+        """Add a moment. goals: progress by goal. ratios: 1 is the target."""
         for lines, values in ((self.goals, goals), (self.ratios, ratios)):
             for name, value in values.items():
                 if isfinite(value):
@@ -78,7 +78,7 @@ class TrainingPlots(QWidget):
             (self.left, next(iter(self.goals), tr("training goal")), self.goals),
             (self.right, tr("samples compared with takes: 1 is a perfect match"), self.ratios),
         ):
-            empty_plot(plot, look)
+            clear_plot(plot, look)
             plot.setLabel("bottom", tr("minutes"), color=look.dim)
             plot.setTitle(words, color=look.dim, size="9pt")
             if lines is self.ratios:

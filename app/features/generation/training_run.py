@@ -31,7 +31,7 @@ LOOKS = 200  # milliseconds between two looks at what was said
 
 class Process(Protocol):
     """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. wait: the
-    model's file once it has ended; raises RuntimeError, in words, where there is none, TimeoutError.
+    model's file once it has ended; raises RuntimeError, in words, if there is none, TimeoutError.
     """
 
     @property
@@ -65,7 +65,7 @@ def begin_training(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -
 
 
 def continue_training(standing: Standing, minutes: float, hear: Hear) -> Process:
-    """Go on with a training that was begun, for as long as it was to last, and `minutes` more where that is
+    """Go on with a training that was begun, for as long as it was to last, and `minutes` more if that is
     over; on a job's thread. Raises FileError, TrainingFailedError.
     """
     from msgspec.structs import replace
@@ -113,7 +113,7 @@ def describe_progress(standing: Standing) -> str:
 
 
 class TrainingRun(QObject):
-    """moved: something happened, an Event. ended: the model's file, None where there is none, and words."""
+    """moved: something happened, an Event. ended: the model's file, None if there is none, and words."""
 
     moved = Signal(object)
     ended = Signal(object, str)
@@ -156,7 +156,7 @@ class TrainingRun(QObject):
 
 
 def describe_event(event: TrainingEvent) -> str:
-    """Return how far a training is, in words; also how little of the machine it gets, where that is so."""
+    """Return how far a training is, in words; also how little of the machine it gets, if so."""
     words = tr(
         "{steps}, {minutes:.1f} min",
         steps=tr_plural("{count:,} step", "{count:,} steps", event.step),
@@ -175,8 +175,8 @@ def describe_event(event: TrainingEvent) -> str:
 
 
 def describe_goal(event: TrainingEvent) -> tuple[str, float]:
-    """Return what an event tells of how near the training is to its goal, in words and as a number; "" where
-    it says nothing of it.
+    """Return what an event reports how near the training is to its goal, in words and as a number; "" if it
+    says nothing of it.
     """
     for name, words in GOALS.items():
         if name in event.numbers:

@@ -1,5 +1,5 @@
-"""Using a model: it moves a side of a conversation, or makes long takes that are cut into clips and dropped
-on the meta-graph.
+"""Use a model: move a side of a conversation, or make long takes that are cut into clips and placed on the
+meta-graph.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
-from app.translation import tr, tr_error, tr_noop, tr_plural
+from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
 from metagraph.generation.chunks import GUIDANCE
-from metagraph.generation.offered import list_models, model_title
+from metagraph.generation.offered import list_models, name_model
 from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation.model import side_name
 
@@ -165,7 +165,7 @@ class UsePage(GenerationPage):
     # --- what there is
 
     def fill(self) -> None:
-        """List models, sides and stances as they are now."""
+        """Fill the lists of models, sides and stances."""
         self._fill_models()
         project = self.document.project
         for widget in (self.side, self.move_button):
@@ -197,13 +197,13 @@ class UsePage(GenerationPage):
         self.model.blockSignals(True)
         self.model.clear()
         for name, path in found.items():
-            self.model.addItem(model_title(name), path)
+            self.model.addItem(tr_phrase(name_model(name)), path)
         self.model.choose(now)
         self.model.blockSignals(False)
         self._about()
 
     def show_model(self, path: Path) -> None:
-        """Choose a model: one that was just trained, say."""
+        """Choose a model, such as one that was just trained."""
         if path not in list_models(self.document.folder).values():
             self._extra[path.stem] = path
         self._fill_models(path)
@@ -306,7 +306,7 @@ class UsePage(GenerationPage):
     # --- a side
 
     def move_side(self) -> None:
-        """Let the chosen side move as the model says."""
+        """Move the chosen side with the model."""
         path, chosen, folder = self.model.currentData(), self.side.currentData(), self._folder()
         if path is None or chosen is None or folder is None:
             return
@@ -363,7 +363,7 @@ class UsePage(GenerationPage):
     # --- clips
 
     def make_pieces(self) -> None:
-        """Make long takes and cut them; where no sound is chosen yet, ask for it first."""
+        """Make long takes and cut them. Ask for a sound first if none is chosen."""
         if self.speech.currentData() == CHOOSE:
             self._choose_sound()
         path, speech = self.model.currentData(), self.speech.currentData()
@@ -415,7 +415,7 @@ class UsePage(GenerationPage):
         self._start(tr("Generating motion to cut"), work, done)
 
     def drop(self) -> None:
-        """Keep the checked pieces as files, and drop them on the graph: one step of undo."""
+        """Save the checked pieces as files and place them on the graph, in one undo step."""
         chosen, folder, (named, seed) = self.table.chosen(), self._folder(), self._of
         if not chosen or folder is None:
             return

@@ -39,7 +39,7 @@ from app.features.graph.graph_layout import (
     GraphHit,
     Layout,
     lay_out_canvas,
-    least_canvas_height,
+    measure_least_canvas_height,
 )
 from app.features.graph.graph_look import NOWHERE, GraphLook
 from app.features.graph.graph_menus import make_ends_menu, menu_of
@@ -149,7 +149,7 @@ class Canvas(QWidget):
             self.update(region)
 
     def resizeEvent(self, event: object) -> None:
-        self.setMinimumHeight(int(least_canvas_height(self.width())))
+        self.setMinimumHeight(int(measure_least_canvas_height(self.width())))
         self._stale()
         self._selected()
 

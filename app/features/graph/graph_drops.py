@@ -1,6 +1,4 @@
-"""What a drop on the canvas would do: said in words before it happens, done by the same value when it
-does.
-"""
+"""Describe what a drop on the canvas would do, and do it: the same value serves for both."""
 
 from __future__ import annotations
 
@@ -50,7 +48,7 @@ class Drop:
 def drop_at(
     project: Project, layer: Layer, stance: str | None, other: str | None, hit: GraphHit, load: Load
 ) -> Drop:
-    """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
+    """Return what dropping `load` on `hit` does, given the current stance and the end stance."""
     if not load:
         return Drop(False, tr("you can drop clips, folders of clips and actions here"))
     if load.files and all(f.lower().endswith(ANNOTATIONS) for f in load.files):
@@ -167,7 +165,7 @@ def merge_at(project: Project, stance: str, hit: GraphHit) -> Drop:
 
 
 def perform_drop(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
-    """Do what a possible drop said, for clips or actions. Raises EditError."""
+    """Carry out a drop of clips or actions. Raises EditError."""
     if drop.reorder:
         return reorder_actions(project, load.actions, drop.before)
     if load.actions:

@@ -19,7 +19,7 @@ PRESSED = ("chip", "add", "other", "row", "bar", "card", "head")  # what a press
 class Hover:
     """A row plays in context where the pointer rests on it, and the performance goes on where it leaves.
 
-    hit: what is under the pointer. held: where something is held over the canvas, None where nothing is.
+    hit: what is under the pointer. held: where something is held over the canvas, None if nothing is.
     """
 
     def __init__(self, session: StageSession, held: Callable[[], GraphHit | None], widget: QWidget) -> None:

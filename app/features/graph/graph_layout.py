@@ -1,6 +1,4 @@
-"""Where everything on the canvas is: a pure function of the project and the size, and the hit test on its
-result.
-"""
+"""Lay out the canvas, as a pure function of the project and the size, and test what is under a point."""
 
 from __future__ import annotations
 
@@ -27,9 +25,9 @@ CHIP_MIN, SHORT, CHIP_MAX = 108, 150, 230
 BESIDES = 80  # pixels of a chip beside its words
 BOLD = 1.12  # how much wider the card's name is than the chip's
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
-TIGHT = -1  # and: as many in a line as can be told apart
+TIGHT = -1  # and: as many in a line as can be distinguished
 TIGHTEST = 84.0
-CHOOSER = 196.0  # pixels from a chooser to the right edge of its node: "another stance?" is told whole
+CHOOSER = 196.0  # pixels from a chooser to the right edge of its node: "another stance?" is reported whole
 LEAST_NODES = 300.0  # pixels of height for a card and its nodes below each other
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
@@ -37,8 +35,8 @@ Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "oth
 
 @dataclass(frozen=True)
 class GraphHit:
-    """What lies under a point. ident: stance or action id. kind: of the node. behind: while something is
-    dragged, whether it is the second half of a row.
+    """What is under a point. ident: stance or action id. kind: of the node. behind: whether a drag is over
+    the second half of a row.
     """
 
     area: Area
@@ -59,7 +57,9 @@ class GraphRow:
 
 @dataclass(frozen=True)
 class NodeLayout:
-    """rows: those in sight. count: of all. scroll, most: the first row in sight and the largest it can be."""
+    """The layout of a node. rows: the visible rows. count: of all rows. scroll, most: the first visible
+    row and its maximum.
+    """
 
     kind: Kind
     rect: QRectF
@@ -75,7 +75,9 @@ class NodeLayout:
 
 @dataclass(frozen=True)
 class Chip:
-    """stance None is the "+" at the end. words: its hole, if any. bare: it has room for its name alone."""
+    """The chip of a stance; stance None is the "+" at the end. words: what the stance lacks. bare: there
+    is only room for the name.
+    """
 
     stance: str | None
     rect: QRectF
@@ -96,13 +98,11 @@ class Layout:
     stance: str | None
 
     def areas(self) -> dict[str, QRectF]:
-        """Return where the nodes lie, by name; widget pixels."""
+        """Return the rectangles of the nodes by name, in widget pixels."""
         return {"stance": self.card, **{str(kind): node.rect for kind, node in self.nodes.items()}}
 
     def hit(self, at: QPointF, dragging: bool = False) -> GraphHit:
-        """Return what lies under a point; `dragging` splits the card into "a new stance" and "another
-        loop".
-        """
+        """Return what is under a point. `dragging` splits the card into "a new stance" and "another loop"."""
         for chip in self.chips:
             if chip.rect.contains(at):
                 return GraphHit("add") if chip.stance is None else GraphHit("chip", chip.stance)
@@ -139,7 +139,7 @@ HOLES = lazy_texts(lambda: (tr("no loop"), tr("no transition out"), tr("no gestu
 
 
 def describe_hole(project: Project, layer: Layer, stance: str) -> str:
-    """Return in words what a stance lacks, the worst first, or nothing."""
+    """Return in words what a stance lacks, the worst first, or ""."""
     graph = project.graphs[layer]
     if not graph.of(stance, "stance"):
         return HOLES[0]
@@ -152,8 +152,8 @@ def describe_hole(project: Project, layer: Layer, stance: str) -> str:
     return ""
 
 
-def least_canvas_height(width: float) -> float:
-    """Return the least height at which a canvas of a width shows each node with a row: a narrow one needs
+def measure_least_canvas_height(width: float) -> float:
+    """Return the least height at which a canvas of this width shows a row in each node. A narrow canvas needs
     more.
     """
     return LEAST_HEIGHT if width >= LINE else 440.0
@@ -167,12 +167,12 @@ def lay_out_canvas(
     scroll: Mapping[Kind, int] | None = None,
     widths: Mapping[str, float] | None = None,
 ) -> Layout:
-    """Lay the canvas out. scroll: the first row shown in each node. widths: of texts, in pixels, for the
-    chips.
+    """Lay out the canvas. scroll: the first visible row of each node. widths: text widths of the chips, in
+    pixels.
     """
     scroll, widths = scroll or {}, widths or {}
     width = max(size.width(), LEAST_WIDTH)
-    height = max(size.height(), least_canvas_height(width))
+    height = max(size.height(), measure_least_canvas_height(width))
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
@@ -287,16 +287,18 @@ def _node(
     return NodeLayout(kind, rect, header, body, tuple(rows), len(actions), first, most, other, columns)
 
 
-def likelihood_at(row: GraphRow, x: float) -> float:
-    """Return the likelihood a bar shows at a place: 0.1 at its left, 1 in its middle, 3 at its right, in
-    steps of 0.1.
+def read_likelihood_at(row: GraphRow, x: float) -> float:
+    """Return the likelihood at a place on a bar: 0.1 at the left, 1 in the middle, 3 at the right, in steps
+    of 0.1.
     """
     part = min(1.0, max(0.0, (x - row.bar.left()) / row.bar.width()))
     value = 0.1 + part * 1.8 if part <= 0.5 else 1.0 + (part - 0.5) * 4.0
     return round(value, 1)
 
 
-def bar_part(likelihood: float) -> float:
-    """Return how much of a bar a likelihood fills, 0..1; inverse of `likelihood_at` up to its ends."""
+def measure_bar_part(likelihood: float) -> float:
+    """Return the part of a bar that a likelihood fills, 0..1; the inverse of `read_likelihood_at` within its
+    range.
+    """
     part = (likelihood - 0.1) / 1.8 if likelihood <= 1 else 0.5 + (likelihood - 1.0) / 4.0
     return min(1.0, max(0.0, part))

@@ -18,7 +18,7 @@ RADIUS = 8.0
 KNOWN = 512  # pictures
 GRAIN = 24  # points across, by which a picture is looked through
 FAINT = 40  # of 255: what is more transparent is paper
-LYING = 0.36  # of a picture, down to where nothing is of who lies
+LYING = 0.36  # of a picture, down to if nothing is of who lies
 NOWHERE = GraphHit("nothing")
 
 

@@ -16,7 +16,7 @@ from metagraph.graph import edits
 
 
 def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> QMenu:
-    """Return what can be done with what is under the pointer; an action there is selected."""
+    """Return the menu for what is under the pointer, and select an action there."""
     menu = QMenu(acts.widget)
     menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     if hit.area in ("row", "bar", "head") and hit.ident:
@@ -64,7 +64,7 @@ def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> Q
 
 
 def make_ends_menu(acts: GraphActs) -> QMenu:
-    """Return the stances that dropped transitions can end in."""
+    """Return a menu of the stances that dropped transitions can end in."""
     menu = QMenu(acts.widget)
     menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     current, other = acts.session.place.stance(), acts.session.place.other()

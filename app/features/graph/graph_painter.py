@@ -14,7 +14,7 @@ from app.features.graph.paint_stances import draw_chip, draw_stance_card
 def paint_graph(
     painter: QPainter, layout: Layout, look: GraphLook, font: QFont, stale: QRegion | None = None
 ) -> None:
-    """Draw a canvas. stale: the part that is to be drawn anew, None for all; while the stance moves that is
+    """Draw a canvas. stale: the part that is to be drawn again, None for all; while the stance moves that is
     little.
     """
 

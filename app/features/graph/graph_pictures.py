@@ -1,4 +1,4 @@
-"""The pictures on the canvas, and the beat to which the stance in the middle moves."""
+"""Draw the pictures on the canvas, and animate the stance in the middle."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
 
 @dataclass(frozen=True)
 class GraphPictures:
-    """hero: of the stance in the middle. chips: by stance. rows: by clip. None is there that is not drawn
-    yet.
+    """Pictures of the canvas. hero: of the stance in the middle. chips: by stance. rows: by clip. Pictures
+    that are not drawn yet are missing.
     """
 
     hero: QImage | None = None
@@ -29,7 +29,7 @@ class GraphPictures:
 
 
 def find_graph_pictures(thumbnails: Thumbnails, layout: Layout, graph: MetaGraph, beat: int) -> GraphPictures:
-    """Return the pictures that a layout has room for; those that are not there yet are drawn."""
+    """Return the pictures that a layout has room for, and start drawing the missing ones."""
     loops = {ident: next(iter(graph.of(ident, "stance")), None) for ident in graph.stances}
     chips = {
         ident: thumbnails.picture(loop.clip, bare=True) for ident, loop in loops.items() if loop is not None
@@ -45,7 +45,7 @@ def find_graph_pictures(thumbnails: Thumbnails, layout: Layout, graph: MetaGraph
 
 
 class Beat:
-    """Calls again and again, less often while drawing is slow. count: how often it has."""
+    """Calls a function repeatedly, less often while drawing is slow. count: number of calls."""
 
     def __init__(self, call: Callable[[], None], parent: QWidget) -> None:
         self.call, self.count = call, 0
@@ -54,12 +54,12 @@ class Beat:
         self._timer.timeout.connect(self._next)
 
     def run(self, on: bool) -> None:
-        """Begin, or rest."""
+        """Start or pause."""
         if on != self._timer.isActive():
             self._timer.start() if on else self._timer.stop()
 
     def drawn(self, seconds: float) -> None:
-        """Tell how long drawing has taken."""
+        """Report how long a drawing took."""
         self._rest = min(RATE, int(seconds / SLOW))
 
     def stop(self) -> None:

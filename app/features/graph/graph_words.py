@@ -1,4 +1,4 @@
-"""What the canvas says: of what is under the pointer, and of the machine that was not drawn."""
+"""Describe in words what is under the pointer on the canvas, and the machine that nobody had to draw."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from metagraph.graph.model import LAYERS, Project
 def describe_graph_hit(
     project: Project, layout: Layout, hit: GraphHit, other: str | None, misfits: Mapping[str, str]
 ) -> str:
-    """Say what is under the pointer. other: the stance that dropped transitions end in. misfits: what is
-    wrong with the ends of actions.
+    """Return words about what is under the pointer. other: the stance in which dropped transitions end.
+    misfits: problems of the ends of actions.
     """
     action = project.action(hit.ident) if hit.ident else None
     if hit.area == "bar" and action is not None:
@@ -48,7 +48,7 @@ def describe_graph_hit(
 
 
 def count_machine(project: Project) -> str:
-    """Count the machine that was not drawn."""
+    """Count the states and connections of the expanded machine."""
     whole = count_machine_size(project)
     if not whole.clips:
         return tr("Drop clips on the nodes. Metagraph connects them for you.")

@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from app.features.graph.graph_frames import GRID
-from app.features.graph.graph_layout import GraphRow, Layout, NodeLayout, bar_part
+from app.features.graph.graph_layout import GraphRow, Layout, NodeLayout, measure_bar_part
 from app.features.graph.graph_look import (
     GraphLook,
     crop_upper,
@@ -195,11 +195,15 @@ def _row(
     painter.drawRoundedRect(bar, 1.5, 1.5)
     painter.setBrush(t.fill(kind))
     painter.drawRoundedRect(
-        QRectF(bar.left(), bar.top(), max(3.0, bar.width() * bar_part(action.likelihood)), bar.height()),
+        QRectF(
+            bar.left(), bar.top(), max(3.0, bar.width() * measure_bar_part(action.likelihood)), bar.height()
+        ),
         1.5,
         1.5,
     )
     if hover and look.hover.area == "bar":
         painter.drawEllipse(
-            QPointF(bar.left() + bar.width() * bar_part(action.likelihood), bar.center().y()), 4.5, 4.5
+            QPointF(bar.left() + bar.width() * measure_bar_part(action.likelihood), bar.center().y()),
+            4.5,
+            4.5,
         )

@@ -30,7 +30,8 @@ SIZE = QSize(620, 560)
 
 @dataclass(frozen=True)
 class Entry:
-    """Something that can be done, or is only told of: then `run` is None. also: words it is found by, too.
+    """Something that can be done, or is only reported about: then `run` is None. also: words it is found
+    by, too.
     by_name: it is in the list only while its name is being typed.
     """
 

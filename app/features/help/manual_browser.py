@@ -126,7 +126,7 @@ class ManualBrowser(QTextBrowser):
             block = block.next()
 
     def event(self, event: QEvent) -> bool:
-        """Draw the page anew where the colours or the room for pictures have changed."""
+        """Draw the page again where the colours or the room for pictures have changed."""
         done = super().event(event)
         colors = event.type() == QEvent.Type.PaletteChange
         if not self.source().isEmpty() and (colors or self._drawn != self._room()):

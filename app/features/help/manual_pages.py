@@ -1,4 +1,4 @@
-"""The manual's pages as files beside the program, and which is about which panel."""
+"""Find the pages of the manual, which lie beside the program, and the page of each panel."""
 
 from __future__ import annotations
 
@@ -59,17 +59,17 @@ def _entries(nav: Any, depth: int) -> Iterator[ManualEntry]:
 
 
 def anchor(heading: str) -> str:
-    """Return what a heading is called in links."""
+    """Return the anchor of a heading."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def strip_markdown(text: str) -> str:
-    """Return Markdown without its marks."""
+    """Return the text of Markdown without its marks."""
     return re.sub(r"!?\[([^\]]*)\]\([^)]*\)|[*`]", lambda m: m[1] or "", text).strip()
 
 
 def search_pages(words: str) -> list[ManualEntry]:
-    """Return the parts of pages in which all words occur: first where title or heading have them."""
+    """Return the parts of pages that have all words, those with the words in title or heading first."""
     wanted, hits = words.casefold().split(), list[tuple[int, ManualEntry]]()
     for entry in contents() if wanted else ():
         text = strip_markdown((DOCS / entry.page).read_text(encoding="utf-8")) if entry.page else ""

@@ -167,6 +167,6 @@ class GroupSheet(QWidget):
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
             line.translate(0, 16)
         painter.setPen(QColor(look.warning if card.doubtful and not out else look.dim))
-        words = tr("left out") if out else f"{card.certainty:.0%}"
+        words = tr("left out") if out else f"{100 * card.certainty:.0f} %"
         corner = rect.adjusted(0, 6, -8, 0)
         painter.drawText(corner, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignTop, words)

@@ -263,7 +263,12 @@ class PatternsDialog(QDialog):
                 text = (
                     f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
                 )
-            cells = (title, f"<b>{text}</b>", f"{belief.confidence:.0%}", escape(tr_phrase(belief.reason)))
+            cells = (
+                title,
+                f"<b>{text}</b>",
+                f"{100 * belief.confidence:.0f} %",
+                escape(tr_phrase(belief.reason)),
+            )
             rows.append(
                 "<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>"
             )

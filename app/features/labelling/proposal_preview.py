@@ -12,7 +12,7 @@ from metagraph.suggest.review import Review
 @dataclass(frozen=True)
 class Span:
     """Where in what plays the clip is: seconds. words: what its parts are called before, amid, after. kind:
-    gives the colour. stroke: seconds, None where there is none.
+    gives the colour. stroke: seconds, None if there is none.
     """
 
     start: float

@@ -265,7 +265,7 @@ class ReviewDialog(QDialog):
 
     @property
     def _proposed(self) -> Proposal | None:
-        """What the current clip is taken for; None where there is none, or it was left aside."""
+        """What the current clip is taken for; None if there is none, or it was skipped."""
         return self.review.found.proposals.get(self.current or "")
 
     def _tell(self, name: Field, value: Any) -> None:
@@ -290,7 +290,7 @@ class ReviewDialog(QDialog):
         self._show()
 
     def _take_up(self, clip: str, kind: Kind) -> None:
-        """Label a clip that was left aside."""
+        """Label a clip that was skipped."""
         self.work.take_up(clip, kind)
         self.queue.fill(self.work.clips, self.work.aside)
         self._refresh()
@@ -439,7 +439,7 @@ class ReviewDialog(QDialog):
             dialog.open()
 
     def _go_on(self) -> None:
-        """Look at the clip that was looked at, or at the next where that is placed by now."""
+        """Look at the clip that was looked at, or at the next if that is placed by now."""
         waiting = self.work.waiting()
         self.go_to(self.current if self.current in waiting else next(iter(waiting), None))
 

@@ -71,7 +71,12 @@ class ReviewFields(QWidget):
         self.rows, self.current = tuple(rows), current
         self.setAccessibleDescription(
             "; ".join(
-                tr("{title}: {words}, {sure:.0%} certain", title=r.title, words=self._words(r), sure=r.sure)
+                tr(
+                    "{title}: {words}, {sure:.0f} % certain",
+                    title=r.title,
+                    words=self._words(r),
+                    sure=100 * r.sure,
+                )
                 for r in rows
             )
         )
@@ -177,7 +182,7 @@ class ReviewFields(QWidget):
         painter.drawText(
             QRectF(PAD, placed.reason.top(), TITLE - 8, LINE),
             Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft,
-            f"{row.sure:.0%}",
+            f"{100 * row.sure:.0f} %",
         )
         painter.setPen(QColor(look.dim))
         painter.drawText(

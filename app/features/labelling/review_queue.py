@@ -117,7 +117,7 @@ class ReviewQueue(QWidget):
         return self.limit.value() / 100
 
     def fill(self, clips: Sequence[str], aside: Sequence[str] = ()) -> None:
-        """List other clips, and at the end those that were left aside."""
+        """List other clips, and at the end those that were skipped."""
         self.list.blockSignals(True)
         self.list.clear()
         self.clips, self.aside, self._items = tuple(clips), tuple(aside), {}
@@ -141,7 +141,7 @@ class ReviewQueue(QWidget):
         self.parted.setVisible(True)
 
     def part(self, stances: Sequence[str], made: Sequence[str], unbridged: Sequence[str] = ()) -> None:
-        """Tell of stances, by name, that no clip leads to or from, or else what was made of blends; and why
+        """Report stances, by name, that no clip leads to or from, or else what was made of blends; and why
         others cannot be joined by blending.
         """
         names = ", ".join(stances[:4]) + (" …" if len(stances) > 4 else "")
@@ -198,7 +198,7 @@ class ReviewQueue(QWidget):
             placed, kind = clip not in open_, p.kind.value
             item.setText(0, f"{KIND_MARKS[kind]}  {names[clip]}")
             item.setToolTip(0, entry.name)
-            item.setText(1, "✓" if placed else f"{p.confidence:.0%}")
+            item.setText(1, "✓" if placed else f"{100 * p.confidence:.0f} %")
             odd = not placed and is_doubtful(p)
             item.setForeground(0, QColor(look.dim) if placed else look.kind(kind))
             item.setForeground(1, QColor(look.warning if odd else look.dim))

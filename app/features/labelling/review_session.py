@@ -1,5 +1,5 @@
-"""A review at work on a document: proposals made and made anew, corrections kept and learned from, clips
-placed and taken back, stances joined that no clip leads to.
+"""Review proposals on a document: make proposals again after corrections, learn from corrections, place
+clips, undo, and bridge stances that no clip leads to.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from metagraph.suggest.proposal import Proposal, Proposals
 from metagraph.suggest.propose import propose, waiting
 from metagraph.suggest.review import Field, Review, ReviewPace
 
-REST = 400  # milliseconds of quiet after a correction before the rest is proposed anew
+REST = 400  # milliseconds of quiet after a correction before the rest is proposed again
 
 
 class Reviewing(QObject):
-    """clips: all of the review, in the order they are gone through. aside: those left aside. parted: the
-    stances that bridges can join, after many clips were placed at once. found: the first proposals are there.
-    changed: proposals or what is placed. failed: words.
+    """A review. clips: all of its clips, in order. aside: the skipped ones. parted: signals stances that
+    bridges can join, after many clips were placed. found: signals the first proposals. changed: signals
+    changed proposals or placements. failed: signals an error in words.
     """
 
     found = Signal()
@@ -59,7 +59,7 @@ class Reviewing(QObject):
         document.changed.connect(self._edited)
 
     def start(self) -> None:
-        """Propose what the clips are that are not placed yet, on a thread."""
+        """Propose labels for the clips that are not placed yet, on a thread."""
         project = self.document.project
         self.jobs.start(
             tr("Proposing labels"), lambda job: self._proposals(project, None, job), self._first, self._failed
@@ -96,7 +96,7 @@ class Reviewing(QObject):
             )
 
     def _again(self, found: Proposals) -> None:
-        mine = self.review.found  # what has a proposal is not left aside any more, whatever is learned
+        mine = self.review.found  # what has a proposal is not skipped any more, whatever is learned
         aside = {c: why for c, why in found.aside.items() if c not in mine.proposals}
         found = replace(found, aside=aside, spare={**mine.spare, **found.spare})
         self.review = self.review.anew(found).settled(self.document.project)
@@ -105,25 +105,25 @@ class Reviewing(QObject):
     # --- what is left
 
     def waiting(self) -> list[str]:
-        """Return the clips that are not placed yet, in order. One that only lends a stance a still moment is
-        not.
+        """Return the clips that are not placed yet, in order. A clip that only lends a stance a still moment
+        counts as placed.
         """
         there = set(waiting(self.document.project))
         return [c for c in self.clips if c in there]
 
     def sure_ones(self, least: float) -> list[str]:
-        """Return the clips that wait, are at least so sure, and are not disputed."""
+        """Return the waiting clips that are at least this certain and not disputed."""
         proposals = self.review.found.proposals
         return [c for c in self.waiting() if proposals[c].confidence >= least and not proposals[c].conflicts]
 
     def after(self, clip: str | None) -> str | None:
-        """Return the next clip that waits, from the beginning again after the last; None when none does."""
+        """Return the next waiting clip, starting over after the last one, or None."""
         at = self.clips.index(clip) if clip in self.clips else -1
         waiting = set(self.waiting())
         return next((c for c in (*self.clips[at + 1 :], *self.clips[: at + 1]) if c in waiting), None)
 
     def open_after(self, clip: str | None) -> str | None:
-        """Return the next clip that waits or is left aside, from the beginning again after the last."""
+        """Return the next waiting or skipped clip, starting over after the last one."""
         every, there = (*self.clips, *self.aside), set(waiting(self.document.project))
         at = every.index(clip) if clip in every else -1
         return next((c for c in (*every[at + 1 :], *every[: at + 1]) if c in there), None)
@@ -136,7 +136,7 @@ class Reviewing(QObject):
     # --- deciding
 
     def look_at(self) -> None:
-        """Begin to count the time a decision takes."""
+        """Start the time of a decision."""
         self._clock.restart()
 
     def tell(self, clip: str, name: Field, value: object) -> None:
@@ -145,8 +145,8 @@ class Reviewing(QObject):
         self.changed.emit()
 
     def tell_all(self, clips: list[str], name: Field, value: object) -> None:
-        """Correct a field of the proposals of several clips, those that it can be said of, as one step; then
-        look for their times, on a thread.
+        """Correct a field of the proposals of several clips, if they have it, as one step. Then find their
+        times on a thread.
         """
         now, changed = self.review, list[str]()
         for clip in clips:
@@ -171,7 +171,7 @@ class Reviewing(QObject):
         )
 
     def take_up(self, clip: str, kind: Kind) -> None:
-        """Make a clip that was left aside one of the review, as a kind."""
+        """Take a skipped clip into the review, as a kind."""
         self.review = Review(take_up_skipped(self.review.found, clip), self.review.said).tell(
             clip, "kind", kind
         )
@@ -180,13 +180,13 @@ class Reviewing(QObject):
         self.changed.emit()
 
     def times_found(self, p: Proposal) -> None:
-        """Take over the times that were looked for after a correction."""
+        """Use the times that were found after a correction."""
         self.review = self.review.with_times(p)
         self.changed.emit()
 
     def place(self, clips: list[str], words: str, step: str | None) -> AcceptedProposals:
-        """Place clips as proposed and corrected, as one undo step named so. step: the clip that was looked
-        at, None for many at once.
+        """Place clips as proposed and corrected, as one undo step with this name. step: the clip under
+        review, or None for several.
         """
         review, project = self.review, self.document.project
         late = [c for c in clips if c in review.said and not review.found.proposals[c].timing]
@@ -238,7 +238,7 @@ class Reviewing(QObject):
         return tuple(describe_bridges(after, made))
 
     def _learn(self, clips: list[str]) -> None:
-        """Remember what was corrected of clips that are now placed, and look at the rest anew."""
+        """Remember what was corrected of clips that are now placed, and look at the rest again."""
         entries = self.document.project.clips
         names = [entries[c].name for c in self.clips if c in entries]
         corrected = [
@@ -257,7 +257,7 @@ class Reviewing(QObject):
         return bool(self._steps)
 
     def undo(self) -> str | None:
-        """Take the last step back; return the clip to look at again."""
+        """Undo the last step, and return the clip to review again."""
         step = self._steps.pop()
         if isinstance(step, tuple):
             self.review = self.review.with_former(*step).settled(self.document.project)

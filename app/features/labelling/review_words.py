@@ -1,6 +1,4 @@
-"""What a review says, in words: the headline over the picture, the timing, the keys, and times a person can
-grasp.
-"""
+"""Texts of a review: the headline over the picture, the timing, the keys, and rounded lengths of time."""
 
 from __future__ import annotations
 
@@ -38,7 +36,7 @@ ANYWAY = tr_noop("Skipped. To label it anyway, choose its kind.")
 
 
 def format_keys(look: WindowTheme) -> str:
-    """Return the keys as rich text; none is parted from its word by a line's end."""
+    """Return the keys as rich text, without line breaks between a key and its word."""
     return " &nbsp; ".join(
         f'<span style="color:{look.text}">{key.replace(" ", "&nbsp;")}</span>&nbsp;'
         f'<span style="color:{look.dim}">{words.replace(" ", "&nbsp;")}</span>'
@@ -47,7 +45,7 @@ def format_keys(look: WindowTheme) -> str:
 
 
 def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> str:
-    """Return what a clip is taken for as rich text, and what speaks against it."""
+    """Return the proposal for a clip as rich text, with the evidence against it."""
     if clip not in review.found.proposals:
         return (
             f'<span style="font-size:17px; font-weight:600">{tr("Skipped")}</span><br>'
@@ -73,7 +71,7 @@ def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> 
 
 
 def describe_skipped(aside: Sequence[str]) -> str:
-    """Return what is said when nothing is left but clips that were left aside."""
+    """Return the text for a review in which only skipped clips remain."""
     return tr_plural(
         "<b>All clips are placed</b> except {count:,} skipped clip.",
         "<b>All clips are placed</b> except {count:,} skipped clips.",
@@ -123,7 +121,7 @@ def timing(p: Proposal, duration: float) -> str:
 
 
 def describe_length(seconds: float) -> str:
-    """Return a length of time in words a person can grasp."""
+    """Return a rounded length of time in words."""
     return (
         tr("about {minutes} min", minutes=round(seconds / 60))
         if seconds >= 90

@@ -33,7 +33,7 @@ class ClipFacts:
         return self.document.project
 
     def moved(self, entry: ClipEntry) -> tuple[str, ...]:
-        """Return the parts of the body that a clip moves; nothing where its file is missing."""
+        """Return the parts of the body that a clip moves; nothing if its file is missing."""
         motion = entry.motion
         if motion is None:
             return ()

@@ -60,7 +60,7 @@ class Filter:
         return self.labelled is not None or bool(self.layer or self.kind)
 
     def words(self) -> str:
-        """Return in a few words what is asked for besides the text and whether clips are placed."""
+        """Return in a few words what is requested besides the text and whether clips are placed."""
         some = [LAYER_TITLES[self.layer] if self.layer else "", KIND_TITLES[self.kind] if self.kind else ""]
         some += [COLOR_TITLES[self.color or ""], f"★{self.stars}" if self.stars else ""]
         some += ["♥" * self.favourite, tr("With a note") * self.noted, tr("Problems") * self.broken]
@@ -76,7 +76,7 @@ _ALLOWED = {"layer": LAYERS, "kind": KINDS, "color": COLORS, "stars": range(STAR
 
 
 def filter_from_text(text: str) -> Filter | None:
-    """Return a filter from a line of JSON; None where it is none."""
+    """Return a filter from a line of JSON; None if it is none."""
     try:
         data = json.loads(text)
     except ValueError:

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from app.features.library.clip_facts import ClipFacts
-from app.features.library.clip_order import first_use, natural_key, stances
+from app.features.library.clip_order import find_first_use, make_natural_key, stances
 from app.look.domain_words import LAYER_LONG_TITLES, MANY_OF_KIND
 from app.translation import lazy_texts, tr
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
@@ -19,23 +19,23 @@ UNUSED: Group = lazy_texts(lambda: ((1,), tr("Not placed yet")))
 
 def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
     path = PurePosixPath(entry.path).parent.as_posix()
-    return natural_key(path), tr("Project folder") if path == "." else path
+    return make_natural_key(path), tr("Project folder") if path == "." else path
 
 
 def _stance(facts: ClipFacts, entry: ClipEntry) -> Group:
     names = stances(facts, entry)
-    return ((0, natural_key(names[0])), names[0]) if names else UNUSED
+    return ((0, make_natural_key(names[0])), names[0]) if names else UNUSED
 
 
 def _tag(facts: ClipFacts, entry: ClipEntry) -> Group:
-    tags = sorted({tag for a in facts.uses(entry) for tag in a.tags}, key=natural_key)
+    tags = sorted({tag for a in facts.uses(entry) for tag in a.tags}, key=make_natural_key)
     if tags:
-        return (0, natural_key(tags[0])), tags[0]
+        return (0, make_natural_key(tags[0])), tags[0]
     return ((1,), tr("No tag")) if facts.uses(entry) else ((2,), UNUSED[1])
 
 
 def _layer(facts: ClipFacts, entry: ClipEntry) -> Group:
-    layer, _ = first_use(facts, entry)
+    layer, _ = find_first_use(facts, entry)
     return ((0, layer), LAYER_LONG_TITLES[LAYERS[layer]]) if layer < len(LAYERS) else UNUSED
 
 

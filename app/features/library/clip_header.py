@@ -65,7 +65,7 @@ class ClipHeader(QHeaderView):
             self.setSectionHidden(n, not column.shown)
 
     def show_order(self, order: str, backwards: bool) -> None:
-        """Tell by an arrow what is sorted by."""
+        """Report by an arrow what is sorted by."""
         shown = (n for n, c in enumerate(COLUMNS) if c.order == order and not self.isSectionHidden(n))
         place = next(shown, -1)
         down, up = Qt.SortOrder.DescendingOrder, Qt.SortOrder.AscendingOrder

@@ -15,7 +15,7 @@ HEAD = 28  # pixels of a group's title
 
 @dataclass(frozen=True)
 class Section:
-    """Clips under one title: `count` of them from row `first` on. title "" where there are no groups."""
+    """Clips under one title: `count` of them from row `first` on. title "" if there are no groups."""
 
     title: str
     first: int
@@ -53,7 +53,7 @@ class ClipLayout:
         return self.tops[place] + (HEAD if self.sections[place].title else 0)
 
     def rect(self, row: int) -> QRect:
-        """Return where a clip is; nothing where its group is closed."""
+        """Return where a clip is; nothing if its group is closed."""
         place = self.section_of(row)
         if place < 0 or row >= self.count or self.sections[place].closed:
             return QRect()
@@ -66,7 +66,7 @@ class ClipLayout:
         )
 
     def head(self, place: int) -> QRect:
-        """Return where the title of a group is; nothing where there are no groups."""
+        """Return where the title of a group is; nothing if there are no groups."""
         high = HEAD if self.sections[place].title else 0
         return QRect(0, self.tops[place], self.width, high)
 

@@ -26,7 +26,7 @@ from app.features.library.clip_header import ClipHeader
 from app.features.library.clip_layout import ClipLayout
 from app.features.library.clip_rows import ENTRY, ClipRows, Index
 from app.features.library.clip_scrub import ClipScrub
-from app.features.library.clip_sizes import SIZES, Style, cell_of, picture_of
+from app.features.library.clip_sizes import SIZES, Style, measure_cell, picture_of
 from app.stage.session import StageSession
 from app.translation import tr, tr_plural
 from app.widgets.mime import drag_picture, load_of, make_mime
@@ -89,10 +89,10 @@ class ClipList(QListView):
             self.scrollTo(self.currentIndex())
 
     def relayout(self, *_: object) -> None:
-        """Lay everything out anew, now."""
+        """Lay everything out again, now."""
         columns = self.style_of == "columns"
         width = self.header.length() if columns else self.viewport().width()
-        self.layout_of = ClipLayout(self.rows.sections, width, cell_of(self.style_of, self.side, width))
+        self.layout_of = ClipLayout(self.rows.sections, width, measure_cell(self.style_of, self.side, width))
         self.updateGeometries()
         self.viewport().update()
 

@@ -1,4 +1,4 @@
-"""How clips are called on their cards."""
+"""Names of clips on their cards."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from app.look.plural import strip_stance
 from app.project.document import Document
 from metagraph.graph.model import LAYERS, ClipEntry
 
-NEAR = 48  # cards before and behind one, from which its name is told apart
+NEAR = 48  # cards before and behind one, from which its name is distinguished
 
 
 class ClipNames:
-    """shown: the clips that are listed."""
+    """Names of the listed clips. shown: these clips."""
 
     def __init__(self, document: Document, shown: ClipRows) -> None:
         self.document, self.shown = document, shown
@@ -27,7 +27,7 @@ class ClipNames:
             signal.connect(self._relisted)
 
     def of(self, entry: ClipEntry) -> tuple[str, str]:
-        """Return the stance that a clip's name begins with, "" for none, and the rest, as they are read."""
+        """Return the stance with which a clip's name begins ("" for none) and the rest, in readable form."""
         kept, names = self._names(), self.stances()
         if entry.name not in kept:
             found = next((n for n in names if strip_stance(entry.name, n) != entry.name), "")
@@ -49,12 +49,12 @@ class ClipNames:
     _named: tuple[object, tuple[str, ...], dict[str, tuple[str, str]]] = None, (), {}
 
     def stances(self) -> tuple[str, ...]:
-        """Return the names of all stances, with their layers in front, too, the longest first."""
+        """Return the names of all stances, with and without their layers in front, the longest first."""
         self._names()
         return self._named[1]
 
     def beside(self, row: int) -> tuple[str, ...]:
-        """Return what the cards round one are called, as far as names are shown in a line."""
+        """Return the names on the cards around one, as far as the line shows them."""
         place, names = row // NEAR, self._names()
         if self._listed[0] is not names:
             self._listed = names, {}

@@ -19,7 +19,7 @@ GIVEN = "given"  # as the project has them
 
 
 @lru_cache(maxsize=8192)
-def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
+def make_natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
     """Return a name so that 'beat 2' comes before 'beat 10', in whatever capitals."""
     return tuple(
         (0, int(part), "") if part.isdecimal() and part.isascii() else (1, 0, part)
@@ -28,7 +28,7 @@ def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
     )
 
 
-def first_use(facts: ClipFacts, entry: ClipEntry) -> tuple[int, int]:
+def find_first_use(facts: ClipFacts, entry: ClipEntry) -> tuple[int, int]:
     """Return layer and kind of a clip's first use; what has none comes last."""
     return min(
         ((LAYERS.index(a.layer), KINDS.index(a.kind)) for a in facts.uses(entry)), default=(len(LAYERS), 0)
@@ -38,12 +38,12 @@ def first_use(facts: ClipFacts, entry: ClipEntry) -> tuple[int, int]:
 def stances(facts: ClipFacts, entry: ClipEntry) -> list[str]:
     """Return the names of the stances that a clip is used in, in order."""
     found = {s.name for a in facts.uses(entry) if (s := facts.project.stance(a.stance)) is not None}
-    return sorted(found, key=natural_key)
+    return sorted(found, key=make_natural_key)
 
 
 def _stance(facts: ClipFacts, entry: ClipEntry) -> tuple[int, Any]:
     names = stances(facts, entry)
-    return (0, natural_key(names[0])) if names else (1, ())
+    return (0, make_natural_key(names[0])) if names else (1, ())
 
 
 def _moves(facts: ClipFacts, entry: ClipEntry) -> Any:
@@ -53,7 +53,7 @@ def _moves(facts: ClipFacts, entry: ClipEntry) -> Any:
 
 def _folder(facts: ClipFacts, entry: ClipEntry) -> Any:
     path = PurePosixPath(entry.path)
-    return natural_key(path.parent.as_posix()), natural_key(path.name), entry.take
+    return make_natural_key(path.parent.as_posix()), make_natural_key(path.name), entry.take
 
 
 def _color(facts: ClipFacts, entry: ClipEntry) -> int:
@@ -62,17 +62,17 @@ def _color(facts: ClipFacts, entry: ClipEntry) -> int:
 
 
 def _by(first: Key) -> Key:
-    """Return an order by something, and by name where that is the same."""
-    return lambda facts, entry: (first(facts, entry), natural_key(entry.name))
+    """Return an order by something, and by name if that is the same."""
+    return lambda facts, entry: (first(facts, entry), make_natural_key(entry.name))
 
 
 ORDERS: dict[str, tuple[str, Key]] = lazy_texts(
     lambda: {
         GIVEN: (tr("As imported"), lambda facts, entry: ()),
-        "name": (tr("Name"), lambda facts, entry: natural_key(entry.name)),
+        "name": (tr("Name"), lambda facts, entry: make_natural_key(entry.name)),
         "length": (tr("Length"), _by(lambda facts, entry: entry.duration)),
         "moves": (tr("What moves"), _by(_moves)),
-        "use": (tr("Layer and kind"), _by(first_use)),
+        "use": (tr("Layer and kind"), _by(find_first_use)),
         "stance": (tr("Stance"), _by(_stance)),
         "uses": (tr("Times used"), _by(lambda facts, entry: -len(facts.uses(entry)))),
         "problems": (tr("Problems"), _by(lambda facts, entry: -facts.problems(entry))),

@@ -1,5 +1,5 @@
-"""The clips that the library shows, as Qt lists them: of the project's those that are looked for, in groups,
-in an order. `arranged` says which; the rest tells Qt.
+"""A Qt model of the clips in the library: those that match the filter, in groups and in order.
+`arrange_clips` selects them; the rest notifies Qt.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class ClipListing:
 
     @property
     def follows_marks(self) -> bool:
-        """Whether another label or rating may change what is shown where."""
+        """Whether a changed label or rating may change the rows."""
         return self.filter.marked or self.order in ("rating", "color", "favourite")
 
     @property
@@ -67,9 +67,7 @@ def arrange_clips(facts: ClipFacts, listing: ClipListing) -> tuple[list[ClipEntr
 
 
 def order_clips(facts: ClipFacts, listing: ClipListing, entries: list[ClipEntry]) -> list[ClipEntry]:
-    """Return clips in a listing's order, whatever their groups; those that are alike as the project has
-    them.
-    """
+    """Return clips in a listing's order, ignoring groups. Equal ones keep the project's order."""
     if listing.order != GIVEN:
         key = ORDERS[listing.order][1]
         entries = sorted(entries, key=lambda entry: key(facts, entry))
@@ -77,8 +75,8 @@ def order_clips(facts: ClipFacts, listing: ClipListing, entries: list[ClipEntry]
 
 
 class ClipRows(QAbstractListModel):
-    """entries: the clips shown, by row. sections: the groups they are in. closed: titles of groups that show
-    none of theirs. It is reset where other clips are shown than before, or elsewhere.
+    """The model's rows. entries: the shown clips, by row. sections: their groups. closed: titles of closed
+    groups. The model is reset when other clips are shown, or when clips move.
     """
 
     def __init__(self, facts: ClipFacts) -> None:
@@ -105,7 +103,7 @@ class ClipRows(QAbstractListModel):
             self.arrange()
 
     def arrange(self) -> None:
-        """Work out what is shown, and tell of it where it is another."""
+        """Compute the shown clips, and notify Qt if they changed."""
         entries, sections = arrange_clips(self.facts, self.listing)
         sections = [replace(s, closed=s.title in self.closed) for s in sections]
         if sections == self.sections and [e.id for e in entries] == [e.id for e in self.entries]:
@@ -117,17 +115,17 @@ class ClipRows(QAbstractListModel):
         self.endResetModel()
 
     def close_groups(self, titles: frozenset[str]) -> None:
-        """Let groups show their titles only, and all others their clips."""
+        """Close these groups, and open all others."""
         self.closed = titles
         self.sections = [replace(s, closed=s.title in titles) for s in self.sections]
         self.layoutChanged.emit()
 
     def row_of(self, clip: str) -> int | None:
-        """Return the row of a clip; None where it is not shown."""
+        """Return the row of a clip; None if it is not shown."""
         return self._row.get(clip)
 
     def listed(self) -> list[str]:
-        """Return all clips of the project in this order, those that are not shown, too."""
+        """Return all clips of the project in this order, also those that are not shown."""
         return [e.id for e in order_clips(self.facts, self.listing, list(self.facts.project.clips.values()))]
 
     def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
@@ -206,7 +204,7 @@ class ClipRows(QAbstractListModel):
 
 
 def find_changed_rows(before: Project, after: Project, entries: Sequence[ClipEntry]) -> list[tuple[int, int]]:
-    """Return the first and last rows of clips that look otherwise, or are found otherwise, than before."""
+    """Return the first and last rows of clips that now look different or match another search."""
     if before is after or not entries:
         return []
     names = [[(s.id, s.name) for g in p.graphs.values() for s in g.stances.values()] for p in (before, after)]

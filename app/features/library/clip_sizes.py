@@ -21,7 +21,7 @@ def is_in_lines(style: Style, side: int) -> bool:
     return style == "columns" or side <= LINES
 
 
-def cell_of(style: Style, side: int, width: int) -> tuple[int, int]:
+def measure_cell(style: Style, side: int, width: int) -> tuple[int, int]:
     """Return the least width and the height of a clip in a room of a width; 0 for all of it."""
     if style == "columns":
         return 0, side + EDGE

@@ -69,7 +69,7 @@ class LibraryBar(QWidget):
         self._restyle()
 
     def show_choice(self, style: Style, side: int) -> None:
-        """Tell what is chosen."""
+        """Report what is chosen."""
         self.style_of = style
         for each, button in self.buttons.items():
             button.setChecked(each == style)

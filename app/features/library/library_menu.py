@@ -97,7 +97,7 @@ class LibraryMenu:
                 action.setChecked(action.data() == key)
 
     def fill_marks(self) -> None:
-        """Offer what clips can have on them; what is asked for is checked, a click takes it back."""
+        """Offer what clips can have on them; what is requested is checked, a click takes it back."""
         menu, rule = self.marks, self.panel.rows.filter
         menu.clear()
 

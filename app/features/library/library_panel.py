@@ -205,7 +205,7 @@ class LibraryPanel(QWidget):
             self.list.viewport().update()
 
     def _picture_came(self, clip: str) -> None:
-        """Draw a clip whose picture is there, or all where they are to be drawn anew."""
+        """Draw a clip whose picture is there, or all where they are to be drawn again."""
         row = self.rows.row_of(clip)
         if row is not None:
             self.list.viewport().update(self.list.visualRect(self.rows.index(row, 0)))
@@ -309,7 +309,7 @@ class LibraryPanel(QWidget):
 
     def next_unlabelled(self, clip: str) -> str | None:
         """Return the clip that comes after one, as they are listed, and serves as nothing yet; from the first
-        on where none comes after it. None where there is no other.
+        on where none comes after it. None if there is no other.
         """
         project, filtered = self.document.project, self.rows.filter
         ids = [i for i in self.rows.listed() if i == clip or self._open(project.clips[i], filtered)]

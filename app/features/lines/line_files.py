@@ -16,7 +16,7 @@ from app.translation import tr
 from metagraph.common.budgets import LIST_FILE
 from metagraph.common.files import is_file, is_inside, read_file, unforeseen_error
 from metagraph.errors import FileError
-from metagraph.formats.store import path_for_project
+from metagraph.formats.store import make_path_for_project
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Project
@@ -89,8 +89,8 @@ def _beside(path: Path, folder: Path | None) -> Line:
     phones = next((p for s in PHONES if is_file(p := path.with_suffix(s))), None)
     return Line(
         text=words,
-        audio=path_for_project(path, folder),
-        phones=path_for_project(phones, folder) if phones else None,
+        audio=make_path_for_project(path, folder),
+        phones=make_path_for_project(phones, folder) if phones else None,
     )
 
 
@@ -149,7 +149,7 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
         out.append(
             (
                 cells[0][:200],
-                Line(text=cells[1][:LONGEST], audio=path_for_project(audio, folder) if audio else None),
+                Line(text=cells[1][:LONGEST], audio=make_path_for_project(audio, folder) if audio else None),
             )
         )
     return out

@@ -30,7 +30,7 @@ IDENT = Qt.ItemDataRole.UserRole
 
 
 class AliasPage(QWidget):
-    """Shows one alias; several are told by their number and can only be removed."""
+    """Shows one alias; several are given by their number and can only be removed."""
 
     def __init__(self, canvas: ManualCanvas, parent: QWidget) -> None:
         super().__init__(parent)

@@ -136,7 +136,7 @@ def can_paste(canvas: ManualHost) -> bool:
 
 
 def find_key_command(canvas: ManualHost, event: QKeyEvent) -> Run | None:
-    """Return what a key does here, None where it is the window's."""
+    """Return what a key does here, None if it is the window's."""
     s = canvas.session
     control = event.modifiers() == Qt.KeyboardModifier.ControlModifier
     if event.key() == Qt.Key.Key_G and control and s.selection.states:

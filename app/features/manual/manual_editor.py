@@ -1,5 +1,5 @@
-"""The editor as it stands in the window's middle: the canvas, and above it what is fired, arranged and
-shown.
+"""The manual editor in the middle of the window: the canvas, with buttons for triggers, layout and display
+above it.
 """
 
 from __future__ import annotations

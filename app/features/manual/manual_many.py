@@ -101,7 +101,7 @@ def has_table() -> bool:
 
 def copy_table(canvas: ManualHost) -> None:
     """Copy every link of the layer as a table."""
-    QApplication.clipboard().setText(manual_table.machine_as_table(canvas.scene().manual))
+    QApplication.clipboard().setText(manual_table.encode_machine_as_table(canvas.scene().manual))
 
 
 def choose_table(canvas: ManualHost, parent: QWidget, start: str) -> None:

@@ -1,4 +1,4 @@
-"""What the editor paints on top of the still part: what is selected, dragged, drawn, or plays."""
+"""Paint what changes on the canvas of the manual editor: the selection, drags, new links, and what plays."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class ManualMarks:
 
 
 def find_playing_state(shown: ShownPlayback, layer: Layer, seconds: float) -> tuple[str, float]:
-    """Return which state of a layer plays, "" for none, and how far it is, 0..1."""
+    """Return the playing state of a layer ("" for none) and its progress, 0..1."""
     of = shown.manual.layers.get(layer) if shown.manual is not None else None
     turn = of.at(seconds) if of is not None else None
     if turn is None:

@@ -345,8 +345,8 @@ def _whole(painter: QPainter, look: ManualLook, state: State, rect: QRectF) -> N
 
 @lru_cache(maxsize=8192)
 def name_lines(name: str, font: str, width: int) -> tuple[str, ...]:
-    """Return a name in the one or two lines it needs, broken where its words meet, and shortened where that
-    is not enough.
+    """Return a name in the one or two lines it needs, broken where its words meet, and shortened if that is
+    not enough.
     """
     made = QFont()
     made.fromString(font)
@@ -380,7 +380,7 @@ def facts(project: Project, state: State) -> str:
 
 
 def _small(painter: QPainter, look: ManualLook, state: State, rect: QRectF) -> None:
-    """Write a name where there is no room for more: in two lines, or in one what it ends with, which tells it
+    """Write a name if there is no room for more: in two lines, or in one what it ends with, which tells it
     from its like.
     """
     font = _font(look.font.toString(), 10.0, False)

@@ -22,7 +22,7 @@ class ManualPictures:
         self._kept: dict[tuple[str, str, int], QPixmap] = {}
 
     def forget(self, clip: str) -> None:
-        """Take a clip's picture anew, all of them where none is named."""
+        """Take a clip's picture again, all of them where none is named."""
         self.count += 1
         self._kept = {key: p for key, p in self._kept.items() if clip and key[0] != clip}
 

@@ -130,7 +130,7 @@ class ManualScene:
         """Where each straight arrow begins and ends, `[L, 4]`: from border to border, those of the same two
         nodes side by side.
         """
-        return arrow_lines(self.nodes, self.straight)
+        return measure_arrow_lines(self.nodes, self.straight)
 
     @cached_property
     def requests(self) -> Array:
@@ -181,8 +181,8 @@ class ManualScene:
         return ManualHit("link", self.straight[nearest].id) if away[nearest] <= near else NOTHING
 
     def inside(self, band: QRectF) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Return the states and links a rubber band takes: nodes it touches, or where there are none the
-        arrows it holds.
+        """Return the states and links a rubber band takes: nodes it touches, or if there are none the arrows
+        it holds.
         """
         states = tuple(i for i, rect in self.nodes.items() if i != ANY and rect.intersects(band))
         if states or not len(self.lines):
@@ -204,7 +204,7 @@ class ManualScene:
         return QPointF((x1 + x2) / 2, (y1 + y2) / 2)
 
 
-def arrow_lines(nodes: Mapping[str, QRectF], links: Iterable[Link]) -> Array:
+def measure_arrow_lines(nodes: Mapping[str, QRectF], links: Iterable[Link]) -> Array:
     """Return where arrows between nodes begin and end, `[L, 4]`."""
     links = tuple(links)
     if not links:

@@ -192,7 +192,7 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
     )
 
 
-def recording_of(file: Path) -> Path:
+def pick_recording(file: Path) -> Path:
     """Return what to read for a file that was chosen: its folder where it is one of many frames."""
     if (
         _NUMBERED.search(file.name)
@@ -210,7 +210,7 @@ def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
         if not path:
             return
         QSettings().setValue("mimic/folder", str(Path(path).parent))
-    file = recording_of(Path(path))
+    file = pick_recording(Path(path))
 
     def show(keypoints: KeypointTrack) -> None:
         MimicDialog(shell, keypoints, file.name).open()

@@ -1,4 +1,4 @@
-"""Importing an annotation: what each tier stands for, what each label means, a look at what comes of it, and
+"""Import an annotation: set the roles of tiers and the meanings of labels, preview the result, and choose
 what to make of it.
 """
 
@@ -39,7 +39,7 @@ from app.project.annotation_reading import (
 )
 from app.project.document import Document
 from app.stage.session import StageSession
-from app.translation import group_thousands, lazy_texts, tr, tr_error, tr_noop, tr_plural
+from app.translation import group_thousands, lazy_texts, tr, tr_context, tr_error, tr_noop, tr_plural
 from app.widgets.act_strip import ActStrip, format_clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
@@ -103,7 +103,9 @@ MEANING_TIPS = lazy_texts(
 
 
 def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
-    """Return what a label can mean: words, meaning, tip; what it means now is among them."""
+    """Return the choices for the meaning of a label: words, meaning, tip. The present meaning is one of
+    them.
+    """
     known = [
         "gesture",
         "gesture positive",
@@ -140,7 +142,7 @@ def meaning_words(meaning: str) -> str:
 
 
 class AnnotateDialog(QDialog):
-    """imported: (layer -> acts, id of the performance or None) when the annotation was taken over."""
+    """imported: signals (layer -> acts, id of the performance or None) after the import."""
 
     imported = Signal(object, object)
 
@@ -206,7 +208,8 @@ class AnnotateDialog(QDialog):
             lambda _: ROLE_ENTRIES,
         )
         self.labels = self._table(
-            tables, tr("Meaning of the labels"), (tr("Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
+            tables, tr("Meaning of the labels"),
+            (tr_context("annotation", "Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
             lambda row: meaning_entries(self.reading.labels[row].meaning),
         )  # fmt: skip
         self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))
@@ -410,7 +413,7 @@ class AnnotateDialog(QDialog):
         self._changed()
 
     def accept(self) -> None:
-        """Take it over as one undo step; what is played is the performance, where it is kept."""
+        """Import as one undo step, and show the performance if one is made."""
         learned = [layer for layer, box in self.learn.items() if box.isChecked()]
         name = " ".join(self.called.text().split()) if self.keep.isChecked() else None
         tagged = self.as_states.isChecked() and self.as_states.isEnabled()
@@ -429,7 +432,7 @@ class AnnotateDialog(QDialog):
 
 
 def recall_roles(what: str) -> dict[str, str]:
-    """Return what tiers (or labels) were taken for when last an annotation was imported, in any project."""
+    """Return the roles of tiers (or meanings of labels) of the last import, in any project."""
     try:
         found = json.loads(str(QSettings().value(f"annotation/{what}") or "{}"))
     except ValueError:
@@ -438,7 +441,7 @@ def recall_roles(what: str) -> dict[str, str]:
 
 
 def remember_roles(what: str, said: Mapping[str, str]) -> None:
-    """Remember that for the next project; the latest first to stay."""
+    """Remember roles and meanings for the next project. The oldest are forgotten first."""
     both = {k: v for k, v in recall_roles(what).items() if k not in said} | dict(said)
     QSettings().setValue(f"annotation/{what}", json.dumps(dict(list(both.items())[-REMEMBERED:])))
 

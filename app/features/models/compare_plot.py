@@ -13,11 +13,11 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.features.models.heatmap import SIDES
-from app.features.models.state_names import state_name
+from app.features.models.state_names import name_state
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.still_plot import empty_plot, still_plot
+from app.widgets.still_plot import clear_plot, still_plot
 from metagraph.playback.learning.compare import SURE, ModelComparison, quantiles
 from metagraph.playback.learning.learn import State
 
@@ -47,16 +47,17 @@ def describe_model_fit(found: ModelComparison) -> str:
     if abs(apart[worst]) <= SURE:
         return tr("The model makes each action about as often as it was seen.")
     name, seen, made = (
-        state_name(found.observed.states[worst], layer),
+        name_state(found.observed.states[worst], layer),
         found.observed.shares()[worst],
         found.expected[worst],
     )
     return tr(
-        "Differs from what was seen: {name} was {seen:.0%} of the actions, but the model makes {made:.0%}.",
+        "Differs from what was seen: {name} was {seen:.0f} % of the actions, but the model makes "
+        "{made:.0f} %.",
         name=name,
-        seen=seen,
-        made=made,
-    ).replace("%", " %")
+        seen=100 * seen,
+        made=100 * made,
+    )
 
 
 class ComparePlot(QWidget):
@@ -105,7 +106,7 @@ class ComparePlot(QWidget):
     def _draw(self) -> None:
         t = theme(self.session.look.name)
         for plot in (self.often, self.long):
-            empty_plot(plot, t)
+            clear_plot(plot, t)
         if self.found is None:
             return
         found = self.found
@@ -195,7 +196,7 @@ class ComparePlot(QWidget):
 
 def describe_often(found: ModelComparison, n: int) -> str:
     """Say how often a state was seen and made."""
-    name = state_name(found.generated.states[n], found.model.layer)
+    name = name_state(found.generated.states[n], found.model.layer)
     made = tr(
         "made {share:.1%} ± {chance:.1%} by chance",
         share=found.generated.shares()[n],
@@ -213,7 +214,7 @@ def describe_often(found: ModelComparison, n: int) -> str:
 def describe_long(found: ModelComparison, n: int) -> str:
     """Say how long a state, or the rest between, lasts: the median, and what four of five lie between."""
     states = found.generated.states
-    name = state_name(states[n], found.model.layer) if n < len(states) else tr("rest between actions")
+    name = name_state(states[n], found.model.layer) if n < len(states) else tr("rest between actions")
     parts = []
     for word, tally in ((tr("seen"), found.observed), (tr("made"), found.generated)):
         lengths = None if tally is None else tally.lengths[n] if n < len(states) else tally.rests

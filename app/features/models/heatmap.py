@@ -20,7 +20,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.features.models.state_names import a_state, describe_tag
+from app.features.models.state_names import describe_tag, name_state_in_sentence
 from app.look.theme import KIND_MARKS, WindowTheme, theme
 from app.translation import tr
 from metagraph.graph.model import Layer, Markov
@@ -116,8 +116,8 @@ def describe_matrix_cell(model: Markov, layer: Layer, row: int, column: int) -> 
     """Say a cell: "After a left gesture, a right fidget follows in 13 % of cases."."""
     states = model_states(model)
     p = model.matrix[row][column]
-    before = a_state(states[row], layer)
-    what = tr("the same") if row == column else a_state(states[column], layer)
+    before = name_state_in_sentence(states[row], layer)
+    what = tr("the same") if row == column else name_state_in_sentence(states[column], layer)
     again = tr(" again") if row == column else ""
     if p <= 0:
         return tr("After {before}, {what} never follows{again}.", before=before, what=what, again=again)
@@ -248,9 +248,7 @@ class HeatMap(QWidget):
         painter.end()
 
     def _name(self, state: State) -> str:
-        """What tells a state from others of its kind: the limb, or the kind itself where there are no
-        sides.
-        """
+        """What tells a state from others of its kind: the limb, or the kind itself if there are no sides."""
         return tr(state[0] if self.layer == "arms" else state[1])
 
     def _row_words(self, state: State, high: float) -> str:
@@ -503,7 +501,7 @@ class HeatMap(QWidget):
 
     def _state_sentence(self, n: int) -> str:
         assert self.model is not None
-        words = a_state(model_states(self.model)[n], self.layer)
+        words = name_state_in_sentence(model_states(self.model)[n], self.layer)
         out = words[:1].upper() + words[1:]
         if self.model.lengths:
             mean, deviation = self.model.lengths[n]

@@ -110,7 +110,7 @@ class ChoiceTable(QTreeWidget):
         )
 
     def show_rows(self, rows: Sequence[MeaningRow], otherwise: str = "") -> None:
-        """Show rows, or the words `otherwise` where there are none. The current row and the scroll stay where
+        """Show rows, or the words `otherwise` if there are none. The current row and the scroll stay where
         they are.
         """
         t, place, scroll = (

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 
 from app.features.models.compare_plot import ComparePlot
 from app.features.models.heatmap import HeatMap
-from app.features.models.state_names import state_name
+from app.features.models.state_names import name_state
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.project.jobs import Jobs
@@ -41,8 +41,8 @@ from metagraph.playback.learning.compare import ModelComparison, compare_model, 
 from metagraph.playback.learning.learn import (
     Act,
     State,
-    acts_of_asks,
     model_states,
+    read_acts_of_asks,
     remove_state,
     with_cell,
     with_state,
@@ -270,7 +270,7 @@ class ModelsPanel(QWidget):
         """Return what can be compared with: key -> name, acts of this layer."""
         layer, out = self.session.place.layer, {}
         for ident, kept in self.document.project.performances.items():
-            acts = acts_of_asks(layer, kept.asks)
+            acts = read_acts_of_asks(layer, kept.asks)
             if len(acts) > 1:
                 out[ident] = kept.name, acts
         if len(self.imported.get(layer, ())) > 1:
@@ -413,11 +413,11 @@ class ModelsPanel(QWidget):
                 for tag in tags if kind == "gesture" else ("",):
                     state: State = (limb, kind, tag)
                     if state not in there:
-                        words = f"{KIND_MARKS[kind]} {state_name(state, layer)}"
+                        words = f"{KIND_MARKS[kind]} {name_state(state, layer)}"
                         add.addAction(words, partial(self._add_state, state))
         add.setEnabled(not add.isEmpty())
         if 0 <= row < len(shown.states) and len(shown.states) > 1:
-            words = state_name(model_states(shown)[row], layer)
+            words = name_state(model_states(shown)[row], layer)
             menu.addAction(
                 tr("Remove {words}", words=words),
                 lambda: self._edit(tr("Remove state"), lambda m: remove_state(m, row)),

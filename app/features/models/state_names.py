@@ -27,18 +27,18 @@ def describe_tag(state: State) -> str:
     return ", ".join(tr(tag) for tag in state[2].split())
 
 
-def state_name(state: State, layer: Layer) -> str:
+def name_state(state: State, layer: Layer) -> str:
     """Return a state for people, as `learn.describe_state` has it in English."""
     limb, kind, _ = state
     words = tr(f"{limb} {kind}") if layer == "arms" else tr(kind)
     return ", ".join(filter(None, (words, describe_tag(state))))
 
 
-def a_state(state: State, layer: Layer) -> str:
+def name_state_in_sentence(state: State, layer: Layer) -> str:
     """Return a state as it stands in a sentence: "a positive left gesture"."""
     limb, kind, tags = state
     both = layer == "arms" and limb == "both"
-    words = tr("{kind} of both arms", kind=tr(kind)) if both else state_name((limb, kind, ""), layer)
+    words = tr("{kind} of both arms", kind=tr(kind)) if both else name_state((limb, kind, ""), layer)
     if tags:
         words = tr("{tags} {words}", tags=" ".join(tr(tag) for tag in tags.split()), words=words)
     return tr("a {words}", words=words)

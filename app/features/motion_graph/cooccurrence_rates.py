@@ -44,7 +44,7 @@ FIELDS = {
 }
 
 
-def rates_of(rows: Sequence[Any], before: Rates) -> dict[str, float]:
+def count_rates(rows: Sequence[Any], before: Rates) -> dict[str, float]:
     """Return what rows of `cooccurrence.table` say of a side's rates; what nothing was seen of stays as
     before.
     """
@@ -139,7 +139,7 @@ class CooccurrenceDialog(QDialog):
                     project,
                     ident,
                     side,
-                    **rates_of(self.rows, project.conversations[ident].sides[side].rates),
+                    **count_rates(self.rows, project.conversations[ident].sides[side].rates),
                 )
             return project
 
@@ -148,4 +148,4 @@ class CooccurrenceDialog(QDialog):
 
 
 def _share(value: float) -> str:
-    return f"{value:.0%}".replace("%", " %")
+    return f"{100 * value:.0f} %"

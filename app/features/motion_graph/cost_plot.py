@@ -1,5 +1,5 @@
-"""What a jump costs: the histogram of costs between frames a few apart, the distribution fitted to it, and
-the threshold.
+"""Plot the costs of jumps: the histogram of costs between frames that are a few apart, the fitted
+distribution, and the threshold.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.look.theme import theme
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.still_plot import empty_plot, still_plot
+from app.widgets.still_plot import clear_plot, still_plot
 
 BINS = 80
 BEYOND = 0.995  # share of all costs that the plot shows
@@ -43,7 +43,7 @@ class CostPlot(QWidget):
 
     def _draw(self) -> None:
         look = theme(self.session.look.name)
-        empty_plot(self.plot, look)
+        clear_plot(self.plot, look)
         self.plot.setLabel("bottom", tr("cost, m"), color=look.dim)
         found = self.shown
         if found is None:

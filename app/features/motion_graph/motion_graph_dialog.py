@@ -224,7 +224,7 @@ class MotionGraphDialog(QDialog):
     # --- what counts as a jump
 
     def _changed(self) -> None:
-        """Something was chosen: compare frames anew, soon."""
+        """Something was chosen: compare frames again, soon."""
         self.graph = None
         self.takes = takes_of(self.document.project, self.picked.chosen())
         if self._counted != (self.takes.clips, self.level.value()):
@@ -282,19 +282,16 @@ class MotionGraphDialog(QDialog):
                 )
             )
             return
-        fitted = (
-            tr("A transition may cost")
-            if limit.distribution is None
-            else tr("Johnson's S_B, fitted: a transition may cost")
-        )
         off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
-        beside = tr(" ({off:.0%} off)", off=off).replace("%", " %") if off > 0.05 else ""
+        beside = tr(" ({off:.0f} % off)", off=100 * off) if off > 0.05 else ""
         self.words.setToolTip(describe_fits(limit))
         self.words.setText(
             tr(
-                "{fitted} {limit:.3g} m, summed over joints. Dotted: the costs themselves say "
-                "{observed:.3g} m{beside}.",
-                fitted=fitted,
+                "A transition may cost {limit:.3g} m, summed over the joints. Dotted line: the limit without "
+                "a fitted distribution, {observed:.3g} m{beside}."
+                if limit.distribution is None
+                else "A transition may cost {limit:.3g} m, summed over the joints (Johnson's S_B, fitted). "
+                "Dotted line: the limit without a fitted distribution, {observed:.3g} m{beside}.",
                 limit=limit.limit,
                 observed=limit.observed,
                 beside=beside,
@@ -367,7 +364,7 @@ class MotionGraphDialog(QDialog):
             found = rows.get(k)
             texts = [str(k), *(("–",) * 4 if found is None else map(group_thousands, found))]
             if found is not None and found[0]:
-                texts[3] += f"  ({found[2] / found[0]:.0%})".replace("%", " %")
+                texts[3] += f"  ({100 * found[2] / found[0]:.0f} %)"
             for column, text in enumerate(texts):
                 item = QTableWidgetItem(text)
                 item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)

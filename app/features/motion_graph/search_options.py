@@ -179,7 +179,7 @@ class Wishes(QFrame):
         return chosen if self.whole.isChecked() else None
 
     def wish(self) -> Wish:
-        """Return what is asked for now. Raises ValueError where a word is none."""
+        """Return what is requested now. Raises ValueError if a word is none."""
         chosen, seconds, start = self.speech.currentData(), self.length.value(), self.start.value()
         if self.moves is not None:
             seconds, start = self.document.project.conversations[self.moves[0]].length, 0.0

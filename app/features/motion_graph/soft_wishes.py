@@ -94,7 +94,7 @@ class SoftWishes(QWidget):
         return out
 
     def wish(self) -> SoftWish:
-        """Return what is asked for now. Raises ValueError where a word is none."""
+        """Return what is requested now. Raises ValueError if a word is none."""
         from metagraph.synthesis.iconic_words import word_wish
         from metagraph.synthesis.soft_constraints import SoftWish
 
@@ -112,7 +112,7 @@ def read_side_prosody(
     side: Side | None, segments: Sequence[Segment], folder: Path | None, wish: SoftWish
 ) -> SpokenTake:
     """Return what is known of the speech a side moves with, and of its sound where the wish needs that. side:
-    None where nobody knows. folder: of the project. Raises FileError.
+    None if nobody knows. folder: of the project. Raises FileError.
     """
     from metagraph.speech.prosody import prosody
     from metagraph.speech.sound import read_sound

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from app.features.motion_graph.soft_wishes import read_side_prosody
-from app.translation import tr, tr_plural
+from app.translation import tr, tr_phrase, tr_plural
 from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -31,7 +31,7 @@ LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
 
 @dataclass(frozen=True, eq=False)
 class ChosenTakes:
-    """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none where
+    """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none if
     nobody knows. sides: of the conversation each was recorded along with.
     """
 
@@ -71,7 +71,7 @@ def find_recorded_side(project: Project, clip: str) -> tuple[str, int] | None:
 
 
 def describe_unusable_clips(project: Project) -> str:
-    """Return which clips cannot be takes, and why, in words; "" where all can."""
+    """Return which clips cannot be takes, and why, in words; "" if all can."""
     moving = [e for e in project.clips.values() if e.motion is not None]
     alike = [e for e in moving if e.motion is not None and e.motion.skeleton == project.skeleton]
     still = sum(e.frames <= 1 for e in alike)
@@ -139,7 +139,7 @@ class Wish:
 
 @dataclass(frozen=True, eq=False)
 class FoundMotion:
-    """A new motion. took: seconds of search. beside: what became of what it should have beside."""
+    """A new motion. took: seconds of search. beside: how well it meets the preferences, in words."""
 
     clip: Clip
     cost: float
@@ -159,13 +159,13 @@ class FoundMotion:
             else tr_plural("{count:,} transition", "{count:,} transitions", 1)
         )
         again = tr(
-            "{repeated:.0%} of it repeats within 3 s, {rest}",
-            repeated=self.looks.repeated,
-            rest=self.looks.rest_words(),
+            "{repeated:.0f} % of it repeats within 3 s, {rest}",
+            repeated=100 * self.looks.repeated,
+            rest=tr_phrase(self.looks.rest_words()),
         )
         found = tr("found in {took:.2f} s", took=self.took)
-        given_up = f" {self.given_up[0].upper()}{self.given_up[1:]}." if self.given_up else ""
-        beside = f" {self.beside[0].upper()}{self.beside[1:]}." if self.beside else ""
+        given_up = _as_sentence(self.given_up)
+        beside = _as_sentence(self.beside)
         return tr(
             "{duration:.1f} s with {jumps}, cost {cost:.3g} m, {found}; {again}.{given_up}{beside}",
             duration=self.clip.duration,
@@ -176,6 +176,12 @@ class FoundMotion:
             given_up=given_up,
             beside=beside,
         )
+
+
+def _as_sentence(words: str) -> str:
+    """Return words of the domain in the window's language, as a sentence after a blank; "" for none."""
+    shown = tr_phrase(words)
+    return f" {shown[0].upper()}{shown[1:]}." if shown else ""
 
 
 def synthesise(

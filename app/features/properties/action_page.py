@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.properties.page_form import Edit, form_in
+from app.features.properties.page_form import Edit, add_form
 from app.features.properties.timing_plot import TimingPlot
 from app.features.properties.variation_rows import ActionRows
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
@@ -60,7 +60,7 @@ class ActionPage(Halves):
         )
         self.plot.finished.connect(document.finish_merging)
         upper.addWidget(self.plot)
-        self.form = form_in(box)
+        self.form = add_form(box)
         self._add_timing(page)
         self._add_choices(page)
         self.trouble = QLabel(page, wordWrap=True)
@@ -218,7 +218,7 @@ class ActionPage(Halves):
         self._show_trouble()
 
     def set_misfits(self, misfits: dict[str, str]) -> None:
-        """Tell what is wrong with actions; action id -> words."""
+        """Report what is wrong with actions; action id -> words."""
         self.misfits = misfits
         self._show_trouble()
 
@@ -276,7 +276,7 @@ class ActionPage(Halves):
         self.edit(tr("Change earliest exit"), lambda p: edits.update_each(p, exits))
 
     def _describe_repeats(self, actions: Sequence[Action]) -> str:
-        """Return how often actions play their part, where that is the same for all of them."""
+        """Return how often actions play their part, if that is the same for all of them."""
         spans = [(a, *self.document.project.span(a)) for a in actions]
         cycles = [(cycle_of(a.kind, a.timing, start, end), a.timing.repeat) for a, start, end in spans]
         times = {round(times_played(cycle, seconds)) if cycle > 0 else 0 for cycle, seconds in cycles}
@@ -318,7 +318,7 @@ class ActionPage(Halves):
         kind, chosen = self.chosen_kind.itemData(place), self.session.selection.actions
         end = self.session.place.other()
         self.edit(tr("Change kind"), lambda p: edits.set_kind(p, chosen, kind, end))
-        self.show_actions(self.session.selection.selected_actions())  # as it was, where that is impossible
+        self.show_actions(self.session.selection.selected_actions())  # as it was, if that is impossible
 
     def _restance(self, place: int) -> None:
         stance, chosen = self.stance.itemData(place), self.session.selection.actions

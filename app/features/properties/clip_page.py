@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QWidget
 
 from app.features.properties.label_rows import LabelRows
-from app.features.properties.page_form import Edit, form_in, page_box
+from app.features.properties.page_form import Edit, add_form, make_page_box
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import StageSession
@@ -23,7 +23,7 @@ class ClipPage(QWidget):
     def __init__(self, document: Document, session: StageSession, edit: Edit, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session, self.edit = document, session, edit
-        box = page_box(self)
+        box = make_page_box(self)
         self.title = QLabel(self, wordWrap=True)
         self.title.setProperty("title", True)
         self.words = QLabel(self, wordWrap=True)
@@ -35,7 +35,7 @@ class ClipPage(QWidget):
         self.uses.setTextFormat(Qt.TextFormat.RichText)
         self.uses.linkActivated.connect(lambda ident: self.session.jump(action=ident))
         box.addWidget(self.uses)
-        self.label = LabelRows(form_in(box), self)
+        self.label = LabelRows(add_form(box), self)
         self.label.wanted.connect(self._set_label)
         self.trouble = QLabel(self, wordWrap=True)
         box.addWidget(self.trouble)

@@ -127,12 +127,12 @@ class JumpStrip(pg.PlotWidget):
         """Say what a point of the strip means."""
         if self.seen is None or self.subject is None:
             return ""
-        from metagraph.suggest.jumps.seen_jumps import words_at
+        from metagraph.suggest.jumps.seen_jumps import find_words_at
 
         seconds = float(self.plotItem.vb.mapSceneToView(at).x())
         seconds = min(max(0.0, seconds), float(self.seen.times[-1]))
         more = tr("\nThe marks show the proposed times. Hold Alt while dragging to avoid snapping to them.")
-        return tr_phrase(words_at(*self.subject, self.seen, seconds)) + more
+        return tr_phrase(find_words_at(*self.subject, self.seen, seconds)) + more
 
     def viewportEvent(self, event: QEvent) -> bool:
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from PySide6.QtWidgets import QFrame, QLabel, QWidget
 
-from app.features.properties.page_form import Edit, form_in, page_box
+from app.features.properties.page_form import Edit, add_form, make_page_box
 from app.features.properties.variation_rows import PlannerRows
 from app.project.document import Document
 from app.stage.session import StageSession
@@ -22,7 +22,7 @@ class LayerPage(QWidget):
     def __init__(self, document: Document, session: StageSession, edit: Edit, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session, self.edit = document, session, edit
-        box = page_box(self)
+        box = make_page_box(self)
         self.title = QLabel(self)
         self.title.setProperty("title", True)
         box.addWidget(self.title)
@@ -36,7 +36,7 @@ class LayerPage(QWidget):
         )
         words.setProperty("dim", True)
         box.addWidget(words)
-        form = form_in(box)
+        form = add_form(box)
         self.weights: dict[str, Seconds] = {}
         for part in PARTS:
             field = Seconds(
@@ -55,7 +55,7 @@ class LayerPage(QWidget):
         line = QFrame(self, frameShape=QFrame.Shape.HLine)
         line.setStyleSheet("color: palette(mid)")
         box.addWidget(line)
-        form = form_in(box)
+        form = add_form(box)
         self.gap = Seconds(
             self, tr("Average pause between two actions that play without a request"), 60, " s", 0.2
         )
@@ -75,7 +75,7 @@ class LayerPage(QWidget):
         words = QLabel(tr("For all layers, when the planner picks an action:"), self, wordWrap=True)
         words.setProperty("dim", True)
         box.addWidget(words)
-        self.planner = PlannerRows(form_in(box), self, edit)
+        self.planner = PlannerRows(add_form(box), self, edit)
         box.addStretch(1)
 
     def show_layer(self) -> None:

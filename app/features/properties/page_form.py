@@ -7,12 +7,12 @@ from collections.abc import Callable
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
-# Makes an edit by its name, see `Document.edit`; False where it cannot be made, which is told.
+# Makes an edit by its name, see `Document.edit`; False where it cannot be made, which is reported.
 Edit = Callable[..., bool]
 ANY = 16_777_215  # Qt's largest height of a widget
 
 
-def page_box(page: QWidget) -> QVBoxLayout:
+def make_page_box(page: QWidget) -> QVBoxLayout:
     """Return the layout of a page."""
     box = QVBoxLayout(page)
     box.setContentsMargins(14, 10, 14, 14)
@@ -20,7 +20,7 @@ def page_box(page: QWidget) -> QVBoxLayout:
     return box
 
 
-def form_in(box: QVBoxLayout) -> QFormLayout:
+def add_form(box: QVBoxLayout) -> QFormLayout:
     """Add a form to a layout."""
     form = QFormLayout()
     form.setHorizontalSpacing(14)

@@ -121,7 +121,7 @@ class PropertiesPanel(QScrollArea):
     # --- showing
 
     def _moved_on(self) -> None:
-        """Another layer or stance is looked at: that shows where nothing is selected."""
+        """Another layer or stance is looked at: that shows if nothing is selected."""
         chosen = self.session.selection
         if not chosen.selected_actions() and not chosen.clips:
             self.show_selection()
@@ -177,8 +177,8 @@ class PropertiesPanel(QScrollArea):
 
 
 def _untouched(before: Project, after: Project, action: Action) -> bool:
-    """Whether an edit left an action as it was, and all else that its page tells of it: its clip, the names
-    of stances and the loops it begins and ends in.
+    """Whether an edit left an action as it was, and all else that its page reports it: its clip, the names of
+    stances and the loops it begins and ends in.
     """
     parts = ("clips", "skeleton", "base", "roles", "parts", "settings")
     if any(getattr(before, part) is not getattr(after, part) for part in parts):

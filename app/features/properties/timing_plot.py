@@ -27,6 +27,7 @@ from app.stage.compatibility_state import Compatibility, compare_proposed_timing
 from app.stage.session import StageSession
 from app.translation import lazy_texts, tr, tr_phrase
 from app.widgets.restyling import set_sheet
+from app.widgets.still_plot import make_number_axes
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, handle_times, move_handle
@@ -61,7 +62,7 @@ class TimingPlot(QWidget):
         self.document, self.session = document, session
         self.action: Action | None = None
         self._setting = False
-        self.plot = pg.PlotWidget(self)
+        self.plot = pg.PlotWidget(self, axisItems=make_number_axes())
         self.plot.setMenuEnabled(False)
         self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the fields beside it have keys
         self.plot.setMouseEnabled(False, False)
@@ -142,7 +143,7 @@ class TimingPlot(QWidget):
         )
         if action is None or project.action(action.id) is None:
             return
-        from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, describe_times, far_ends
+        from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, describe_times, find_far_ends
 
         seen = SeenJumps(action, curves) if curves is not None else None
         self.strip.show_seen(project, action, seen)
@@ -153,7 +154,7 @@ class TimingPlot(QWidget):
         start, end = project.span(action)
         first, last = seen.cost("start", start), seen.cost("end", end)
         costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
-        far = far_ends(project, action)
+        far = find_far_ends(project, action)
         self.verdict.setText(tr_phrase(describe_ends(costs, far)))
         fine = max(costs.values()) <= 1 and not far
         set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")
@@ -204,7 +205,7 @@ class TimingPlot(QWidget):
         if fresh:
             speeds, words = speed_of(project, action)
             self.curve.setData(np.arange(len(speeds)) / entry.fps, speeds)
-            # In one go: each change of a range lets all lines and words find their places anew.
+            # In one go: each change of a range lets all lines and words find their places again.
             across = -0.02 * entry.duration, max(entry.duration, 0.1) * 1.02
             top = max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0)
             self.plot.plotItem.vb.setRange(xRange=across, yRange=(0, top), padding=0)
@@ -347,7 +348,7 @@ class TimingPlot(QWidget):
         self.changed.emit(fields)
 
     def _snapped(self, name: str, seconds: float) -> float:
-        """Let the ends come to rest where nothing shows, unless Alt is held."""
+        """Let the ends come to rest if nothing shows, unless Alt is held."""
         seen = self.strip.seen
         if seen is None or QApplication.keyboardModifiers() & Qt.KeyboardModifier.AltModifier:
             return seconds

@@ -1,5 +1,5 @@
-"""Fields for how often things play: an action's cooldown and spacing, the phases of a gesture, and the
-planner's own numbers.
+"""Fields for how often actions play: cooldown and spacing, the phases of a gesture, and the numbers of the
+planner.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ class ActionRows(QWidget):
         spacing = common_value([a.spacing for a in actions])
         self.spacing.blockSignals(True)
         least = -2 if spacing is Mixed else AS_THE_GRAPH
-        if self.spacing.minimum() != least:  # which lays the form out anew
+        if self.spacing.minimum() != least:  # which lays the form out again
             self.spacing.setMinimum(least)
         self.spacing.setSpecialValueText(tr(MIXED) if spacing is Mixed else tr("as the graph"))
         shown = least if spacing is Mixed or spacing is None else spacing

@@ -283,7 +283,7 @@ class JointMapDialog(QDialog):
             if name in self.combos:
                 self.combos[name].setCurrentIndex(self._number(name))
             item.setText(2, describe_joint_role(pair.role) if pair is not None else "")
-            item.setText(3, f"{pair.sure:.0%}" if pair is not None else "")
+            item.setText(3, f"{100 * pair.sure:.0f} %" if pair is not None else "")
             item.setText(4, tr(pair.why) if pair is not None else tr("moves nothing"))
             item.setToolTip(4, item.text(4))
             unsure = pair is not None and pair.sure < 0.7

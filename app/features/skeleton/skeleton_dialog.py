@@ -22,8 +22,9 @@ from app.look.joint_roles import describe_joint_role
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.joint_mask import JOINT, joint_tree
+from app.widgets.joint_mask import JOINT, fill_joint_tree
 from app.widgets.quiet_fields import ComboBox
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import PARTS, Part, Project
 from metagraph.motion.roles import ROLES, missing_roles
@@ -50,7 +51,7 @@ class SkeletonDialog(QDialog):
         self.tree.header().setStretchLastSection(False)
         self.tree.setSelectionMode(QTreeWidget.SelectionMode.ExtendedSelection)
         layout.addWidget(self.tree, 1)
-        self.items = joint_tree(self.tree, document.project)
+        self.items = fill_joint_tree(self.tree, document.project)
         self.roles: dict[str, QComboBox] = {}
         self.parts: dict[str, QComboBox] = {}
         for name, item in self.items.items():
@@ -60,8 +61,9 @@ class SkeletonDialog(QDialog):
                 role.addItem(describe_joint_role(r), r)
             role.activated.connect(lambda _, j=name, box=role: self._set_role(j, box.currentData()))
             part = ComboBox(self.tree, toolTip=tr("The body part decides which layers move the joint"))
-            part.addItems(PARTS)
-            part.activated.connect(lambda _, j=name, box=part: self._set_part(j, box.currentText()))
+            for one in PARTS:
+                part.addItem(vocabulary_word(one), one)
+            part.activated.connect(lambda _, j=name, box=part: self._set_part(j, box.currentData()))
             self.tree.setItemWidget(item, 1, role)
             self.tree.setItemWidget(item, 2, part)
             self.roles[name], self.parts[name] = role, part
@@ -95,7 +97,7 @@ class SkeletonDialog(QDialog):
             if name not in parts:
                 continue
             self.roles[name].setCurrentIndex(max(0, self.roles[name].findData(by_joint.get(name))))
-            self.parts[name].setCurrentText(parts[name])
+            self.parts[name].setCurrentIndex(PARTS.index(parts[name]))
             font = self.items[name].font(0)
             font.setBold(name in project.parts or name in project.roles.values())
             self.items[name].setFont(0, font)

@@ -1,6 +1,4 @@
-"""Operators counted outside a study: to see what a way of working costs, and what an expert would take for
-it.
-"""
+"""Count operators (keys, clicks, drags) outside a study, and estimate the time of an expert."""
 
 from __future__ import annotations
 
@@ -67,7 +65,7 @@ class OperatorCounting:
         return self._shown is not None
 
     def toggle(self) -> None:
-        """Begin or end counting keys, pointings, buttons and drags."""
+        """Start or stop counting keys, pointing, buttons and drags."""
         if self._shown is None:
             self._shown = Counting(self.shell)
         else:

@@ -44,7 +44,7 @@ class OperatorEvents:
         self._since = now
         self._keys: dict[
             int, tuple[int, bool]
-        ] = {}  # held down -> the event's own time, whether it was told as a press
+        ] = {}  # held down -> the event's own time, whether it was reported as a press
         self._buttons: set[int] = set()
         self._anchor: Point | None = None  # where the last pointing ended
         self._at: Point = (-1e9, -1e9)  # nowhere yet
@@ -55,8 +55,8 @@ class OperatorEvents:
         self._hand = ""
 
     def key(self, key: int, down: bool, stamp: int, asked: bool = False) -> bool:
-        """Tell of a key; return whether it was new. stamp: the event's own time. asked: it is only asked
-        whether the key is a shortcut; if it is none it is told as a press next.
+        """Report a key; return whether it was new. stamp: the event's own time. asked: it is only asked
+        whether the key is a shortcut; if it is none it is reported as a press next.
         """
         if not down:
             self._keys.pop(key, None)
@@ -71,7 +71,7 @@ class OperatorEvents:
         return True
 
     def press(self, button: int, at: Point, now: float) -> bool:
-        """Tell that a button went down; return whether it was new."""
+        """Report that a button went down; return whether it was new."""
         if button in self._buttons:
             return False
         self.rest(now)
@@ -86,7 +86,7 @@ class OperatorEvents:
         return True
 
     def release(self, button: int, at: Point, now: float) -> bool:
-        """Tell that a button went up; return whether it was new."""
+        """Report that a button went up; return whether it was new."""
         if button not in self._buttons:
             return False
         self._buttons.discard(button)
@@ -100,8 +100,8 @@ class OperatorEvents:
         return True
 
     def move(self, at: Point, held: bool, now: float) -> bool:
-        """Tell where the pointer is; return whether it moved. held: a button is down."""
-        if self._buttons and not held:  # released where nobody told, at the end of a drag
+        """Report where the pointer is; return whether it moved. held: a button is down."""
+        if self._buttons and not held:  # released if nobody told, at the end of a drag
             for button in tuple(self._buttons):
                 self.release(button, self._at, self._last)
         if at == self._at:
@@ -118,7 +118,7 @@ class OperatorEvents:
         return True
 
     def drop(self, now: float) -> None:
-        """Tell that what was dragged was let go."""
+        """Report that what was dragged was let go."""
         for button in tuple(self._buttons):
             self.release(button, self._at, now)
 
@@ -130,7 +130,7 @@ class OperatorEvents:
             self._point_ended(self._at)
 
     def take(self, now: float) -> Counts:
-        """Return what there was since the last time, and begin anew."""
+        """Return what there was since the last time, and begin again."""
         self.rest(now)
         out = Counts(self._counts, self._drag_s, now - self._since)
         self._counts, self._drag_s, self._since = Counter(), 0.0, now

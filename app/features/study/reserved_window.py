@@ -68,7 +68,7 @@ class ReservedWindow:
         self.shell.actions.refresh()
 
     def allow_task(self) -> None:
-        """Offer what a task may be done with, the same in both conditions but for what only one of the
+        """Offer what a task may be done with, the same in both conditions except for what only one of the
         editors has.
         """
         self.allow(lambda command: command.study is True or (command.study == "labels" and self.labels))

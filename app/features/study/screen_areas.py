@@ -1,4 +1,4 @@
-"""Where panels, and nodes in them, lie on the screen: what a recording of eyes is read against."""
+"""List where panels and their nodes are on the screen, to interpret an eye-tracking recording."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ from metagraph.research.study.study_plan import Study, read_study
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-OVER = (tr_noop("done"), tr_noop("withdrawn"))  # what `standing` says where nobody goes on
+OVER = (tr_noop("done"), tr_noop("withdrawn"))  # what `standing` says if nobody goes on
 OTHERS = (tr_noop("not begun"), tr_noop("declined"))  # it says that, too
 
 

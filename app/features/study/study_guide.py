@@ -22,8 +22,8 @@ from app.features.study.study_screen import (
     QuestionsPage,
     Screen,
     StudyPage,
-    question_page,
-    text_page,
+    make_question_page,
+    make_text_page,
 )
 from app.project.files import Files
 from app.project.jobs import WindowJob
@@ -151,7 +151,7 @@ class Guide(QObject):
         phase = self.sitting.phase
         if phase is None:
             self._show(
-                text_page(
+                make_text_page(
                     tr("This sitting is finished"),
                     tr("All parts of it are already done."),
                     tr("Close"),
@@ -179,14 +179,14 @@ class Guide(QObject):
                 self.go_on,
             )
         if phase.name == "end":
-            return text_page(
+            return make_text_page(
                 phase.title,
                 phase.text or tr("That was the last part. Thank you for your help."),
                 tr("Close"),
                 self.go_on,
             )
         limit = tr("\n\nYou have {minutes:g} minutes.", minutes=phase.minutes) if phase.minutes else ""
-        return text_page(
+        return make_text_page(
             phase.title,
             phase.text + (limit if phase.condition else ""),
             tr("Start") if phase.condition else tr("Continue"),
@@ -256,7 +256,7 @@ class Guide(QObject):
     def _cannot(self, error: Exception) -> None:
         self.recorder.tell("error", what="failed", words=str(error))
         self._show(
-            question_page(
+            make_question_page(
                 tr("The study cannot continue"),
                 tr_error(error),
                 tr("Try again"),
@@ -280,7 +280,7 @@ class Guide(QObject):
         if again and self._resumed:
             self._resumed = False
             self.sitting.writer.add("pause", state="begin", why="resumed")
-            page = text_page(
+            page = make_text_page(
                 tr("Welcome back"),
                 tr("Your work is as you left it. The clock starts again when you continue."),
                 tr("Continue"),
@@ -338,7 +338,9 @@ class Guide(QObject):
         if self._working:
             self._stop()
             self.recorder.tell("pause", state="begin")
-            self._show(text_page(tr("Paused"), tr("The clock is stopped."), tr("Continue"), self.unpause))
+            self._show(
+                make_text_page(tr("Paused"), tr("The clock is stopped."), tr("Continue"), self.unpause)
+            )
 
     def unpause(self) -> None:
         self.sitting.writer.add("pause", state="end")
@@ -347,7 +349,7 @@ class Guide(QObject):
     def ask_done(self) -> None:
         """Ask whether the task is done; the clock runs on meanwhile."""
         self._show(
-            question_page(
+            make_question_page(
                 tr("Are you done?"),
                 tr("You cannot come back to this part."),
                 tr("Yes, done"),
@@ -372,7 +374,7 @@ class Guide(QObject):
             self.sitting.keep(why)
         except FileError as error:
             self._show(
-                question_page(
+                make_question_page(
                     tr("Your work could not be saved"),
                     tr_error(error),
                     tr("Try again"),
@@ -384,7 +386,7 @@ class Guide(QObject):
             return
         self.bar.hide()
         if why == "time":
-            self._show(text_page(tr("Time is up"), tr("Your work is saved."), tr("Continue"), self.show))
+            self._show(make_text_page(tr("Time is up"), tr("Your work is saved."), tr("Continue"), self.show))
         else:
             self.show()
 

@@ -23,7 +23,7 @@ class NoteDialog(QDialog):
         self.words.setTabChangesFocus(True)
         self.words.setMinimumSize(420, 120)
         self.words.setAccessibleName(tr("Note"))
-        self.keep, cancel = QPushButton(tr("Keep"), self), QPushButton(tr("Cancel"), self)
+        self.keep, cancel = QPushButton(tr("Save"), self), QPushButton(tr("Cancel"), self)
         strengthen(self.keep)
         self.keep.clicked.connect(self._keep)
         cancel.clicked.connect(self.reject)
@@ -36,7 +36,7 @@ class NoteDialog(QDialog):
         column = QVBoxLayout(self)
         column.setContentsMargins(16, 14, 16, 14)
         column.setSpacing(10)
-        column.addWidget(QLabel(tr("What should be remembered? The clock keeps running."), self))
+        column.addWidget(QLabel(tr("Write a note on the study. The clock keeps running."), self))
         column.addWidget(self.words)
         column.addLayout(buttons)
 

@@ -15,7 +15,7 @@ from app.features.study.screen_areas import screen_areas
 from app.features.study.study_changes import describe_change
 from app.project.importing import Importing
 from app.stage.problem_watch import ProblemWatch
-from app.translation import in_english
+from app.translation import get_english
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported
 from metagraph.formats.project.journal import find_changes
@@ -24,8 +24,8 @@ from metagraph.graph.model import Project
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-IDLE = 10.0  # seconds without input that are told
-MOST = 50  # ids of what is selected that are told
+IDLE = 10.0  # seconds without input that are reported
+MOST = 50  # ids of what is selected that are reported
 MERGING = 300  # milliseconds after which a run of merged edits, as a drag makes them, is taken to be over
 
 
@@ -80,7 +80,7 @@ class Recorder(QObject):
         self._second.start()
 
     def stop(self) -> None:
-        """Tell what is left, and follow no more."""
+        """Report what is left, and follow no more."""
         self._tell_edit()
         self._tell_operators()
         self._second.stop()
@@ -95,7 +95,7 @@ class Recorder(QObject):
         self._write(kind, fields)
 
     def boundary(self) -> None:
-        """Tell what is still held back: a phase begins or ends."""
+        """Report what is still held back: a phase begins or ends."""
         self._tell_edit()
         self._tell_operators()
 
@@ -116,7 +116,7 @@ class Recorder(QObject):
         self._undone = stack.command(self._index) if self._index < self._count else None
 
     def _moved(self, index: int) -> None:
-        """Tell an edit, an undo or a redo from how the stack of steps has moved."""
+        """Report an edit, an undo or a redo from how the stack of steps has moved."""
         stack = self._stack
         last, count = self._index, stack.count()
         if index > last and self._undone is not None and stack.command(last) is self._undone:
@@ -137,7 +137,7 @@ class Recorder(QObject):
         self._write(kind, {"words": command.english, **self._change(self.shell.document.project)})
 
     def _change(self, now: Project) -> dict[str, Any]:
-        """Return what makes the project that was told last what it is now, so that the work can be seen
+        """Return what makes the project that was reported last what it is now, so that the work can be seen
         again.
         """
         before, self._told = self._told, now
@@ -224,10 +224,10 @@ class Recorder(QObject):
     # --- the rest
 
     def _refused(self, words: str) -> None:
-        self.tell("error", what="refused", words=in_english(words))
+        self.tell("error", what="refused", words=get_english(words))
 
     def _document_failed(self, words: str) -> None:
-        self.tell("error", what="failed", words=in_english(words))
+        self.tell("error", what="failed", words=get_english(words))
 
     def _saved(self) -> None:
         path = self.shell.document.path
@@ -252,7 +252,7 @@ class Recorder(QObject):
         if self._edit is None:
             self._tell_operators()
         for words in self._grave() - self._warned:
-            self.tell("error", what="warning", words=in_english(words))
+            self.tell("error", what="warning", words=get_english(words))
         self._warned = self._grave()
 
     def _grave(self) -> frozenset[str]:

@@ -70,9 +70,7 @@ class ReplayBar(QToolBar):
 
 
 class Replayer(QObject):
-    """ready: a part is loaded. over: the window is as before. Raises FileError where there is nothing to
-    see.
-    """
+    """ready: a part is loaded. over: the window is as before. Raises FileError if there is nothing to see."""
 
     ready = Signal()
     over = Signal()

@@ -74,13 +74,13 @@ class StudyPage(QWidget):
         return self
 
 
-def text_page(title: str, text: str, go: str, run: Run) -> StudyPage:
+def make_text_page(title: str, text: str, go: str, run: Run) -> StudyPage:
     page = StudyPage(title, text)
     page.button(go, run, strong=True)
     return page.finish()
 
 
-def question_page(title: str, text: str, yes: str, run: Run, no: str, back: Run) -> StudyPage:
+def make_question_page(title: str, text: str, yes: str, run: Run, no: str, back: Run) -> StudyPage:
     """Return a page with a way on and a way back."""
     page = StudyPage(title, text)
     page.button(no, back)

@@ -1,4 +1,4 @@
-"""The commands that take stances and actions from other projects, and hand them to other windows."""
+"""Commands that copy stances and actions between projects and windows."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class TakingFeature(Feature):
         )
 
     def offer(self, name: str, piece: ProjectPiece) -> None:
-        """Show what can be taken. name: of where it comes from."""
+        """Show what can be imported. name: the name of the source."""
         from app.features.taking.taking_dialog import TakingDialog
 
         shell, look = self.shell, theme(self.session.look.name)
@@ -64,11 +64,11 @@ class TakingFeature(Feature):
 
     def copy(self) -> None:
         """Copy the selected actions, or else the stance in view with all that is placed on it."""
-        from metagraph.formats.project.pieces import piece_text
+        from metagraph.formats.project.pieces import encode_piece
 
         actions, stance = self.selection.actions, self.session.place.stance()
         stances = () if actions or stance is None else (stance,)
-        text = piece_text(self.document.project, self.document.folder, actions, stances)
+        text = encode_piece(self.document.project, self.document.folder, actions, stances)
         QApplication.clipboard().setText(text)
         self.shell.tell(
             tr_plural(
@@ -100,7 +100,7 @@ class TakingFeature(Feature):
         )
 
 
-def stance_in_view(feature: TakingFeature) -> bool:
+def find_stance_in_view(feature: TakingFeature) -> bool:
     return bool(feature.session.place.stance())
 
 
@@ -121,7 +121,7 @@ COMMANDS = (
         TakingFeature.copy,
         ("Ctrl+Alt+C",),
         tip=tr_noop("Copy the selected actions, or else the visible stance with everything placed on it"),
-        enabled=any_met(has_actions_selected, stance_in_view),
+        enabled=any_met(has_actions_selected, find_stance_in_view),
         when="meta",
         menus=("action",),
     ),

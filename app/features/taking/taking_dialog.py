@@ -23,7 +23,7 @@ from app.project.jobs import Jobs
 from app.translation import tr, tr_error, tr_noop, tr_phrase
 from app.widgets.making import make_widget
 from metagraph.formats.project.pieces import ProjectPiece
-from metagraph.graph.editing.taking import TakenItem, Taking, words_of_taking
+from metagraph.graph.editing.taking import TakenItem, Taking, describe_taking
 from metagraph.graph.model import Project
 
 GROUPS = (
@@ -70,7 +70,7 @@ class TakingDialog(QDialog):
         self.rest.setProperty("dim", True)
         body.addWidget(self.rest)
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
-        self.take = self.buttons.addButton(tr("Take"), QDialogButtonBox.ButtonRole.AcceptRole)
+        self.take = self.buttons.addButton(tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.take)
         self.buttons.accepted.connect(self._take)
         self.buttons.rejected.connect(self.reject)
@@ -100,7 +100,7 @@ class TakingDialog(QDialog):
             self.summary.setText(tr_error(error))
 
     def _show(self, taking: Taking) -> None:
-        self.summary.setText(tr_phrase(words_of_taking(taking)))
+        self.summary.setText(tr_phrase(describe_taking(taking)))
         self.rest.setText(
             "\n".join(
                 [
@@ -137,7 +137,7 @@ class TakingDialog(QDialog):
     def _take(self) -> None:
         taking = self.taking
         if taking is None or self._of is not self.document.project:
-            return  # it was edited a moment ago, and is being worked out anew
+            return  # it was edited a moment ago, and is being worked out again
         self.document.changed.disconnect(self._work_out)
         self.document.edit(tr("Import from {name}", name=self.name), lambda _: taking.project)
         self.accept()

@@ -1,4 +1,4 @@
-"""The performance: what is asked for and what plays, live or kept."""
+"""The performance: what is requested and what plays, live or kept."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class CameraLane:
         return next((n for n in range(len(self.cuts) - 1, -1, -1) if self.cuts[n].at <= seconds), None)
 
     def press(self, at: QPointF) -> bool:
-        """Take hold of a cut; False where there is none."""
+        """Take hold of a cut; False if there is none."""
         number = self.edge_at(at)
         if number is None:
             return False
@@ -96,7 +96,7 @@ class CameraLane:
         return True
 
     def key(self, number: int) -> bool:
-        """Cut to a picture at the playhead, from 1; False where there is no such one."""
+        """Cut to a picture at the playhead, from 1; False if there is no such one."""
         talk = self.talk
         if talk is None or not 1 <= number <= len(list_camera_shots(talk)):
             return False

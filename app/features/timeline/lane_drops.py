@@ -1,5 +1,5 @@
 """What a drop on a layer's lane does: actions are asked for at that moment, clips and files are placed first
-where nothing plays them yet. Said in words before it happens.
+if nothing plays them yet. Said in words before it happens.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ GAP = 0.1  # seconds between two that are dropped at once
 
 @dataclass(frozen=True)
 class LaneDrop:
-    """layer, seconds: where. stance: of the layer then, None where it has none. words: what will happen, or
-    why not.
+    """layer, seconds: where. stance: of the layer then, None if it has none. words: what will happen, or why
+    not.
     """
 
     layer: Layer | None

@@ -17,7 +17,7 @@ from app.widgets.lane_paint import describe_cue
 KINDS = (tr_noop("stance"), tr_noop("gesture"), tr_noop("fidget"), tr_noop("transition"))
 
 
-def tip_at(view: Any, at: QPointF) -> str:
+def describe_place(view: Any, at: QPointF) -> str:
     """Return what to say about what is under a point of the lanes."""
     if at.x() < LEFT:
         return view.titles.tip(at)

@@ -31,7 +31,7 @@ LOCK = 20.0  # pixels at the right of a title that are its padlock's
 
 
 def read_lane_heights() -> tuple[tuple[str, float], ...]:
-    """Return how tall lanes were made, as this person keeps it."""
+    """Return the heights of lanes from the user's settings."""
     try:
         found = json.loads(str(QSettings().value(SETTING, "{}")))
         held = Sizes()
@@ -43,7 +43,7 @@ def read_lane_heights() -> tuple[tuple[str, float], ...]:
 
 
 class LaneTitles:
-    """What the titles left of the lanes do. view: the widget of the lanes."""
+    """Handles the mouse on the titles of the lanes. view: the widget of the lanes."""
 
     def __init__(self, view: Any, performance: StagePerformance) -> None:
         self.view, self.performance = view, performance
@@ -85,7 +85,7 @@ class LaneTitles:
             self.click(layer, alone)
 
     def click(self, layer: Layer, alone: bool) -> None:
-        """Mute a layer or let it be seen; alone: it and no other."""
+        """Mute or unmute a layer. alone: mute all others."""
         self.performance.mute(self._others(layer) if alone else self.performance.muted ^ {layer})
 
     def _others(self, layer: Layer) -> set[Layer]:
@@ -94,7 +94,7 @@ class LaneTitles:
         return set() if self.performance.muted == others else others
 
     def size(self, lane: str | None, factor: float = 1.0) -> None:
-        """Make a lane so many times its usual height; None for all as usual."""
+        """Scale the height of a lane by a factor. None resets all lanes."""
         sizes = self.view.sizes
         if lane is None:
             sizes = replace(sizes, tall=())

@@ -27,7 +27,7 @@ from app.features.timeline.lane_keys import LaneKeys
 from app.features.timeline.lane_menu import make_request_marks_menu
 from app.features.timeline.lane_picture import paint_lanes
 from app.features.timeline.lane_span import LaneSpan
-from app.features.timeline.lane_tips import tip_at
+from app.features.timeline.lane_tips import describe_place
 from app.features.timeline.lane_titles import LaneTitles, read_lane_heights
 from app.features.timeline.ruler import Ruler
 from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
@@ -178,7 +178,7 @@ class Lanes(LaneSpan):
     _by_keys = False
 
     def _picture(self) -> QPixmap:
-        """Return everything but the playhead, made anew only when something else than the playhead has
+        """Return everything but the playhead, made again only when something else than the playhead has
         changed.
         """
         s, p, ratio = self.session, self.performance, self.devicePixelRatioF()
@@ -428,4 +428,4 @@ class Lanes(LaneSpan):
         return super().event(event)
 
     def tip(self, at: QPointF) -> str:
-        return tip_at(self, at)
+        return describe_place(self, at)

@@ -80,7 +80,7 @@ class Ruler:
     # --- the mouse
 
     def press(self, at: QPointF) -> bool:
-        """Take hold of what is there; False where there is nothing to hold."""
+        """Take hold of what is there; False if there is nothing to hold."""
         marker, grip = self.marker_at(at), self.grip_at(at)
         timeline = self.view.performance.timeline
         if marker is not None:

@@ -23,7 +23,7 @@ SETTING = "timeline/magnet"
 
 @dataclass(frozen=True)
 class SnapLine:
-    """A moment that others hold to, and what it is. weak: only where nothing else is near."""
+    """A moment that others hold to, and what it is. weak: only if nothing else is near."""
 
     at: float
     what: str
@@ -31,7 +31,7 @@ class SnapLine:
 
 
 def find_nearest_line(seconds: float, lines: Iterable[SnapLine], within: float) -> SnapLine | None:
-    """Return the line nearest to a time, at most so many seconds away; a weak one where there is no other."""
+    """Return the line nearest to a time, at most so many seconds away; a weak one if there is no other."""
     near = [line for line in lines if abs(line.at - seconds) <= within]
     return min(near, key=lambda line: (line.weak, abs(line.at - seconds)), default=None)
 

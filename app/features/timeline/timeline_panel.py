@@ -1,6 +1,4 @@
-"""The performance panel: which performance is on stage and with what chance, and the lanes of what was asked
-and what plays.
-"""
+"""The Performance panel: the performance on stage, its seed, and lanes of requests and actions."""
 
 from __future__ import annotations
 

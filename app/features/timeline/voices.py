@@ -1,4 +1,4 @@
-"""The voices of what is said, read on a thread: the waveform of each line's sound, and its words by time."""
+"""Read voices on a thread: the waveform of each line's sound, and its words with times."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Key = tuple[str | None, int | None, str | None]  # a line's sound, channel and T
 
 @dataclass(frozen=True)
 class LineVoice:
-    """wave: None where there is no sound, or it cannot be read. loudest: of its samples, 0..1."""
+    """The voice of a line. wave: None if there is no readable sound. loudest: the largest sample, 0..1."""
 
     wave: Envelope | None = None
     loudest: float = 1.0

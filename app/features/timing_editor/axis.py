@@ -1,4 +1,4 @@
-"""Seconds to pixels, and what zooming and moving along does to that."""
+"""Convert seconds to pixels, with zoom and scroll."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0
 
 @dataclass(frozen=True)
 class Axis:
-    """left: pixels before the rows begin. width: of the rows. length: seconds there are. first: seconds at
-    their left edge. each: pixels a second.
+    """A time axis. left: pixels to the left of the rows. width: of the rows. length: seconds in all. first:
+    seconds at the left edge. each: pixels a second.
     """
 
     left: float
@@ -45,8 +45,8 @@ class Axis:
         return self.each <= Axis.whole(self.left, self.width, self.length).each * 1.001
 
     def zoomed(self, x: float, factor: float) -> Axis:
-        """Return the axis nearer by a factor about a point, which stays where it is; never farther away than
-        everything, nor nearer than `CLOSEST`.
+        """Return the axis zoomed by a factor around a point, at least so that everything is visible, at most
+        to `CLOSEST`.
         """
         least = Axis.whole(self.left, self.width, self.length).each
         each = min(max(self.each * factor, least), max(CLOSEST, least))
@@ -54,11 +54,11 @@ class Axis:
         return replace(self, each=each, first=self.seconds(x) - (x - self.left) / each)._kept()
 
     def moved(self, pixels: float) -> Axis:
-        """Return the axis moved along, as far as there is something to see."""
+        """Return the axis scrolled, within its limits."""
         return replace(self, first=self.first + pixels / self.each)._kept()
 
     def fitted(self, left: float, width: float, length: float) -> Axis:
-        """Return it for another room or length: everything where that was seen, else the same part."""
+        """Return the axis for another size or length. It keeps showing everything, or else the same part."""
         if self.is_whole or length != self.length:
             return Axis.whole(left, width, length)
         least = Axis.whole(left, width, length).each
@@ -69,7 +69,7 @@ class Axis:
         return replace(self, first=min(max(self.first, low), max(low, high)))
 
     def marks(self, apart: float = 62.0) -> Iterator[float]:
-        """The seconds that are written at the ruler, so many pixels apart at least."""
+        """The seconds to write on the ruler, at least this many pixels apart."""
         step = next((s for s in STEPS if s * self.each >= apart), STEPS[-1])
         n = max(0, int(self.first // step))
         while n * step <= min(self.last, self.length) + 1e-9:

@@ -42,8 +42,8 @@ def paint_poses(
 
 
 def room_of(pictures: Sequence[QImage]) -> QRectF:
-    """Return the part of the pictures, of one size, that the figure takes in any of them, pixels; all of
-    them where there is none.
+    """Return the part of the pictures, of one size, that the figure takes in any of them, pixels; all of them
+    if there is none.
     """
     if not pictures:
         return QRectF(0, 0, 3, 4)

@@ -91,7 +91,7 @@ def paint_kept(
 
 
 def _free(rows: TrackRows, axis: Axis, facts: Facts, kept: KeptHand, place: QRectF) -> bool:
-    """Return whether a number is in sight and lies on no other bar of its hand, nor where that has its
+    """Return whether a number is in sight and lies on no other bar of its hand, nor if that has its
     number.
     """
     if not axis.left <= place.left() <= place.right() <= axis.left + axis.width + 1:

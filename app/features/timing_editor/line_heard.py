@@ -16,11 +16,11 @@ from app.widgets.waveforms import Envelope
 from metagraph.graph.model import Action, Project
 from metagraph.playback.life.track import Speech
 from metagraph.playback.life.voice import voice_for_speech
-from metagraph.playback.planning.asked_lines import asked_line
+from metagraph.playback.planning.asked_lines import find_asked_line
 
 Array = NDArray[Any]
 
-SYLLABLE = 0.06  # seconds about a peak that is drawn where there is no sound
+SYLLABLE = 0.06  # seconds about a peak that is drawn if there is no sound
 BEFORE = 0.15  # seconds of an action to which a line that has ended still belongs
 
 
@@ -33,7 +33,7 @@ class Said:
 
 
 def find_line_heard(shown: ShownPlayback, action: Action) -> Said | None:
-    """Return what is said where an action first plays with something said; None where nothing is."""
+    """Return what is said where an action first plays with something said; None if nothing is."""
     if shown.clip is not None:
         return None
     for cue in shown.plan.layers[action.layer].cues:
@@ -46,7 +46,7 @@ def find_line_heard(shown: ShownPlayback, action: Action) -> Said | None:
 
 
 def lay_line(project: Project, ident: str, action: Action, stroke: float) -> Said | None:
-    """Return a line of the project laid on an action so that its first stress falls on the stroke; None where
+    """Return a line of the project laid on an action so that its first stress falls on the stroke; None if
     the line is gone.
     """
     if ident not in project.lines:
@@ -58,8 +58,8 @@ def lay_line(project: Project, ident: str, action: Action, stroke: float) -> Sai
 
 
 def find_requested_line(project: Project, action: Action) -> Said | None:
-    """Return the line that an action is asked for with, performed or not; None where there is none."""
-    found = asked_line(project, action) if action.clip in project.clips else None
+    """Return the line that an action is asked for with, performed or not; None if there is none."""
+    found = find_asked_line(project, action) if action.clip in project.clips else None
     if found is None:
         return None
     return Said(_speech(project, found.line), round(project.span(action)[0] + found.at, 3))

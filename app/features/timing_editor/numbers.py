@@ -42,7 +42,7 @@ def place_numbers(
 def _free(
     taken: list[tuple[float, float]], ideal: float, width: float, low: float, high: float
 ) -> float | None:
-    """Return the place nearest to the ideal one at which a width is free, None where none is."""
+    """Return the place nearest to the ideal one at which a width is free, None if none is."""
     places = [ideal, *(b + APART for _, b in taken), *(a - APART - width for a, _ in taken)]
     free = [
         p

@@ -188,7 +188,7 @@ def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
         return tr("Drag to scrub. Drag with Shift to set a loop range, double-click to clear it.")
     if not 0 <= seconds <= facts.entry.duration:
         return ""
-    far = facts.distance.words(seconds)
+    far = tr_phrase(facts.distance.words(seconds))
     return f"{format_number(seconds, '.2f')} s: {format_number(facts.speed_at(seconds), '.2f')} m/s" + (
         f", {far}" if far else ""
     )

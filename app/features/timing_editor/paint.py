@@ -196,7 +196,7 @@ def paint_phase_blocks(
         left, right = axis.x(first), axis.x(last)
         box = QRectF(left + 0.5, rect.top(), max(1.0, right - left - 1), rect.height())
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(block_color(look.t, facts.action.kind, name))
+        painter.setBrush(choose_block_color(look.t, facts.action.kind, name))
         painter.drawRoundedRect(box, 3, 3)
         inner = QRectF(max(left, axis.left) + 6, rect.top(), 0, rect.height())
         inner.setRight(min(right, axis.left + axis.width) - 4)
@@ -206,7 +206,7 @@ def paint_phase_blocks(
         painter.drawText(inner, MIDDLE, words)
 
 
-def block_color(t: WindowTheme, kind: str, name: str) -> QColor:
+def choose_block_color(t: WindowTheme, kind: str, name: str) -> QColor:
     if name == "hold":
         return QColor(STILL)
     fill = t.fill(kind)
@@ -321,7 +321,7 @@ def _in_sight(axis: Axis, seconds: float) -> bool:
 def paint_wave(
     painter: QPainter, look: TimingLook, rect: QRectF, axis: Axis, low: Array, high: Array
 ) -> None:
-    """Paint a sound. low, high `[W]`: its least and greatest in columns of pixels, -1..1; low greater where
+    """Paint a sound. low, high `[W]`: its least and greatest in columns of pixels, -1..1; low greater if
     there is none.
     """
     half = rect.height() / 2

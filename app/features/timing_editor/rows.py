@@ -1,4 +1,4 @@
-"""Where everything of the editor stands: for each action a title and its rows, from the top down."""
+"""Lay out the timing editor: a title and rows for each action, from the top down."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ TITLES = lazy_texts(
 )
 
 
-def row_size(row: str) -> tuple[float, float, float]:
+def measure_row_size(row: str) -> tuple[float, float, float]:
     return SIZES[row.split()[0]]
 
 
 @dataclass(frozen=True)
 class TrackRows:
-    """ident: of the action. rows: by name, across the whole width. title: where its name stands, empty where
-    it is the only one. dope: where its joints stand.
+    """ident: of the action. rows: by name, across the whole width. title: where its name stands, empty if it
+    is the only one. dope: where its joints stand.
     """
 
     ident: str
@@ -78,19 +78,21 @@ class TrackWants:
     joints: int = 0
 
 
-def least_rows_height(wants: Sequence[TrackWants]) -> float:
+def measure_least_rows_height(wants: Sequence[TrackWants]) -> float:
     """Return how many pixels the rows need."""
     return RULER + sum(_least(want, len(wants) > 1) for want in wants)
 
 
 def lay_out_rows(wants: Sequence[TrackWants], width: float, height: float) -> tuple[TrackRows, ...]:
-    """Return the rows of each action in a widget of some size, which is at least `least_rows_height` high."""
+    """Return the rows of each action in a widget of some size, which is at least
+    `measure_least_rows_height` high.
+    """
     return tuple(_laid_out(wants, width, height))
 
 
 def _laid_out(wants: Sequence[TrackWants], width: float, height: float) -> Iterator[TrackRows]:
     many = len(wants) > 1
-    spare = max(0.0, height - least_rows_height(wants)) / max(1, len(wants))
+    spare = max(0.0, height - measure_least_rows_height(wants)) / max(1, len(wants))
     y = RULER
     for want in wants:
         title = QRectF(0, y, width, TITLE if many else 0.0)
@@ -106,19 +108,19 @@ def _laid_out(wants: Sequence[TrackWants], width: float, height: float) -> Itera
 
 
 def _least(want: TrackWants, many: bool) -> float:
-    rows = sum(row_size(name)[0] + (0.0 if name == "phases" else GAP) for name in want.rows)
+    rows = sum(measure_row_size(name)[0] + (0.0 if name == "phases" else GAP) for name in want.rows)
     return rows + (TITLE if many else 0.0) + (want.joints * JOINT + GAP if want.joints else 0.0)
 
 
 def _heights(names: Sequence[str], spare: float) -> dict[str, float]:
     """Share what is left over: first what each row would like, then by its share."""
-    out = {name: row_size(name)[0] for name in names}
-    wanted = {name: row_size(name)[1] - row_size(name)[0] for name in names}
+    out = {name: measure_row_size(name)[0] for name in names}
+    wanted = {name: measure_row_size(name)[1] - measure_row_size(name)[0] for name in names}
     part = min(1.0, spare / total) if (total := sum(wanted.values())) > 0 else 0.0
     for name in names:
         out[name] += wanted[name] * part
-    left, shares = spare - total * part, sum(row_size(name)[2] for name in names)
+    left, shares = spare - total * part, sum(measure_row_size(name)[2] for name in names)
     for name in names:
-        more = left * row_size(name)[2] / shares if shares and left > 0 else 0.0
+        more = left * measure_row_size(name)[2] / shares if shares and left > 0 else 0.0
         out[name] = min(out[name] + more, MOST.get(name, 1e9))
     return out

@@ -1,4 +1,4 @@
-"""The project as it was when the actions were selected that are selected now."""
+"""Keep the project as it was when the present selection was made."""
 
 from __future__ import annotations
 

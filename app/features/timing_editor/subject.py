@@ -37,7 +37,7 @@ from metagraph.graph.clip_source import course_of
 from metagraph.graph.editing.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.graph.model import Project
 from metagraph.graph.repeating import seconds_played
-from metagraph.motion.dope import DopeSheet, dope_sheet
+from metagraph.motion.dope import DopeSheet, make_dope_sheet
 from metagraph.playback.timing.handles import move_handle
 
 Array = NDArray[Any]
@@ -67,8 +67,8 @@ class Shows:
 
 
 class Subject(QObject):
-    """changed: what is to be drawn, but for the playhead. before: the state that is compared with, None while
-    nothing is. marked: the state the present one would be compared with.
+    """changed: what is to be drawn, except for the playhead. before: the state that is compared with, None
+    while nothing is. marked: the state the present one would be compared with.
     """
 
     changed = Signal()
@@ -164,7 +164,7 @@ class Subject(QObject):
         self._hear()
         self.changed.emit()
 
-    # --- what is reckoned
+    # --- what is computed
 
     def facts(self) -> dict[str, Facts]:
         """Return what is shown of each action that is still there, in the order they were selected."""
@@ -204,7 +204,7 @@ class Subject(QObject):
         return self.thumbnails.strip(action.clip) if wanted and action is not None else []
 
     def sheet(self, ident: str) -> DopeSheet:
-        """Return what moves when in an action's clip; nothing where that is not wanted."""
+        """Return what moves when in an action's clip; nothing if that is not wanted."""
         project = self.document.project
         action = project.action(ident)
         entry = project.clips.get(action.clip) if action is not None else None
@@ -216,7 +216,7 @@ class Subject(QObject):
             groups = dict(zip(motion.skeleton.names, anatomy.project_parts(project), strict=True))
         once = self._sheets.setdefault(ident, Once())
         key = (tuple(groups.items()) if groups is not None else (),)
-        return once.of(key, (motion,), lambda: dope_sheet(motion, groups))
+        return once.of(key, (motion,), lambda: make_dope_sheet(motion, groups))
 
     def clip_axis(self, axis: Axis, facts: Facts) -> Axis:
         """Return the axis as it is for one clip of several."""
@@ -346,7 +346,7 @@ class Subject(QObject):
         transport.set_playing(True)
 
     def _skin(self) -> None:
-        """Show start, stroke and end of the first action beside the character, where that is wanted."""
+        """Show start, stroke and end of the first action beside the character, if that is wanted."""
         facts = next(iter(self.facts().values()), None) if self.shows.onion else None
         if facts is None:
             self.session.onion.show(None)

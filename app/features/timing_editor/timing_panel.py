@@ -33,7 +33,7 @@ from app.widgets.restyling import set_sheet
 from app.widgets.sentence import Sentence
 from metagraph.graph.edit_error import EditError
 from metagraph.motion.retime import SPEEDS
-from metagraph.playback.timing.speed_curves import joints_offered
+from metagraph.playback.timing.speed_curves import list_offered_joints
 
 LONGEST = 30  # letters of an action's name before it is cut in its middle
 
@@ -134,8 +134,11 @@ class TimingPanel(QWidget):
         first = next(iter(shown.values()), None)
         for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
-        joints = joints_offered(self.document.project)
-        offered = [(tr("Moving parts"), ""), *((words, name) for name, words in joints)]
+        joints = list_offered_joints(self.document.project)
+        offered = [
+            (tr("Moving parts"), ""),
+            *((tr(words) if words != name else name, name) for name, words in joints),
+        ]
         self.joint.show_entries(offered, self.subject.shows.joint)
         self.speed.show_value(common_value([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
         if first is None:

@@ -1,4 +1,4 @@
-"""What the editor shows of one action: all that is reckoned, made again only when what it rests on has
+"""What the editor shows of one action: all that is computed, made again only when what it rests on has
 changed.
 """
 
@@ -19,11 +19,15 @@ from metagraph.graph.checks import end_gaps
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
-from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, blocks_of, handles_of
-from metagraph.playback.timing.speed_curves import SpeedCurve, curves_of, speed_of
+from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, find_blocks, list_handles
+from metagraph.playback.timing.speed_curves import SpeedCurve, find_curves, speed_of
 from metagraph.suggest.jumps.found import Curves
-from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, far_ends
-from metagraph.suggest.stances.stance_distance import StanceDistance, distance_of, measure_stance_distance
+from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, find_far_ends
+from metagraph.suggest.stances.stance_distance import (
+    StanceDistance,
+    measure_stance_distance,
+    measure_stance_distances,
+)
 
 Array = NDArray[Any]
 
@@ -97,7 +101,7 @@ class Facts:
 
 class TimingTrack:
     """ident: of the action. The slow parts - speeds, distances - rest on its clip and its stances, not on its
-    times, so that a drag makes nothing of them anew.
+    times, so that a drag makes nothing of them again.
     """
 
     def __init__(self, ident: str) -> None:
@@ -107,8 +111,8 @@ class TimingTrack:
         self._facts: Once[Facts | None] = Once()
 
     def facts(self, project: Project, joint: str, curves: Callable[[Action], Curves | None]) -> Facts | None:
-        """Return what is shown of its action; None where that or its clip is gone. joint: whose curve is
-        drawn, "" for what the action moves. curves: gives what is known of its jumps.
+        """Return what is shown of its action; None if that or its clip is gone. joint: whose curve is drawn,
+        "" for what the action moves. curves: gives what is known of its jumps.
         """
         action = project.action(self.ident)
         entry = project.clips.get(action.clip) if action is not None else None
@@ -130,7 +134,7 @@ class TimingTrack:
         curves, speeds = self._curves.of(
             (action.clip, action.layer, action.limb, joint, tuple(project.roles.items())),
             (entry.motion, project.skeleton),
-            lambda: (curves_of(project, action, joint), speed_of(project, action)[0]),
+            lambda: (find_curves(project, action, joint), speed_of(project, action)[0]),
         )
         graph = project.graphs[action.layer]
         loops = tuple(a for s in (action.stance, action.end_stance) if s for a in graph.of(s, "stance")[:1])
@@ -148,12 +152,12 @@ class TimingTrack:
             plain_action_name(action.name, stance.name if stance is not None else "", limb),
             entry,
             project.span(action),
-            handles_of(project, action),
-            blocks_of(project, action),
+            list_handles(project, action),
+            find_blocks(project, action),
             speeds,
             curves,
             seen,
-            distance_of(project, action, seen, both),
+            measure_stance_distances(project, action, seen, both),
             words,
             fine,
             list_stays(entry),
@@ -198,5 +202,5 @@ def _verdict(project: Project, action: Action, seen: SeenJumps | None) -> tuple[
     start, end = project.span(action)
     first, last = seen.cost("start", start), seen.cost("end", end)
     costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
-    far = far_ends(project, action)
+    far = find_far_ends(project, action)
     return tr_phrase(describe_ends(costs, far)), max(costs.values()) <= 1 and not far

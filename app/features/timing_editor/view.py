@@ -36,7 +36,7 @@ from app.features.timing_editor.rows import (
     TrackRows,
     TrackWants,
     lay_out_rows,
-    least_rows_height,
+    measure_least_rows_height,
 )
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.track import Facts, KeptHand, describe_handle
@@ -114,7 +114,7 @@ class TimingView(QWidget):
             self.numbers = {}
         if clip != self._clip:
             self._clip, self._near = clip, None
-        self.setMinimumHeight(round(least_rows_height(self.wants())) + 2)
+        self.setMinimumHeight(round(measure_least_rows_height(self.wants())) + 2)
         self.update()
 
     def wants(self) -> list[TrackWants]:

@@ -17,7 +17,7 @@ from metagraph.formats.imports import Loaded
 from metagraph.formats.store import relative
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.mirroring import TwinClip, mirror_clips, place_twins, twin_clips
+from metagraph.graph.editing.mirroring import TwinClip, make_twin_clips, mirror_clips, place_twins
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import adopt
@@ -43,7 +43,7 @@ def make_twins(shell: Shell) -> None:
         return
 
     def work(job: WindowJob) -> list[tuple[TwinClip, Loaded]]:
-        made = twin_clips(project, actions) if actions else mirror_clips(project, clips)
+        made = make_twin_clips(project, actions) if actions else mirror_clips(project, clips)
         out = []
         for n, twin in enumerate(made):
             job.tell(n, len(made), twin.name)

@@ -1,4 +1,4 @@
-"""What an empty window begins with: import, practice, the sample, what was worked on last."""
+"""The start page of an empty window: import, practice, the sample, recent projects."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def contribute(shell: Shell) -> Contribution:
     pages: list[WelcomePage] = []
 
     def begin() -> None:
-        """Lay the page over the graph, or over the large panel where there is none; once there are places."""
+        """Lay the page over the graph, or over the large panel if there is none; once there are places."""
         places = shell.services[PanelPlaces]
 
         def rooms() -> list[QWidget]:

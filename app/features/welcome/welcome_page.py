@@ -1,4 +1,4 @@
-"""The page over an empty graph: a few ways to begin, each with a picture and what it is for."""
+"""The page over an empty graph: a few ways to start, each with a picture and a description."""
 
 from __future__ import annotations
 

@@ -12,9 +12,9 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.file_names import file_stems
+from metagraph.common.file_names import make_file_stems
 from metagraph.common.wording import phrase, plural_phrase
-from metagraph.common.xml_text import replaced_note
+from metagraph.common.xml_text import describe_replaced
 from metagraph.engines.engine_machine import EngineState, Machine, animations, machines, write_machine_glb
 from metagraph.engines.engine_names import name_files, write_word
 from metagraph.engines.targets.losses import MACHINE
@@ -76,7 +76,7 @@ def write_blocks(order: ExportOrder) -> ExportedFiles:
         except RequestError as error:
             notes.append(phrase("skipped '{name}': {why}", name=name, why=describe_error(error)))
             continue
-        lost = replaced_note([msgspec.to_builtins(numbered)])
+        lost = describe_replaced([msgspec.to_builtins(numbered)])
         if lost is not None:
             notes.append(phrase("{file}: {what}", file=path.name, what=lost))
         write_atomically(path, content)
@@ -102,7 +102,7 @@ def _numbered(asks: tuple[a.AnyRequest, ...]) -> Iterator[a.AnyRequest]:
 
 def _file(name: str, taken: list[Path]) -> str:
     stem = re.sub(r"[^\w-]+", "_", name).strip("_")
-    return file_stems([*(path.stem for path in taken), stem], "block")[-1]
+    return make_file_stems([*(path.stem for path in taken), stem], "block")[-1]
 
 
 # --- SmartBody
@@ -110,7 +110,7 @@ def _file(name: str, taken: list[Path]) -> str:
 HANDS = {"left": "LEFT_HAND", "right": "RIGHT_HAND", "both": "BOTH_HANDS"}
 
 
-def gesture_map(name: str, built: tuple[Machine, ...], files: Mapping[str, str]) -> str:
+def format_gesture_map(name: str, built: tuple[Machine, ...], files: Mapping[str, str]) -> str:
     """Return a Python script for SmartBody that maps lexeme, type, hand and posture to animations, which it
     calls by their files. files: animation -> the stem of its file.
     """
@@ -158,7 +158,7 @@ def write_smartbody(order: ExportOrder) -> ExportedFiles:
     clips = [clip for clip in animations(order.project, built) if clip.name in wanted]
     idents = {s.name: s.action.id for m in built for s in m.states}
     names = name_files({clip.name: idents[clip.name] for clip in clips})
-    write_atomically(script, gesture_map(order.stem, built, names).encode())
+    write_atomically(script, format_gesture_map(order.stem, built, names).encode())
     files = [script]
     for n, (clip, name) in enumerate(zip(clips, names.values(), strict=True)):
         order.tell(n, len(clips), clip.name)

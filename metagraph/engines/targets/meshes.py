@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from metagraph.engines.export import mesh_on
+from metagraph.engines.export import place_mesh_on
 from metagraph.engines.targets.target import ExportOrder
 from metagraph.motion.character_mesh import CharacterMesh
 
@@ -10,5 +10,5 @@ from metagraph.motion.character_mesh import CharacterMesh
 def mesh_of(order: ExportOrder) -> tuple[CharacterMesh | None, tuple[str, ...]]:
     """Return the mesh that goes with an order, and what there is to say about it. Raises FileError."""
     assert order.project.skeleton is not None
-    body, notes = mesh_on(order.project.skeleton, order.contents.character, order.project.hidden)
+    body, notes = place_mesh_on(order.project.skeleton, order.contents.character, order.project.hidden)
     return body, tuple(notes)

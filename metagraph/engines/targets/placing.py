@@ -1,4 +1,4 @@
-"""Putting an export's files where they are wanted, whole, and over nothing that is not its own.
+"""Put an export's files into their folder, completely, without replacing foreign files.
 
 An export is staged in a folder of its own first. A record says which target, which project and which files
 stand there, with their digests, so that writing again knows its own files; what else stands in the way is
@@ -53,7 +53,7 @@ class ExportRecord(msgspec.Struct, frozen=True):
 
 
 class ForeignFilesError(ExportError):
-    """Files stand where the export would go that are of something else, or were changed since. files: their
+    """Files in the folder belong to something else, or were changed since they were exported. files: their
     paths in the folder.
     """
 
@@ -68,7 +68,7 @@ class ForeignFilesError(ExportError):
 
 
 def read_record(folder: Path) -> ExportRecord | None:
-    """Return what was exported into a folder; None where nothing was, or where it cannot be told."""
+    """Return the record of the export in a folder, or None if there is no readable record."""
     try:
         return msgspec.json.decode(read_file(folder / RECORD, TEXT_FILE), type=ExportRecord)
     except (FileError, msgspec.DecodeError, UnicodeDecodeError):
@@ -76,9 +76,9 @@ def read_record(folder: Path) -> ExportRecord | None:
 
 
 def foreign(folder: Path, wanted: Mapping[str, str], target: str, project: str) -> tuple[str, ...]:
-    """Return which files would be overwritten that are of something else, or were changed since they were
-    written. wanted: the new files by name, with their digests; one that stands there already, byte for byte,
-    is in nobody's way.
+    """Return the files that would be overwritten although they belong to something else, or were changed.
+    wanted: the new files by name, with their digests; one that stands there already, byte for byte, is in
+    nobody's way.
     """
     known = read_record(folder)
     mine = known if known is not None and (known.target, known.project) == (target, project) else None

@@ -61,7 +61,7 @@ class Moving:
     shifted: tuple[int, ...]
 
 
-def clip_asset(
+def format_clip_asset(
     clip: Clip, name: str, moving: Moving, base: Pose, loop: bool, reference: Inline | None
 ) -> bytes:
     """Return an AnimationClip. base: where joints stand that the clip does not shift. reference: the clip of

@@ -21,7 +21,7 @@ from metagraph.engines.engine_names import name_files
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
-from metagraph.engines.targets.unity_clips import Moving, clip_asset
+from metagraph.engines.targets.unity_clips import Moving, format_clip_asset
 from metagraph.engines.targets.unity_yaml import (
     CLIP,
     CONTROLLER,
@@ -297,7 +297,7 @@ def write(order: ExportOrder) -> ExportedFiles:
     still = Clip(BASE, skeleton, 30, np.stack([base.rotations] * 2), np.stack([base.translations[:1]] * 2))
     put(
         f"{BASE}.anim",
-        clip_asset(still, BASE, _moving(range(len(skeleton)), shifted), base, True, None),
+        format_clip_asset(still, BASE, _moving(range(len(skeleton)), shifted), base, True, None),
         CLIP,
     )
     reference = to(CLIP, project.name, f"{BASE}.anim")
@@ -308,7 +308,11 @@ def write(order: ExportOrder) -> ExportedFiles:
             order.tell(len(made) // 2, len(states) + len(built) + 3, state.name)
             pose = None if machine.layer == "body" else reference
             name = names[state.name]
-            put(f"{name}.anim", clip_asset(clips[state.name], name, moving, base, state.loop, pose), CLIP)
+            put(
+                f"{name}.anim",
+                format_clip_asset(clips[state.name], name, moving, base, state.loop, pose),
+                CLIP,
+            )
     seconds = {name: clip.duration for name, clip in clips.items()}
     put(f"{order.stem}.controller", controller(project, order.stem, built, names, seconds), CONTROLLER)
     put(f"{order.stem}.unity.md", write_unity_guide(order.stem, skeleton, built).encode(), None)

@@ -18,15 +18,21 @@ from metagraph.engines.export import list_exported_clips
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.runtimes import write_with_sounds
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
-from metagraph.formats.usd.usda import Names, Prim, usda_number, usda_string, usda_strings
-from metagraph.formats.usd.writer import CHARACTER, clip_paths, keep_name, write_usd
+from metagraph.formats.usd.usda import (
+    Names,
+    Prim,
+    format_usda_number,
+    format_usda_string,
+    format_usda_strings,
+)
+from metagraph.formats.usd.writer import CHARACTER, find_clip_paths, keep_name, write_usd
 
 GRAPH = f"{CHARACTER}/Graph"
 
 
-def graph_prims(document: dict[str, Any]) -> Prim:
+def make_graph_prims(document: dict[str, Any]) -> Prim:
     """Return the graph of an export's JSON as prims."""
-    places = clip_paths([clip["name"] for clip in document["clips"]])
+    places = find_clip_paths([clip["name"] for clip in document["clips"]])
     clips = {clip["id"]: places[clip["name"]] for clip in document["clips"]}
     out = Prim("Scope", "Graph")
     for layer in document["order"]:
@@ -74,7 +80,7 @@ def _places(where: str, rows: list[dict[str, Any]], scope: Prim) -> dict[str, st
 
 
 def _relationship(name: str, to: list[str | None]) -> list[str]:
-    """Return a relationship to prims, nothing where one is missing."""
+    """Return a relationship to prims, nothing if one is missing."""
     if None in to or not to:
         return []
     ends = ", ".join(f"<{place}>" for place in to)
@@ -96,14 +102,14 @@ def _value(value: Any) -> tuple[str, str]:
     if isinstance(value, bool):
         return "bool", "true" if value else "false"
     if isinstance(value, int | float):
-        return "double", usda_number(value)
+        return "double", format_usda_number(value)
     if isinstance(value, str):
-        return "string", usda_string(value)
+        return "string", format_usda_string(value)
     if isinstance(value, list) and all(isinstance(v, str) for v in value):
-        return "string[]", usda_strings(value)
+        return "string[]", format_usda_strings(value)
     if isinstance(value, list) and all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
-        return "double[]", f"[{', '.join(map(usda_number, value))}]"
-    return "string", usda_string(json.dumps(value, ensure_ascii=False))
+        return "double[]", f"[{', '.join(map(format_usda_number, value))}]"
+    return "string", format_usda_string(json.dumps(value, ensure_ascii=False))
 
 
 def write(order: ExportOrder) -> ExportedFiles:
@@ -127,14 +133,14 @@ def write(order: ExportOrder) -> ExportedFiles:
         list_exported_clips(project),
         body,
         called.get(first),
-        [graph_prims(document)],
+        [make_graph_prims(document)],
         [
             "customData = {",
             "    dictionary metagraph = {",
-            f"        string name = {usda_string(document['name'])}",
-            f"        double version = {usda_number(document['metagraph'])}"
+            f"        string name = {format_usda_string(document['name'])}",
+            f"        double version = {format_usda_number(document['metagraph'])}"
             if isinstance(document["metagraph"], int | float)
-            else f"        string version = {usda_string(str(document['metagraph']))}",
+            else f"        string version = {format_usda_string(str(document['metagraph']))}",
             f"        asset export = @./{made.files[0].name}@",
             "    }",
             "}",

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.file_names import file_stems
+from metagraph.common.file_names import make_file_stems
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
 from metagraph.engines.export_error import ExportError
@@ -139,7 +139,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
     actions = list(project.actions())
     made = []
     for n, (action, stem) in enumerate(
-        zip(actions, file_stems(action.name for action in actions), strict=True)
+        zip(actions, make_file_stems(action.name for action in actions), strict=True)
     ):
         order.tell(n, len(actions), "clips")
         clip = cut_action(project, action)

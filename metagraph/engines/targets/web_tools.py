@@ -44,7 +44,7 @@ LARGEST = 64 << 20  # bytes of one of their files
 
 
 def web_tools_folder() -> Path | None:
-    """Return the folder they are kept in between exports; None where nobody's home is known."""
+    """Return the folder they are kept in between exports; None if nobody's home is known."""
     return cache_folder(f"web-{THREE}-{ESBUILD}")
 
 
@@ -54,9 +54,7 @@ def is_three_at_hand() -> bool:
 
 
 def read_three() -> dict[str, bytes] | None:
-    """Return three.js's files by their names; None where they are not kept, or are not those they should
-    be.
-    """
+    """Return three.js's files by their names; None if they are not kept, or are not those they should be."""
     modules = _modules()
     if modules is None:
         return None
@@ -69,7 +67,7 @@ def read_three() -> dict[str, bytes] | None:
 
 
 def bundle_module(entry: Path) -> bytes | None:
-    """Return a module with all it imports, three.js too, as one minified file; None where that cannot be."""
+    """Return a module with all it imports, three.js too, as one minified file; None if that cannot be."""
     modules, program, files = _modules(), _esbuild(), read_three()
     if modules is None or program is None or files is None:
         return None

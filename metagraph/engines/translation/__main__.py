@@ -1,4 +1,4 @@
-"""`python -m metagraph.engines.translation`: write the translated modules anew."""
+"""`python -m metagraph.engines.translation`: write the translated modules again."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ NATIVE = {  # records that are not translated: their headers
 
 
 class Cpp(Braces):
-    """One module, `name.hpp`. Records are told by `Ref`, which may be nothing."""
+    """One module, `name.hpp`. Records are given by `Ref`, which may be nothing."""
 
     STEP = "    "
     WIDTH = 120
@@ -403,7 +403,7 @@ class Cpp(Braces):
         return ("lang::at(", self.plain(node.of), ", ", self.plain(node.place), ")")
 
     def replaced(self, node: x.Replaced) -> Document:
-        """The record made anew, with all its fields."""
+        """The record made again, with all its fields."""
         changes = dict(node.changes)
         of: Document = "this" if isinstance(node.of, x.This) else self.strong(node.of, ALONE)
         given: list[Document] = [

@@ -465,7 +465,7 @@ class CSharp(Braces):
         return (of, "[", self.plain(node.place), "]")
 
     def replaced(self, node: x.Replaced) -> Document:
-        """The record made anew, with all its fields."""
+        """The record made again, with all its fields."""
         record = self.record_of(node.type)
         changes = dict(node.changes)
         of = self.strong(node.of, ALONE)

@@ -106,7 +106,7 @@ NATIVE = {
     "metagraph.playback.planning.vigour": "vigour",  # as are phases
     "metagraph.playback.planning.prominence": "prominence",  # as are phases
     "metagraph.playback.planning.hashing": "hashing",  # integers of 32 bits, which languages have differently
-    "metagraph.graph.words": "words",  # the words layers, kinds and modes are told apart by
+    "metagraph.graph.words": "words",  # the words layers, kinds and modes are distinguished by
     "metagraph.graph.face.names": "words",  # and mouth shapes
     "metagraph.graph.life": "life",  # the life layers' settings
     "metagraph.playback.life.spots": "spots",  # names or points

@@ -16,7 +16,7 @@ from mypy.types import get_proper_type
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.lowering_expressions import Expressions
 from metagraph.engines.translation.scoping import declare_variables
-from metagraph.engines.translation.source import SourceModule, about_of, list_defined
+from metagraph.engines.translation.source import SourceModule, list_defined, unwrap_docstring
 from metagraph.engines.translation.typed import BITS
 
 
@@ -49,7 +49,7 @@ class _Lowering(Expressions):
                 raise self.refuse(
                     node, f"{type(node).__name__} at a module's level", "have constants, records, functions"
                 )
-        return x.Module(self.name, about_of(self.source.tree.defs), tuple(parts))
+        return x.Module(self.name, unwrap_docstring(self.source.tree.defs), tuple(parts))
 
     def _constant(self, node: m.AssignmentStmt, above: tuple[str, ...]) -> x.Constant | None:
         (target,) = node.lvalues
@@ -95,7 +95,9 @@ class _Lowering(Expressions):
         frozen = any(
             isinstance(d, m.CallExpr) and "frozen" in d.arg_names for d in node.decorators
         )  # @dataclass(frozen=True)
-        return x.RecordClass(node.name, tuple(fields), tuple(methods), about_of(node.defs.body), not frozen)
+        return x.RecordClass(
+            node.name, tuple(fields), tuple(methods), unwrap_docstring(node.defs.body), not frozen
+        )
 
     def _function(self, node: m.FuncDef, above: tuple[str, ...], is_property: bool = False) -> x.Function:
         if node.is_generator or node.is_coroutine:
@@ -134,7 +136,14 @@ class _Lowering(Expressions):
         )
         public = not node.name.startswith("_")
         return x.Function(
-            node.name, tuple(parameters), returns, body, about_of(node.body.body), public, is_property, above
+            node.name,
+            tuple(parameters),
+            returns,
+            body,
+            unwrap_docstring(node.body.body),
+            public,
+            is_property,
+            above,
         )
 
     def above(self, last: int, line: int) -> tuple[str, ...]:
@@ -152,7 +161,7 @@ class _Body:
 
     def statements(self) -> tuple[x.Statement, ...]:
         body = self.function.body.body
-        if about_of(body):
+        if unwrap_docstring(body):
             body = body[1:]
         return self.block(body, self.function.line)
 

@@ -10,7 +10,7 @@ from mypy import types as t
 from mypy.types import get_proper_type
 
 from metagraph.engines.translation import tree as x
-from metagraph.engines.translation.source import full_name
+from metagraph.engines.translation.source import join_full_name
 from metagraph.engines.translation.typed import BITS, Typed
 
 PLAIN = {
@@ -46,12 +46,12 @@ class Calls(Typed):
         if formatted is not None:
             return formatted
         callee = node.callee
-        full = full_name(callee)
+        full = join_full_name(callee)
         kind = self.of(node)
         if full in PLAIN:
             plain = [
                 a for a, n in zip(node.args, node.arg_names, strict=True) if n is None
-            ]  # strict=True is told by zip
+            ]  # strict=True is given by zip
             given = self.expressions(plain)
             if "key" in node.arg_names:
                 given = (self._keys(node, given[0]), given[1])
@@ -131,7 +131,7 @@ class Calls(Typed):
 
     def _most(self, node: m.CallExpr, kind: x.Type) -> x.Expression:
         """max and min: of two or more values, or of a list, with what an empty one gives."""
-        word = full_name(node.callee).rpartition(".")[2]
+        word = join_full_name(node.callee).rpartition(".")[2]
         given = self.expressions(node.args)
         if len(node.args) > 1:
             if set(node.arg_names) != {None}:
@@ -241,8 +241,8 @@ class Calls(Typed):
         return x.New(kind, self._placed(node, names, wanted, defaults))
 
     def fitted(self, value: x.Expression, wanted: x.Type) -> x.Expression:
-        """Return a value as a certain type: what is empty gets its items' type, a whole number becomes
-        one with a fraction where that is written down.
+        """Return a value as a certain type: what is empty gets its items' type, a whole number becomes one
+        with a fraction if that is written down.
         """
         if isinstance(value, x.Gathered | x.Mapped) and wanted.bare.kind in ("list", "map", "set"):
             return replace(value, type=wanted.bare)
@@ -258,13 +258,13 @@ class Calls(Typed):
         return value
 
     def default(self, node: m.Expression, kind: x.Type) -> x.Expression:
-        if isinstance(node, m.CallExpr) and full_name(node.callee) == "dataclasses.field":
+        if isinstance(node, m.CallExpr) and join_full_name(node.callee) == "dataclasses.field":
             if "default" in node.arg_names:
                 return self.default(node.args[node.arg_names.index("default")], kind)
             (factory,) = node.args
             none = x.Gathered(kind, ())
             empty = {"builtins.dict": x.Mapped(kind, ()), "builtins.list": none, "builtins.set": none}
-            full = full_name(factory)
+            full = join_full_name(factory)
             if full not in empty:
                 raise self.refuse(
                     node, "a default made by a function", "use an empty list, map or set, or a value"

@@ -23,7 +23,7 @@ from metagraph.engines.translation.layout import (
 )
 
 LANGUAGES = Path(__file__).with_name("languages.toml")
-# How strongly operators bind, the same in C-like languages but for bits, which are put in brackets always.
+# How strongly operators bind, the same in C-like languages except for bits, which are put in brackets always.
 ALONE, UNARY, POWER, TIMES, PLUS, SHIFT, COMPARE, NOT, AND, OR, CHOICE = range(11)
 STRENGTH = {
     "*": TIMES, "/": TIMES, "//": TIMES, "%": TIMES, "+": PLUS, "-": PLUS, "<<": SHIFT, ">>": SHIFT,
@@ -49,7 +49,7 @@ def pascal(name: str) -> str:
 class Printer:
     """Prints a module in one language. Subclasses say how each piece of tree is written.
 
-    How each `Builtin` is written is told in `languages.toml`.
+    How each `Builtin` is written is given in `languages.toml`.
     """
 
     STEP = "  "

@@ -43,7 +43,7 @@ class SourceModule:
             place[token.start[0]] = words
 
 
-def about_of(body: Sequence[m.Statement]) -> str:
+def unwrap_docstring(body: Sequence[m.Statement]) -> str:
     """Return a docstring in one paragraph a line."""
     if not body or not isinstance(body[0], m.ExpressionStmt) or not isinstance(body[0].expr, m.StrExpr):
         return ""
@@ -59,6 +59,6 @@ def list_defined(node: m.Statement) -> list[str]:
     return [one.name for one in targets if isinstance(one, m.NameExpr)]
 
 
-def full_name(node: m.Expression) -> str:
+def join_full_name(node: m.Expression) -> str:
     full = node.fullname if isinstance(node, m.RefExpr) else ""
     return full.replace("_bisect.", "bisect.") if full else ""

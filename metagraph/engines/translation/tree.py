@@ -18,7 +18,7 @@ TypeKind = Literal[
 @dataclass(frozen=True)
 class Type:
     """of: the item of a list, set or optional; key and value of a map; a tuple's items; a function's
-    arguments and then what it returns. name: a record's class. module: where that is.
+    arguments and then what it returns. name: a record's class. module: if that is.
     """
 
     kind: TypeKind

@@ -21,7 +21,7 @@ from metagraph.formats.conversations.words import (
     sides_of,
     tell_unheard,
 )
-from metagraph.formats.store import path_for_project
+from metagraph.formats.store import make_path_for_project
 from metagraph.formats.transcripts.reader import read_transcript
 from metagraph.formats.transcripts.words import count
 from metagraph.graph.conversation.model import (
@@ -162,7 +162,7 @@ def _side(
         _tell_wordless(reading, called, voice, shared, segmented, len(found))
     elif words and not shared and said.segments is None:
         tell_unheard(reading.notes, called, words, voice)
-    path = path_for_project(voice.path, folder)
+    path = make_path_for_project(voice.path, folder)
     return Side(
         name=said.name,
         audio=path,

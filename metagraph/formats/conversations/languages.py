@@ -1,5 +1,5 @@
-"""Which language each of those who talk is read in: what was chosen, or what their words tell; and what there
-is to say of that.
+"""Find the language of each speaker: the chosen one, or the one that the words suggest; and report how it was
+found.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Speaking:
 def languages_of(
     notes: list[str], called: Sequence[str], said: Sequence[TranscribedSide], speaking: Speaking
 ) -> tuple[LanguagePack | None, ...]:
-    """Return what each is read in, None where nobody knows; say how that was found."""
+    """Return what each is read in, None if nobody knows; say how that was found."""
     spoken = [_spoken(one, speaking) for one in said]
     if speaking.language != AUTO:
         chosen = speaking.packs[speaking.language]
@@ -126,7 +126,7 @@ def _all_alike(spoken: Sequence[SpokenLanguage]) -> list[str]:
 
 
 def _spoken(said: TranscribedSide, speaking: Speaking) -> SpokenLanguage | None:
-    """Return what one's words tell; None where there are none."""
+    """Return what one's words tell; None if there are none."""
     texts = [w.text for w in said.words] or [s.text for s in said.segments or () if s.text]
     return detect_language(texts, tuple(speaking.packs.values())) if texts else None
 

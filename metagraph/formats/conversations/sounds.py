@@ -130,7 +130,7 @@ def _channel(n: int, channels: int) -> str:
 
 
 def _sounding(samples: Array) -> list[int]:
-    """Return which channels `[C, N]` have a sound of their own, all where nobody has; none where all have the
+    """Return which channels `[C, N]` have a sound of their own, all if nobody has; none where all have the
     same.
     """
     loud = np.abs(samples).max(1)

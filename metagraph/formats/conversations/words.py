@@ -42,8 +42,8 @@ class SideVoice:
 
 @dataclass(frozen=True)
 class TranscribedSide:
-    """What a transcript says of one side. segments: None where it says nothing of them; whom they are said to
-    is a place among `names`, all who speak in the transcript. path: the transcript's, None without one.
+    """What a transcript says of one side. segments: None if it says nothing of them; whom they are said to is
+    a place among `names`, all who speak in the transcript. path: the transcript's, None without one.
     """
 
     name: str = ""
@@ -244,8 +244,8 @@ def _level(voice: SideVoice, start: float, end: float) -> float:
 
 
 def cut_words_to_sound(notes: list[str], called: str, said: TranscribedSide, length: float) -> list[Word]:
-    """Return the words as far as the sound goes, seconds. Raises FileError where it has gone before the
-    first.
+    """Return the words as far as the sound goes, seconds. Raises FileError if it has gone before
+    the first.
     """
     words = said.words
     out = [
@@ -279,7 +279,7 @@ def cut_words_to_sound(notes: list[str], called: str, said: TranscribedSide, len
 
 
 def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: SideVoice) -> None:
-    """Tell of words where nothing is to be heard: the transcript of another recording, or shifted."""
+    """Report words if nothing is to be heard: the transcript of another recording, or shifted."""
     spoken = activity(voice.heard, None, None)
     heard = sum(any(s.start - 0.2 < (w.start + w.end) / 2 < s.end + 0.2 for s in spoken) for w in words)
     if len(words) >= 5 and heard < 0.5 * len(words):

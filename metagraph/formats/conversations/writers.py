@@ -29,7 +29,7 @@ Row = tuple[float, float, str]  # start, end (seconds), text
 
 def write_elan(conversation: Conversation, path: str | Path, folder: Path | None = None) -> None:
     """Write an ELAN annotation (.eaf, format 3.0), times in milliseconds. folder: what the sides' sounds are
-    relative to, None where they are absolute. Raises FileError.
+    relative to, None if they are absolute. Raises FileError.
     """
     path = Path(path)
     out = io.StringIO()

@@ -19,7 +19,7 @@ from metagraph.formats.fbx.processes import ReaderError, convert
 from metagraph.formats.gltf.clips import read_animations
 from metagraph.formats.gltf.file import parse_gltf
 from metagraph.formats.gltf.skeleton import build_rig
-from metagraph.formats.takes import unique_takes
+from metagraph.formats.takes import make_takes_unique
 from metagraph.motion.clip import Clip
 
 TIMEOUT = 120.0  # seconds for one file
@@ -60,7 +60,7 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
             phrase("its animations"),
             phrase("Export it with its animation baked."),
         )
-    return unique_takes(clips)
+    return make_takes_unique(clips)
 
 
 def _converted(path: Path, timeout: float) -> bytes:

@@ -35,7 +35,7 @@ class _Part:
     held: int = -1  # the only joint that moves it
 
 
-def character_of(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
+def read_character_mesh(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
     """Return the default scene's meshes on the rig's skeleton. Raises FileError if there are none."""
     gltf.require_meshes()
     doc = gltf.json

@@ -25,7 +25,7 @@ from metagraph.formats.gltf.morphs import morph_weights
 from metagraph.formats.gltf.sampling import FrameGrid
 from metagraph.formats.gltf.skeleton import GltfRig
 from metagraph.formats.gltf.tracks import NotFiniteError, Still, TakeTracks, spend_keys
-from metagraph.formats.takes import drop_stray_poses, frame_rate, repair_note, take_name, take_repair
+from metagraph.formats.takes import drop_stray_poses, guess_frame_rate, repair_note, take_name, take_repair
 from metagraph.motion.clip import Clip
 
 Array = NDArray[Any]
@@ -106,7 +106,9 @@ def _planned(
     if not end - start <= CLIP_SECONDS:
         gltf.fail(phrase("it lasts {value:.3g} s", value=end - start), where)
     wanted = extras(animation.extras).get("fps")
-    fps = frame_rate(own, float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None)
+    fps = guess_frame_rate(
+        own, float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None
+    )
     frames = max(1, round((end - start) * fps) + 1)
     gltf.spend(frames * len(rig.nodes) * 32, where)
     if start * fps > 0.5:

@@ -10,14 +10,14 @@ import numpy as np
 from metagraph.common.files import guard_reader
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.formats.gltf.character import character_of
+from metagraph.formats.gltf.character import read_character_mesh
 from metagraph.formats.gltf.clips import read_animations
 from metagraph.formats.gltf.file import extras, open_gltf
 from metagraph.formats.gltf.morphs import read_morph_names
 from metagraph.formats.gltf.skeleton import build_rig
 from metagraph.formats.gltf.vrm_animation import find_humanoid_bones
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.takes import unique_takes
+from metagraph.formats.takes import make_takes_unique
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
 
@@ -53,7 +53,7 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
             phrase("its animations"),
             phrase("Export it with its animation."),
         )
-    return unique_takes(clips)
+    return make_takes_unique(clips)
 
 
 @guard_reader
@@ -63,7 +63,7 @@ def read_character(path: str | Path) -> CharacterMesh:
     FileError.
     """
     gltf = open_gltf(path)
-    return character_of(gltf, build_rig(gltf))
+    return read_character_mesh(gltf, build_rig(gltf))
 
 
 @guard_reader

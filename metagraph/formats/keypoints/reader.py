@@ -37,8 +37,8 @@ from metagraph.mimicry.people import SeenPerson, follow_person
 
 Array = NDArray[Any]
 
-FPS = 30.0  # frames a second, where nothing says how many
-PICTURE = (16.0, 9.0)  # what a picture measures, where nothing says it
+FPS = 30.0  # frames a second, if nothing says how many
+PICTURE = (16.0, 9.0)  # what a picture measures, if nothing says it
 _CUT = "Correct them, or cut the recording into pieces."
 _WHOLE = ("frames", "data", "results", "poses", "predictions", "instance_info")
 _FRAME_NAME = re.compile(r"(\d+)(?:_keypoints)?\.json$", re.I)

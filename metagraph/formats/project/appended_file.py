@@ -29,7 +29,7 @@ class AppendedFile:
         self._folder: Identity | None = None
 
     def begin(self, content: bytes, like: Access | None, sync: bool) -> None:
-        """Write it anew, whole or not at all. like: who may read it. sync: wait for the disk."""
+        """Write it again, whole or not at all. like: who may read it. sync: wait for the disk."""
         replace_file(self.path, content, sync, like)  # until it is there, what was open is all there is
         self.close()
         self._like, self._torn, self._size = like, False, len(content)
@@ -61,7 +61,7 @@ class AppendedFile:
 
     def look(self) -> str:
         """Return what has become of it since it was opened: "" nothing; "moved", with its folder, where it
-        was followed; "removed", and it was written again. Raises OSError where neither can be.
+        was followed; "removed", and it was written again. Raises OSError if neither can be.
         """
         if self._handle is None:
             self._open()
@@ -147,7 +147,7 @@ def identity_from(found: os.stat_result) -> Identity:
 
 
 def identity_of(path: Path) -> Identity | None:
-    """Return what a file or folder is known by, whatever its name; None where there is none."""
+    """Return what a file or folder is known by, whatever its name; None if there is none."""
     try:
         return identity_from(path.stat())
     except (OSError, ValueError):
@@ -155,7 +155,7 @@ def identity_of(path: Path) -> Identity | None:
 
 
 def path_of(handle: int | None) -> Path | None:
-    """Return where an open file is by now; None where the system does not tell, or it was removed."""
+    """Return where an open file is by now; None if the system does not tell, or it was removed."""
     if handle is None:
         return None
     try:
@@ -172,8 +172,8 @@ def path_of(handle: int | None) -> Path | None:
 
 
 def folder_now(folder: Path, known: Identity | None, inside: Path | None = None) -> Path | None:
-    """Return where a folder is by now that is not at its path any more; None where it is there still, or
-    nobody knows.
+    """Return where a folder is by now that is not at its path any more; None if it is there still, or nobody
+    knows.
 
     known: what it is known by. inside: where a file in it was found. Else it is looked for beside its path.
     """

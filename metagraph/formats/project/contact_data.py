@@ -21,7 +21,7 @@ _FIELDS = ("hand", "place", "to", "start", "end", "ease_in", "ease_out", "keys")
 MOST = 100_000  # keys of a contact
 
 
-def contacts_data(contacts: Iterable[ContactSpan]) -> list[Data]:
+def encode_contacts(contacts: Iterable[ContactSpan]) -> list[Data]:
     """Return contacts; a key is a row of eight: clip seconds, where the wrist is, how the hand is turned."""
     out = []
     for span in contacts:
@@ -31,7 +31,7 @@ def contacts_data(contacts: Iterable[ContactSpan]) -> list[Data]:
     return out
 
 
-def contacts_from(data: Data, where: str) -> tuple[ContactSpan, ...]:
+def decode_contacts(data: Data, where: str) -> tuple[ContactSpan, ...]:
     """Return an action's contacts from its data. Raises DataError."""
     if "contacts" not in data:
         return ()

@@ -16,27 +16,27 @@ import msgspec
 import numpy as np
 
 from metagraph.common.network_paths import close_path, original_path
-from metagraph.formats.clip_identity import without_clip_identity
-from metagraph.formats.project.contact_data import contacts_data, contacts_from
+from metagraph.formats.clip_identity import remove_clip_identity
+from metagraph.formats.project.contact_data import decode_contacts, encode_contacts
 from metagraph.formats.project.fields import (
     LARGEST,
     Data,
     DataError,
     as_plain,
+    decode_joint_weights,
+    encode_joint_weights,
     fill_fields,
     floats,
     get,
+    is_too_large,
     items,
-    joint_weights_data,
-    joint_weights_from,
     read_texts,
     refuse_unknown_fields,
     require_one_of,
     round_number,
     sparse,
-    too_large,
 )
-from metagraph.formats.project.manual_data import manual_data, manual_from
+from metagraph.formats.project.manual_data import decode_manual, manual_data
 from metagraph.formats.project.text import as_text
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.clip_mark import ClipMark
@@ -74,12 +74,12 @@ from metagraph.motion.skeleton import Skeleton
 FORMAT = 2  # of the project file; older ones are upgraded when read
 
 
-def action_data(action: Action) -> Data:
+def encode_action(action: Action) -> Data:
     """Return an action; its timing's fields stand beside its own. The layer is said by where it is."""
     out = {**sparse(action, ("timing", "layer", "joint_weights", "contacts")), **sparse(action.timing)}
-    out |= joint_weights_data(action.joint_weights)
+    out |= encode_joint_weights(action.joint_weights)
     if action.contacts:
-        out["contacts"] = contacts_data(action.contacts)
+        out["contacts"] = encode_contacts(action.contacts)
     return out
 
 
@@ -100,7 +100,7 @@ def clip_data(entry: ClipEntry) -> Data:
     return out
 
 
-def skeleton_data(skeleton: Skeleton) -> list[Data]:
+def encode_skeleton(skeleton: Skeleton) -> list[Data]:
     """Return one dict a joint: name, parent (its name), at (local rest translation, metres), turn (local rest
     rotation, xyzw).
 
@@ -123,16 +123,16 @@ def _whole(value: float) -> float | int:
     return int(value) if value == int(value) else float(value)
 
 
-def stance_data(stance: Stance) -> Data:
+def encode_stance(stance: Stance) -> Data:
     return {"id": stance.id, "name": stance.name}
 
 
-def weights_data(graph: MetaGraph) -> Data:
+def encode_weights(graph: MetaGraph) -> Data:
     return {p: round_number(graph.weights[p]) for p in PARTS if p in graph.weights}
 
 
 def to_data(project: Project) -> Data:
-    """Return the whole project; inverse of `from_data` but for the motion of clips and what lies below a
+    """Return the whole project; inverse of `from_data` except for the motion of clips and what lies below a
     microsecond.
 
     Raises DataError when a number is not finite.
@@ -142,9 +142,9 @@ def to_data(project: Project) -> Data:
         graph = project.graphs[layer]
         layers[layer] = {
             "start": graph.start,
-            "weights": weights_data(graph),
-            "stances": [stance_data(s) for s in graph.stances.values()],
-            "actions": [action_data(a) for a in graph.actions.values()],
+            "weights": encode_weights(graph),
+            "stances": [encode_stance(s) for s in graph.stances.values()],
+            "actions": [encode_action(a) for a in graph.actions.values()],
         }
     return {
         "metagraph": FORMAT,
@@ -158,18 +158,20 @@ def to_data(project: Project) -> Data:
         "parts": dict(sorted(project.parts.items())),
         "clips": [clip_data(entry) for entry in project.clips.values()],
         "layers": layers,
-        "markov": {layer: markov_data(project.markov[layer]) for layer in LAYERS if layer in project.markov},
-        **{key: data for key in STRUCTS if (data := struct_data(getattr(project, key)))},
+        "markov": {
+            layer: encode_markov(project.markov[layer]) for layer in LAYERS if layer in project.markov
+        },
+        **{key: data for key in STRUCTS if (data := encode_struct(getattr(project, key)))},
         **(
             {"manual": {x: manual_data(project.manual[x]) for x in LAYERS if x in project.manual}}
             if project.manual
             else {}
         ),
-        "skeleton": skeleton_data(project.skeleton) if project.skeleton is not None else [],
+        "skeleton": encode_skeleton(project.skeleton) if project.skeleton is not None else [],
     }
 
 
-def markov_data(model: Markov) -> Data:
+def encode_markov(model: Markov) -> Data:
     """Return a model; a state's tags stand behind it: "both gesture positive"."""
     return {
         **sparse(model, ("layer", "states", "matrix", "tags")),
@@ -196,7 +198,7 @@ STRUCTS: dict[str, Any] = {
 }
 
 
-def struct_data(value: Any) -> Any:
+def encode_struct(value: Any) -> Any:
     """Return what one of `STRUCTS` holds, fields at their default left out. It is not to be changed in
     place.
     """
@@ -207,7 +209,7 @@ def struct_data(value: Any) -> Any:
 
 def _conversation_data(conversation: Conversation) -> Data:
     """Return a conversation; what most edits leave as it was, thousands of words of each side, is not worked
-    out anew.
+    out again.
     """
     short = tuple(msgspec.structs.replace(side, words=(), segments=()) for side in conversation.sides)
     out: Data = _rounded(msgspec.to_builtins(msgspec.structs.replace(conversation, sides=short)))
@@ -229,7 +231,7 @@ def _rounded(value: Any) -> Any:
     return [_rounded(v) for v in value] if isinstance(value, list | tuple) else as_plain(value)
 
 
-def struct_from(data: Any, kind: Any, where: str) -> Any:
+def decode_struct(data: Any, kind: Any, where: str) -> Any:
     """Return one of `STRUCTS` from data, its numbers rounded as they are written. Raises DataError."""
     try:
         return msgspec.convert(_rounded(data), kind)
@@ -238,7 +240,7 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
         raise DataError(f"{where}.{field}" if field else where, rest) from None
     except (ValueError, TypeError, RecursionError):
         words = f"should be a number from {-LARGEST:g} to {LARGEST:g}"
-        raise DataError(too_large(data, where) or where, words) from None
+        raise DataError(is_too_large(data, where) or where, words) from None
 
 
 # --- reading
@@ -280,7 +282,7 @@ _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers", "
 }
 
 
-def action_from(data: Data, layer: Layer, where: str) -> Action:
+def decode_action(data: Data, layer: Layer, where: str) -> Action:
     refuse_unknown_fields(data, _ACTION_FIELDS, where)
     values = fill_fields(Action, data, where, ("timing", "layer", "joint_weights", "contacts"))
     for key in ("id", "clip", "kind", "stance", "name"):
@@ -288,8 +290,8 @@ def action_from(data: Data, layer: Layer, where: str) -> Action:
             raise DataError(f"{where}.{key}", "is missing")
     require_one_of(values["kind"], KINDS, f"{where}.kind")
     require_one_of(values.get("limb", "both"), LIMBS, f"{where}.limb")
-    contacts = contacts_from(data, where)
-    timing, weights = Timing(**fill_fields(Timing, data, where)), joint_weights_from(data, where)
+    contacts = decode_contacts(data, where)
+    timing, weights = Timing(**fill_fields(Timing, data, where)), decode_joint_weights(data, where)
     return Action(layer=layer, timing=timing, contacts=contacts, joint_weights=weights, **values)
 
 
@@ -336,8 +338,8 @@ def _contacts_from(data: Data, where: str) -> Iterator[Contact]:
         yield Contact(upper, lower, hand, to, first, last)
 
 
-def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None:
-    """Return the skeleton of `skeleton_data`, None for an empty list."""
+def decode_skeleton(joints: list[Any], where: str = "skeleton") -> Skeleton | None:
+    """Return the skeleton of `encode_skeleton`, None for an empty list."""
     if not joints:
         return None
     names, parents, at, turn = [], [], [], []
@@ -375,7 +377,7 @@ def _graph_from(
         refuse_unknown_fields(item, ("id", "name"), place)
         stances[item["id"]] = Stance(item["id"], layer, get(item, "name", str, place))
     actions = {
-        item["id"]: action_from(without_clip_identity(item, clips), layer, place)
+        item["id"]: decode_action(remove_clip_identity(item, clips), layer, place)
         for place, item in items(data, "actions", where, action_ids)
     }
     weights = get(data, "weights", dict, where, {})
@@ -408,7 +410,7 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
     refuse_unknown_fields(machines, LAYERS, "manual")
     manual_ids: set[str] = set()
     manual = {
-        x: manual_from(x, get(machines, x, dict, "manual"), manual_ids) for x in LAYERS if x in machines
+        x: decode_manual(x, get(machines, x, dict, "manual"), manual_ids) for x in LAYERS if x in machines
     }
     parts, roles = get(data, "parts", dict, "", {}), get(data, "roles", dict, "", {})
     for joint, part in parts.items():
@@ -420,18 +422,20 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
     refuse_unknown_fields(settings, [f.name for f in fields(Settings)], "settings")
     return Project(
         name=get(data, "name", str, "", "untitled"),
-        skeleton=skeleton_from(get(data, "skeleton", list, "", [])),
+        skeleton=decode_skeleton(get(data, "skeleton", list, "", [])),
         clips=clips,
         graphs=graphs,
         base=BasePose(**fill_fields(BasePose, base, "base")),
         roles={r: get(roles, r, str, "roles") for r in roles},
         parts=dict(parts),
         markov={
-            layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models
+            layer: decode_markov(layer, models[layer], f"markov.{layer}")
+            for layer in LAYERS
+            if layer in models
         },
         settings=Settings(**fill_fields(Settings, settings, "settings")),
         **{
-            key: _with_closed_paths(struct_from(data[key], kind, key))
+            key: _with_closed_paths(decode_struct(data[key], kind, key))
             for key, kind in STRUCTS.items()
             if data.get(key) is not None and key != "joint_maps"
         },
@@ -449,7 +453,7 @@ def _joint_maps_from(data: Data, notes: list[str] | None) -> dict[str, JointMap]
         maps = get(data, "joint_maps", dict, "", {})
         for key in maps:
             try:
-                out[key] = struct_from(maps[key], JointMap, f"joint_maps.{key}")
+                out[key] = decode_struct(maps[key], JointMap, f"joint_maps.{key}")
             except DataError as error:
                 if notes is None:
                     raise
@@ -467,7 +471,7 @@ def _left_out(error: DataError) -> str:
     )
 
 
-def markov_from(layer: Layer, data: Any, where: str) -> Markov:
+def decode_markov(layer: Layer, data: Any, where: str) -> Markov:
     states, tags = [], []
     for text in get(data, "states", list, where):
         limb, kind, tag = (*(text.split(" ", 2) if isinstance(text, str) else ()), "", "", "")[:3]

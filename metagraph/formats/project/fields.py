@@ -27,7 +27,7 @@ class DataError(ValueError):
 
 
 def round_number(value: float) -> float | int:
-    """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises
+    """Return a number rounded to six decimals, or to six digits if nothing else would be left. Raises
     ValueError.
     """
     if not abs(value) <= LARGEST:
@@ -69,7 +69,7 @@ def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
 
 @cache
 def _defaults(cls: Any, skip: tuple[str, ...]) -> tuple[tuple[str, Any], ...]:
-    """Return a dataclass's fields and their defaults, MISSING where there is none."""
+    """Return a dataclass's fields and their defaults, MISSING if there is none."""
     return tuple((f.name, f.default) for f in fields(cls) if f.name not in skip)
 
 
@@ -129,13 +129,13 @@ def refuse_unknown_fields(data: Data, allowed: Collection[str], where: str) -> N
             raise DataError(f"{where}.{key}" if where else str(key), f"is not a field known here{hint}")
 
 
-def too_large(data: Any, where: str) -> str | None:
-    """Return the place of a number in plain data that no project may hold, None where there is none."""
+def is_too_large(data: Any, where: str) -> str | None:
+    """Return the place of a number in plain data that no project may hold, None if there is none."""
     if isinstance(data, dict | list):
         inside = data.items() if isinstance(data, dict) else enumerate(data)
         for key, value in inside:
             place = f"{where}[{key}]" if isinstance(data, list) else f"{where}.{key}"
-            if found := too_large(value, place):
+            if found := is_too_large(value, place):
                 return found
     elif isinstance(data, int | float) and not abs(data) <= LARGEST:
         return where
@@ -238,13 +238,13 @@ def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) 
     return [float(x) for x in values]
 
 
-def joint_weights_data(weights: Iterable[tuple[str, float]]) -> Data:
-    """Return how far joints move, by name; nothing where all move wholly."""
+def encode_joint_weights(weights: Iterable[tuple[str, float]]) -> Data:
+    """Return how far joints move, by name; nothing if all move entirely."""
     found = {name: round_number(weight) for name, weight in weights}
     return {"joint_weights": found} if found else {}
 
 
-def joint_weights_from(data: Data, where: str) -> tuple[tuple[str, float], ...]:
+def decode_joint_weights(data: Data, where: str) -> tuple[tuple[str, float], ...]:
     """Return how far joints move, (name, above 0 and below 1). Raises DataError."""
     if "joint_weights" not in data:
         return ()
@@ -264,7 +264,7 @@ def joint_weights_from(data: Data, where: str) -> tuple[tuple[str, float], ...]:
 
 
 def read_texts(data: Data, key: str) -> tuple[str, ...]:
-    """Return a list of texts at the top of the data, empty where it is missing."""
+    """Return a list of texts at the top of the data, empty if it is missing."""
     values = get(data, key, list, "", [])
     for n, value in enumerate(values):
         if not isinstance(value, str):

@@ -30,8 +30,8 @@ class UndoStep:
 def history(left: Left) -> tuple[UndoStep, ...]:
     """Return the steps a journal leads through, the last to its project; without motion.
 
-    What was undone and not done again is no step any more; where nobody knows what was undone, undoing is one
-    itself. A journal whose steps cannot be told apart is one step.
+    What was undone and not done again is no step any more; if nobody knows what was undone, undoing is one
+    itself. A journal whose steps cannot be distinguished is one step.
     """
     try:
         steps = _steps(left.base, left.records)

@@ -29,20 +29,20 @@ from metagraph.formats.new_file import Access, access_of
 from metagraph.formats.project.appended_file import AppendedFile
 from metagraph.formats.project.data import (
     STRUCTS,
-    action_data,
     clip_data,
-    markov_data,
-    skeleton_data,
-    stance_data,
-    struct_data,
+    encode_action,
+    encode_markov,
+    encode_skeleton,
+    encode_stance,
+    encode_struct,
+    encode_weights,
     to_data,
-    weights_data,
 )
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.formats.project.journal_records import frame_record
 from metagraph.formats.project.journal_register import JournalRegister
 from metagraph.formats.project.journal_words import describe_displacement, unsayable, unwritten
-from metagraph.formats.project.manual_data import alias_data, link_data, manual_data, state_data
+from metagraph.formats.project.manual_data import encode_alias, encode_link, encode_state, manual_data
 from metagraph.formats.store import content_digest, file_digest
 from metagraph.graph.manual.machine import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
@@ -83,11 +83,11 @@ def _differing(before: Project, after: Project) -> Data:
         out["language"] = after.language
     for key in STRUCTS:
         if _changed(before, after, key):
-            out[key] = struct_data(getattr(after, key))
+            out[key] = encode_struct(getattr(after, key))
     if _changed(before, after, "markov"):
-        out["markov"] = {layer: markov_data(m) for layer, m in after.markov.items()}
+        out["markov"] = {layer: encode_markov(m) for layer, m in after.markov.items()}
     if before.skeleton is not after.skeleton:
-        bones = [skeleton_data(x) if x is not None else [] for x in (before.skeleton, after.skeleton)]
+        bones = [encode_skeleton(x) if x is not None else [] for x in (before.skeleton, after.skeleton)]
         if bones[0] != bones[1]:  # to the last digit; it may have been read twice
             out["skeleton"] = bones[1]
     _keyed(out, "clips", before.clips, after.clips, clip_data)
@@ -113,9 +113,9 @@ def _layer(old: MetaGraph, new: MetaGraph) -> Data:
     if old.start != new.start:
         part["start"] = new.start
     if old.weights != new.weights:
-        part["weights"] = weights_data(new)
-    _keyed(part, "stances", old.stances, new.stances, stance_data)
-    _keyed(part, "actions", old.actions, new.actions, action_data)
+        part["weights"] = encode_weights(new)
+    _keyed(part, "stances", old.stances, new.stances, encode_stance)
+    _keyed(part, "actions", old.actions, new.actions, encode_action)
     return part
 
 
@@ -132,9 +132,9 @@ def _manual(before: Mapping[Layer, Manual], after: Mapping[Layer, Manual]) -> Da
                 for name in ("start", "any_x", "any_y")
                 if getattr(old, name) != getattr(new, name)
             }
-            _keyed(part, "states", old.states, new.states, state_data)
-            _keyed(part, "aliases", old.aliases, new.aliases, alias_data)
-            _keyed(part, "links", old.links, new.links, link_data)
+            _keyed(part, "states", old.states, new.states, encode_state)
+            _keyed(part, "aliases", old.aliases, new.aliases, encode_alias)
+            _keyed(part, "links", old.links, new.links, encode_link)
             if part:
                 out[layer] = part
     return out
@@ -235,10 +235,10 @@ class Journal:
         return self._file.path
 
     def begin(self, base: Project | None = None, unsaved: int = 0, done: Sequence[Done] = ()) -> None:
-        """Start anew from the saved file, whose text is kept, or from `base` when there is none. Whatever was
-        there stands until the new one is whole. Raises FileError.
+        """Start again from the saved file, whose text is kept, or from `base` when there is none. Whatever
+        was there stands until the new one is whole. Raises FileError.
 
-        unsaved: how many edits of `base` are in no file. done: edits after it, which are written with it.
+        unsaved: how many edits of `base` are unsaved. done: edits after it, which are written with it.
         """
         self._base = (base, unsaved, done) if base is not None else None
         try:
@@ -377,7 +377,7 @@ class Journal:
 
 
 def _record(before: Project, after: Project, step: str, how: How) -> Data:
-    """Return what is written of an edit, nothing where it changed nothing that is saved. Raises DataError."""
+    """Return what is written of an edit, nothing if it changed nothing that is saved. Raises DataError."""
     change = find_changes(before, after)
     if not change:
         return {}

@@ -2,7 +2,7 @@
 known, and what stands behind it is read all the same.
 
 A record is a line of JSON, a tab, its number, a tab and a CRC-32 of all before; two ends of line stand
-between records, so that one damaged byte never costs more than one of them. Journals of before there were
+between records, so that one damaged byte never costs more than one of them. Journals from before there were
 checksums are lines of JSON alone.
 """
 
@@ -36,7 +36,7 @@ class JournalRecord:
 
 @dataclass(frozen=True)
 class LostEdit:
-    """An edit that a journal cannot give back. step: what was done, "" where nobody knows; at: when, seconds
+    """An edit that a journal cannot give back. step: what was done, "" if nobody knows; at: when, seconds
     since 1970. why: its record is damaged, or it does not fit what could be read before it.
     """
 
@@ -83,7 +83,7 @@ def read_records(content: bytes) -> Records:
 
 
 def parse_record(line: bytes) -> JournalRecord | None:
-    """Return the record of a line, None where its checksum does not fit."""
+    """Return the record of a line, None if its checksum does not fit."""
     match = _FRAMED.match(line)
     if match is None or crc32(line[: match.start(3) - 1]) != int(match[3], 16):
         return None
@@ -140,7 +140,7 @@ def _described(line: bytes) -> LostEdit:
 
 
 def _unnumbered(lines: list[bytes]) -> Records:
-    """Read a journal of before there were checksums."""
+    """Read a journal from before there were checksums."""
     entries: list[JournalRecord | LostEdit] = []
     for line in lines:
         data = _decoded(line)

@@ -20,7 +20,7 @@ from metagraph.formats.replacing import replace_file
 
 
 class KnownJournal(msgspec.Struct, frozen=True):
-    """A journal that was begun. project: its project file, None where there was none; digest: of that file,
+    """A journal that was begun. project: its project file, None if there was none; digest: of that file,
     SHA-256; identity: device and number of it. begun: seconds since 1970.
     """
 

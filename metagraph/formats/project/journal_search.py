@@ -1,4 +1,4 @@
-"""Finding journals whose sittings are over: beside their project, and wherever else they have come to."""
+"""Find journals of sessions that are over, beside their project and elsewhere."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _BESIDE = re.compile(r"\.(?P<name>.+?)(\.[0-9a-f]+)?\.(journal|old)(\.damaged)?"
 FOLDERS = 2_000  # looked into for a journal that is not where it was
 
 
-def journals_for(saved: Path, register: JournalRegister) -> list[Path]:
+def find_journals_for(saved: Path, register: JournalRegister) -> list[Path]:
     """Return the journals that belong to a project file, the latest last: by its name, and, when it was
     renamed, moved or is opened by another way, by what it holds.
     """

@@ -20,7 +20,7 @@ LOOK = 0.02  # seconds between two looks
 
 def try_hold(path: Path) -> IO[bytes] | None:
     """Take the lock file at `path`, which is made, for this process until what is returned is closed, or the
-    process ends; None where another one has it. Raises OSError where nothing can be written there.
+    process ends; None if another one has it. Raises OSError if nothing can be written there.
     """
     held = path.open("ab")
     try:
@@ -69,7 +69,7 @@ def wait_for_turn(path: Path) -> Iterator[None]:
 
 
 def _held(path: Path) -> IO[bytes] | None:
-    """Return the lock, None where it must be tried again: the file that was opened may be one that its last
+    """Return the lock, None if it must be tried again: the file that was opened may be one that its last
     holder has just removed, while others make a new one.
     """
     held = try_hold(path)

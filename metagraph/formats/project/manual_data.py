@@ -8,10 +8,10 @@ from typing import Any
 from metagraph.formats.project.fields import (
     Data,
     DataError,
+    decode_joint_weights,
+    encode_joint_weights,
     fill_fields,
     items,
-    joint_weights_data,
-    joint_weights_from,
     refuse_unknown_fields,
     require_one_of,
     round_number,
@@ -25,33 +25,33 @@ _ALIAS_FIELDS = {f.name for f in fields(Alias)} - {"layer"}
 _LINK_FIELDS = ({f.name for f in fields(Link)} | {f.name for f in fields(Condition)}) - {"condition"}
 
 
-def state_data(state: State) -> Data:
-    return {**sparse(state, ("layer", "joint_weights")), **joint_weights_data(state.joint_weights)}
+def encode_state(state: State) -> Data:
+    return {**sparse(state, ("layer", "joint_weights")), **encode_joint_weights(state.joint_weights)}
 
 
-def alias_data(alias: Alias) -> Data:
+def encode_alias(alias: Alias) -> Data:
     return sparse(alias, ("layer",))
 
 
-def link_data(link: Link) -> Data:
+def encode_link(link: Link) -> Data:
     """Return a link; its condition's fields stand beside its own."""
     return {**sparse(link, ("condition",)), **sparse(link.condition)}
 
 
 def manual_data(manual: Manual) -> Data:
     """Return a layer's manual state machine."""
-    aliases = {"aliases": [alias_data(a) for a in manual.aliases.values()]} if manual.aliases else {}
+    aliases = {"aliases": [encode_alias(a) for a in manual.aliases.values()]} if manual.aliases else {}
     return {
         "start": manual.start,
         "any_x": round_number(manual.any_x),
         "any_y": round_number(manual.any_y),
-        "states": [state_data(s) for s in manual.states.values()],
+        "states": [encode_state(s) for s in manual.states.values()],
         **aliases,
-        "links": [link_data(x) for x in manual.links.values()],
+        "links": [encode_link(x) for x in manual.links.values()],
     }
 
 
-def manual_from(layer: Layer, data: Any, ids: set[str]) -> Manual:
+def decode_manual(layer: Layer, data: Any, ids: set[str]) -> Manual:
     """Return a layer's manual state machine from data. ids: those taken already, added to. Raises
     DataError.
     """
@@ -62,7 +62,7 @@ def manual_from(layer: Layer, data: Any, ids: set[str]) -> Manual:
         refuse_unknown_fields(item, _STATE_FIELDS, place)
         values = _with(State, item, place, ("id", "clip", "name"), ("layer", "joint_weights"))
         require_one_of(values.get("limb", "both"), LIMBS, f"{place}.limb")
-        weights = joint_weights_from(item, place)
+        weights = decode_joint_weights(item, place)
         states[item["id"]] = State(layer=layer, joint_weights=weights, **values)
     aliases: dict[str, Alias] = {}
     for place, item in items(data, "aliases", where, ids):

@@ -1,7 +1,7 @@
 """Merge two states of a project that have a common one: what was done in either is in the result.
 
 Where both changed the same thing differently, mine is kept and reported. What one removed and the other
-changed, or used anew, stays and is reported. What both made under one id becomes two things.
+changed, or used again, stays and is reported. What both made under one id becomes two things.
 """
 
 from __future__ import annotations

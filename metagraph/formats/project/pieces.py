@@ -57,7 +57,7 @@ def _at(project: Project, path: Path, into: Path | None) -> Project:
     return absolute(project, path.parent) if into is None else move_project(project, path, into)
 
 
-def piece_text(
+def encode_piece(
     project: Project, folder: Path | None, actions: Collection[str] = (), stances: Collection[str] = ()
 ) -> str:
     """Return actions and stances of a project as a text that any window pastes. folder: what its paths
@@ -71,7 +71,7 @@ def piece_text(
 
 
 def is_piece(text: str) -> bool:
-    """Return whether a text may be one of `piece_text`."""
+    """Return whether a text may be one of `encode_piece`."""
     return text.startswith(f'{{"{_MARK}"')
 
 

@@ -40,8 +40,8 @@ class Verified:
 
 
 def fault_of(error: FileError, name: str | None = None, remedy: str | None = None) -> VerificationFault:
-    """Return a file's error as a fault. name: what the file is called where that is more than its name;
-    remedy: what to do where that is known better.
+    """Return a file's error as a fault. name: what the file is called if that is more than its name; remedy:
+    what to do if that is known better.
     """
     name = name or error.path.name
     place = f"{name}, {error.where}" if error.where else name
@@ -54,5 +54,5 @@ def count_in_words(count: int, one: str, many: str | None = None) -> str:
 
 
 def describe_whole(count: int, faults: Sequence[object], whole: str) -> str:
-    """Return how many of the parts are whole, "none" where there are none."""
+    """Return how many of the parts are whole, "none" if there are none."""
     return f"{count - len(faults):,} of {count:,} {whole}" if count else "none"

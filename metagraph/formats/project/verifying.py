@@ -26,7 +26,7 @@ from metagraph.formats.project.verified import (
 )
 from metagraph.formats.project.verifying_clips import verify_clips, verify_named_files
 from metagraph.formats.project.versions import earlier_versions
-from metagraph.formats.recovery import DAMAGED, Left, journal_owner, read_journal, read_journal_head
+from metagraph.formats.recovery import DAMAGED, Left, read_journal, read_journal_head, read_journal_owner
 from metagraph.formats.store import encode_project, parse_project, read_project
 from metagraph.graph.check import check_project
 from metagraph.graph.model import Project
@@ -38,7 +38,7 @@ RECOVER = "Open the project in the window to recover or discard them."
 
 
 def verify_project(path: Path) -> Verified:
-    """Look at all of a project. Raises FileError where there is no file that can be read."""
+    """Look at all of a project. Raises FileError if there is no file that can be read."""
     content = read_file(path, TEXT_FILE)
     folder = path.resolve().parent  # a linked project names its files from where it lies
     project, file = _file(path, content)
@@ -104,7 +104,7 @@ def _journals(path: Path) -> VerifiedPart:
     words: list[str] = []
     faults: list[VerificationFault] = []
     for journal in find_journals_beside(path):
-        owner = journal_owner(read_journal_head(journal))
+        owner = read_journal_owner(read_journal_head(journal))
         if journal.name.endswith(DAMAGED):
             remedy = "See 'File > Recover…' for what it holds; discard it there when you no longer need it."
             faults.append(VerificationFault(journal.name, "is a damaged journal that was kept.", remedy))

@@ -21,7 +21,13 @@ from metagraph.formats.project.verified import (
     describe_whole,
     fault_of,
 )
-from metagraph.formats.store import clip_place, find_moved_files, missing_clips, read_project, relative
+from metagraph.formats.store import (
+    find_clip_place,
+    find_moved_files,
+    list_missing_clips,
+    read_project,
+    relative,
+)
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.clip import Clip
@@ -41,7 +47,7 @@ def verify_clips(project: Project, folder: Path) -> VerifiedPart:
     entries: dict[str, list[ClipEntry]] = {}
     for entry in project.clips.values():
         entries.setdefault(entry.path, []).append(entry)
-    moved = find_moved_files(missing_clips(project, folder), folder) if folder.parent != folder else {}
+    moved = find_moved_files(list_missing_clips(project, folder), folder) if folder.parent != folder else {}
     bad: dict[str, list[VerificationFault]] = {}
     with batch():
         for path, uses in entries.items():
@@ -61,7 +67,7 @@ def _clip_faults(
     path: str, entries: Sequence[ClipEntry], folder: Path, now_at: Path | None
 ) -> Iterator[VerificationFault]:
     name = clean_text(original_path(path))
-    place = clip_place(entries[0], folder)
+    place = find_clip_place(entries[0], folder)
     if is_closed(path):
         yield _closed(path)
         return

@@ -32,7 +32,7 @@ class Version:
     saved: float
 
 
-def version_path(path: Path, number: int) -> Path:
+def make_version_path(path: Path, number: int) -> Path:
     """Return where an earlier version of a project file lies: beside the file itself, not beside a link."""
     path = path.resolve()
     return path.with_name(f"{path.name}.{number}")
@@ -58,12 +58,12 @@ def earlier_versions(path: Path) -> tuple[Version, ...]:
 
 
 def write_project(path: Path, content: bytes, versions: int, like: Access | None = None) -> Phrase | None:
-    """Write a project file, and keep what stood there as its most recent earlier version. Raises FileError
-    where the file itself cannot be written.
+    """Write a project file, and keep what stood there as its most recent earlier version. Raises FileError if
+    the file itself cannot be written.
 
     versions: how many are kept; 0 keeps none, and leaves those that are there alone. like: who may read the
-    file where there is none yet. Returns why the version
-    could not be kept, None where all went well: what is to be saved is worth more than what was.
+    file if there is none yet. Returns why the version could not be kept, None if all went well: what is to be
+    saved is worth more than what was.
     """
     note = None
     if versions > 0:
@@ -88,17 +88,17 @@ def _keep(path: Path, content: bytes, versions: int) -> None:
     if not path.is_file() or not os.access(path, os.W_OK):
         return  # there is nothing, or it cannot be written either
     before = read_file(path, TEXT_FILE)
-    first = version_path(path, 1)
+    first = make_version_path(path, 1)
     if before == content or (first.is_file() and first.read_bytes() == before):
         return
     for number in range(1, versions + 1):
-        if version_path(path, number).is_dir():
-            raise IsADirectoryError(errno.EISDIR, f"{version_path(path, number).name} is a folder")
+        if make_version_path(path, number).is_dir():
+            raise IsADirectoryError(errno.EISDIR, f"{make_version_path(path, number).name} is a folder")
     copy = _copied(path, before)
     try:
-        free = next((n for n in range(1, versions + 1) if not version_path(path, n).exists()), versions)
+        free = next((n for n in range(1, versions + 1) if not make_version_path(path, n).exists()), versions)
         for number in range(free, 1, -1):
-            version_path(path, number - 1).replace(version_path(path, number))
+            make_version_path(path, number - 1).replace(make_version_path(path, number))
         copy.replace(first)
     finally:
         copy.unlink(missing_ok=True)

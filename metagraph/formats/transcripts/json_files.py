@@ -123,7 +123,7 @@ def _kind(value: Any) -> str:
 
 
 def _time(out: Collected, value: Any, where: str) -> float | None:
-    """Return seconds; None where there are none."""
+    """Return seconds; None if there are none."""
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float | str):

@@ -113,7 +113,7 @@ class _Names:
     known: frozenset[str]
 
     def of(self, line: str) -> tuple[str, str] | None:
-        """Return who says a line, and the rest of it; None where it begins with no name."""
+        """Return who says a line, and the rest of it; None if it begins with no name."""
         plain = _TAG.sub("", line)
         found = self.way.match(plain)
         return (found[1], plain[found.end() :]) if found is not None and found[1] in self.known else None
@@ -157,7 +157,7 @@ def _shared(cue: _Cue, lines: list[str]) -> list[tuple[float, float, str]]:
 
 
 def _voices(text: str, names: _Names) -> Iterator[tuple[str | None, str]]:
-    """Yield who says which part; None where it does not say."""
+    """Yield who says which part; None if it does not say."""
     parts = _VOICE.split(text)
     for n in range(0, len(parts), 2):
         who = html.unescape(parts[n - 1]).strip() if n else None

@@ -188,8 +188,8 @@ def _wordy(tier: _Tier) -> bool:
 
 
 def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segment, ...] | None:
-    """Return what a tier of segments holds, with peaks from the tier beside it; None where its labels are not
-    of ours.
+    """Return what a tier of segments holds, with peaks from the tier beside it; None if its labels are not of
+    ours.
     """
     peaks = sorted(
         start for t in tiers if t.role == "peaks" and t.whose == tier.whose for _, start, _ in t.rows

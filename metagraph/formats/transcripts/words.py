@@ -54,7 +54,7 @@ _STOPPED = re.compile(r"(?<=[、。，！？；：])(?=[^\s、。，！？；：
 
 @dataclass(frozen=True)
 class Transcript:
-    """speakers: name -> words by start, in the file's order; "" where it names nobody. segments: name -> what
+    """speakers: name -> words by start, in the file's order; "" if it names nobody. segments: name -> what
     the file says of clauses, responses and hesitations, for those it does. notes: what was left out or
     settled, in words.
     """
@@ -201,7 +201,9 @@ def settle_words(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
             )
         )
     if gone:
-        notes.append(phrase("{count} were wholly inside another and were skipped", count=count(gone, "word")))
+        notes.append(
+            phrase("{count} were entirely inside another and were skipped", count=count(gone, "word"))
+        )
     return tuple(out), notes
 
 

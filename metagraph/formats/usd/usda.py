@@ -73,7 +73,7 @@ class Names:
         return name
 
 
-def usda_string(value: str) -> str:
+def format_usda_string(value: str) -> str:
     """Return a string's literal."""
     out = "".join(
         _ESCAPES.get(c, c if c >= " " and c != "\x7f" else f"\\x{ord(c):02x}") for c in value
@@ -81,17 +81,17 @@ def usda_string(value: str) -> str:
     return f'"{out.decode()}"'
 
 
-def usda_strings(values: Iterable[str]) -> str:
+def format_usda_strings(values: Iterable[str]) -> str:
     """Return an array of strings or tokens."""
-    return f"[{', '.join(map(usda_string, values))}]"
+    return f"[{', '.join(map(format_usda_string, values))}]"
 
 
-def usda_number(value: float) -> str:
+def format_usda_number(value: float) -> str:
     """Return a number with the nine digits that tell single precision apart."""
     return f"{float(value):.9g}"
 
 
-def usda_numbers(values: Any) -> str:
+def format_usda_numbers(values: Any) -> str:
     """Return an array of numbers."""
     flat = np.asarray(values).reshape(-1)
     form = "%d" if flat.dtype.kind in "iu" else "%.7g"
@@ -121,7 +121,7 @@ def matrices(values: Array) -> str:
 
 def samples(times: Sequence[float], values: Iterable[str]) -> str:
     """Return time samples, times in time codes."""
-    inside = ", ".join(f"{usda_number(t)}: {v}" for t, v in zip(times, values, strict=True))
+    inside = ", ".join(f"{format_usda_number(t)}: {v}" for t, v in zip(times, values, strict=True))
     return f"{{{inside}}}"
 
 

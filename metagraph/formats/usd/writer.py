@@ -20,14 +20,14 @@ from metagraph.formats.usd.usda import (
     Names,
     Prim,
     each,
+    format_usda_number,
+    format_usda_numbers,
+    format_usda_string,
+    format_usda_strings,
     layer,
     matrices,
     samples,
     tuples,
-    usda_number,
-    usda_numbers,
-    usda_string,
-    usda_strings,
 )
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial
@@ -54,8 +54,8 @@ def write_usd(
 
     clips: all on the skeleton, which is also the character's; their names are unique. playing: the name of
     the clip that plays, the first where None. more: further prims of the character, which find a clip by
-    `clip_paths`. metadata: of the root prim. Raises FileError when a file cannot be written, ValueError for
-    mixed skeletons.
+    `find_clip_paths`. metadata: of the root prim. Raises FileError when a file cannot be written, ValueError
+    for mixed skeletons.
     """
     path = Path(path)
     for other in (*(c.skeleton for c in clips), *([character.skeleton] if character is not None else [])):
@@ -63,7 +63,7 @@ def write_usd(
             raise ValueError("a clip or the mesh is on another skeleton; retarget it first")
     rate = Counter(clip.fps for clip in clips).most_common(1)[0][0] if clips else FPS
     joints = joint_paths(skeleton)
-    places = clip_paths([clip.name for clip in clips])
+    places = find_clip_paths([clip.name for clip in clips])
     root = Prim("SkelRoot", CHARACTER[1:], ['kind = "component"', *metadata])
     if clips:
         _choose(root, places, places[clips[0].name if playing is None else playing])
@@ -77,8 +77,8 @@ def write_usd(
     end = max((clip.duration * rate for clip in clips), default=0.0)
     head = [
         f'defaultPrim = "{CHARACTER[1:]}"', 'upAxis = "Y"', "metersPerUnit = 1", "startTimeCode = 0",
-        f"endTimeCode = {usda_number(end)}", f"timeCodesPerSecond = {usda_number(rate)}",
-        f"framesPerSecond = {usda_number(rate)}",
+        f"endTimeCode = {format_usda_number(end)}", f"timeCodesPerSecond = {format_usda_number(rate)}",
+        f"framesPerSecond = {format_usda_number(rate)}",
     ]  # fmt: skip
     for place, content in files:
         place.parent.mkdir(parents=True, exist_ok=True)
@@ -96,7 +96,7 @@ def joint_paths(skeleton: Skeleton) -> list[str]:
     return out
 
 
-def clip_paths(names: Sequence[str]) -> dict[str, str]:
+def find_clip_paths(names: Sequence[str]) -> dict[str, str]:
     """Return where in the stage the clips of some names are, in the order they are written in."""
     found = Names()
     return {name: f"{CHARACTER}/Clips/{found.of(name, 'clip')}" for name in names}
@@ -104,7 +104,7 @@ def clip_paths(names: Sequence[str]) -> dict[str, str]:
 
 def keep_name(name: str, identifier: str) -> list[str]:
     """Return the metadata that keeps a name that is no identifier."""
-    return [] if name == identifier else [f"displayName = {usda_string(name)}"]
+    return [] if name == identifier else [f"displayName = {format_usda_string(name)}"]
 
 
 def _choose(root: Prim, places: dict[str, str], playing: str) -> None:
@@ -134,8 +134,8 @@ def _skeleton(skeleton: Skeleton, joints: list[str]) -> Prim:
         "Skeleton",
         ['prepend apiSchemas = ["SkelBindingAPI"]'],
         [
-            f"uniform token[] joints = {usda_strings(joints)}",
-            f"uniform token[] jointNames = {usda_strings(skeleton.names)}",
+            f"uniform token[] joints = {format_usda_strings(joints)}",
+            f"uniform token[] jointNames = {format_usda_strings(skeleton.names)}",
             f"uniform matrix4d[] bindTransforms = {matrices(_matrices(turns, places))}",
             "uniform matrix4d[] restTransforms = "
             + matrices(_matrices(skeleton.rest_rotations, skeleton.rest_translations)),
@@ -156,8 +156,8 @@ def _animation(clip: Clip, place: str, joints: list[str], rate: float) -> Prim:
     turns = clip.rotations[..., [3, 0, 1, 2]]  # USD writes the real part first
     places = clip.skeleton.rest_translations
     properties = [
-        f"custom double metagraph:fps = {usda_number(clip.fps)}",
-        f"uniform token[] joints = {usda_strings(joints)}",
+        f"custom double metagraph:fps = {format_usda_number(clip.fps)}",
+        f"uniform token[] joints = {format_usda_strings(joints)}",
         f"quatf[] rotations.timeSamples = {samples(times, _changing(turns))}",
         f"half3[] scales = [{', '.join(['(1, 1, 1)'] * len(joints))}]",
     ]
@@ -175,8 +175,9 @@ def _animation(clip: Clip, place: str, joints: list[str], rate: float) -> Prim:
         properties.append(f"float3[] translations.timeSamples = {samples(times, rows)}")
     if clip.morphs and clip.weights is not None:
         properties += [
-            f"uniform token[] blendShapes = {usda_strings(clip.morphs)}",
-            f"float[] blendShapeWeights.timeSamples = {samples(times, map(usda_numbers, clip.weights))}",
+            f"uniform token[] blendShapes = {format_usda_strings(clip.morphs)}",
+            "float[] blendShapeWeights.timeSamples = "
+            f"{samples(times, map(format_usda_numbers, clip.weights))}",
         ]
     return Prim("SkelAnimation", own, keep_name(clip.name, own), properties)
 
@@ -207,8 +208,8 @@ def _mesh(character: CharacterMesh, joints: list[str]) -> Prim:
             'uniform token subdivisionScheme = "none"',
             f"uniform bool doubleSided = {int(both)}",
             f"float3[] extent = {tuples(np.stack([points.min(0), points.max(0)]))}",
-            f"int[] faceVertexCounts = {usda_numbers(np.full(len(character.triangles), 3))}",
-            f"int[] faceVertexIndices = {usda_numbers(np.asarray(character.triangles, int))}",
+            f"int[] faceVertexCounts = {format_usda_numbers(np.full(len(character.triangles), 3))}",
+            f"int[] faceVertexIndices = {format_usda_numbers(np.asarray(character.triangles, int))}",
             f"point3f[] points = {tuples(points)}",
             f"normal3f[] primvars:normals = {tuples(np.asarray(character.normals, np.float64))} (",
             '    interpolation = "vertex"',
@@ -216,15 +217,15 @@ def _mesh(character: CharacterMesh, joints: list[str]) -> Prim:
             f"texCoord2f[] primvars:st = {tuples(uvs)} (",
             '    interpolation = "vertex"',
             ")",
-            f"uniform token[] skel:joints = {usda_strings(joints)}",
+            f"uniform token[] skel:joints = {format_usda_strings(joints)}",
             f"rel skel:skeleton = <{CHARACTER}/Skeleton>",
             "matrix4d primvars:skel:geomBindTransform = "
             "( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1) )",
-            f"int[] primvars:skel:jointIndices = {usda_numbers(held)} (",
+            f"int[] primvars:skel:jointIndices = {format_usda_numbers(held)} (",
             "    elementSize = 4",
             '    interpolation = "vertex"',
             ")",
-            f"float[] primvars:skel:jointWeights = {usda_numbers(weights)} (",
+            f"float[] primvars:skel:jointWeights = {format_usda_numbers(weights)} (",
             "    elementSize = 4",
             '    interpolation = "vertex"',
             ")",
@@ -246,7 +247,7 @@ def _mesh(character: CharacterMesh, joints: list[str]) -> Prim:
                 [
                     'uniform token elementType = "face"',
                     'uniform token familyName = "materialBind"',
-                    f"int[] indices = {usda_numbers(surface.first + np.arange(surface.count))}",
+                    f"int[] indices = {format_usda_numbers(surface.first + np.arange(surface.count))}",
                     f"rel material:binding = <{CHARACTER}/Materials/{looks[surface.material]}>",
                 ],
             )
@@ -260,7 +261,7 @@ def _blend_shapes(mesh: Prim, character: CharacterMesh) -> None:
     names = Names()
     own = [names.of(f"shape_{name}") for name in character.morphs]
     mesh.properties += [
-        f"uniform token[] skel:blendShapes = {usda_strings(character.morphs)}",
+        f"uniform token[] skel:blendShapes = {format_usda_strings(character.morphs)}",
         f"rel skel:blendShapeTargets = [{', '.join(f'<{CHARACTER}/Mesh/{name}>' for name in own)}]",
     ]
     for name, shape, offsets in zip(own, character.morphs, character.morph_positions, strict=True):
@@ -273,7 +274,7 @@ def _blend_shapes(mesh: Prim, character: CharacterMesh) -> None:
                 keep_name(shape, name),
                 [
                     f"uniform vector3f[] offsets = {tuples(np.asarray(offsets, np.float64)[there])}",
-                    f"uniform int[] pointIndices = {usda_numbers(there)}",
+                    f"uniform int[] pointIndices = {format_usda_numbers(there)}",
                 ],
             )
         )
@@ -300,10 +301,10 @@ def _materials(character: CharacterMesh, path: Path) -> tuple[Prim, list[tuple[P
 
 def _look(name: str, material: MeshMaterial, picture: Path | None) -> Prim:
     where = f"{CHARACTER}/Materials/{name}"
-    red, green, blue, alpha = (usda_number(x) for x in material.color)
+    red, green, blue, alpha = (format_usda_number(x) for x in material.color)
     surface = [
         'uniform token info:id = "UsdPreviewSurface"',
-        f"float inputs:roughness = {usda_number(material.roughness)}",
+        f"float inputs:roughness = {format_usda_number(material.roughness)}",
         "float inputs:metallic = 0",
         f"float inputs:opacity = {alpha}",
         f"color3f inputs:diffuseColor = ({red}, {green}, {blue})"

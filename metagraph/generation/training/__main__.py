@@ -1,8 +1,8 @@
 """A training in a process of its own:
 python -m metagraph.generation.training FOLDER [--export] [--afresh] [--watched]
 
-What happens is told line by line on standard output, as JSON. It ends by itself, after a file `stop` in the
-folder, or on SIGTERM or SIGINT; each time the model is written. --export writes the model of the last
+What happens is reported line by line on standard output, as JSON. It ends by itself, after a file `stop` in
+the folder, or on SIGTERM or SIGINT; each time the model is written. --export writes the model of the last
 checkpoint, without learning more. --watched: once standard input is closed, as it is when who began it ends
 in whatever way, or it has another parent, it keeps a checkpoint and ends.
 """
@@ -57,7 +57,7 @@ def main(
     """
     folder = Path(arguments[0])
     held = None
-    with suppress(OSError):  # where nothing can be written that is told soon enough
+    with suppress(OSError):  # if nothing can be written that is reported soon enough
         if (folder / PLAN).is_file() and (held := hold(folder)) is None:
             write_event({"event": "error", "text": BUSY})
             return 2

@@ -1,4 +1,4 @@
-"""Where a training stands, on disk: two files by turns, so that one is whole whenever it is cut short."""
+"""Store the state of a training on disk, in two files by turns, so that one is always complete."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def write_checkpoint(folder: Path, point: Checkpoint) -> Path:
 
 
 def read_checkpoint(folder: Path, plan: str) -> tuple[Checkpoint | None, list[str]]:
-    """Return the latest checkpoint that can be read and belongs to a plan, None where there is none; and what
+    """Return the latest checkpoint that can be read and belongs to a plan, None if there is none; and what
     was wrong with others, in words.
     """
     found, notes = [], []

@@ -56,7 +56,7 @@ class Learner:
         return float(rate) * (CALMEST + (1 - CALMEST) * left)
 
     def advance(self, share: float = 0.0) -> dict[str, float]:
-        """Learn from one batch; return numbers to show. Raises TrainingError where nothing is finite."""
+        """Learn from one batch; return numbers to show. Raises TrainingError if nothing is finite."""
         if not self._begun:
             self.begin()
         rate = self.rate(share)

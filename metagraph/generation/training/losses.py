@@ -234,7 +234,7 @@ class MatchingObjective(Objective):
         if sizes.around:
             rows = [poses[n:] for poses in corpus.each() for n in range(sizes.frames)]
             told = (
-                (chunks.tokens_of(parts, sizes, r), vae.list_spans(r, sizes.frames) - parts["tokens.mean"])
+                (chunks.make_tokens(parts, sizes, r), vae.list_spans(r, sizes.frames) - parts["tokens.mean"])
                 for r in rows
             )
             parts["tokens.joined"] = chunks.join_by_least_squares(told, sizes.around)

@@ -85,7 +85,7 @@ class MatchingNet(nn.Module):
 
     def velocity(self, noisy: Tensor, moment: Tensor, past: Tensor, heard: Tensor) -> Tensor:
         """Return the velocity `[N, new, D]` at x_t. moment: t `[N]`. past: `[N, past, hidden]`, embedded;
-        heard: `[N, tokens, hidden]`; with `no_past` where there is none.
+        heard: `[N, tokens, hidden]`; with `no_past` if there is none.
         """
         sizes = self.sizes
         x = heard + self.place

@@ -28,7 +28,7 @@ def net_of(sizes: Sizes, weights: Weights | None = None) -> Net:
 
 
 def load(net: nn.Module, weights: Weights) -> None:
-    """Give a net its weights. Raises RuntimeError where names or shapes are others."""
+    """Give a net its weights. Raises RuntimeError if names or shapes are others."""
     net.load_state_dict({n: torch.from_numpy(np.array(w, np.float32)) for n, w in weights.items()})
 
 

@@ -11,7 +11,7 @@ import torch
 
 from metagraph.errors import FileError
 from metagraph.generation.networks import parameters
-from metagraph.generation.standing import CheckpointNote, training_share
+from metagraph.generation.standing import CheckpointNote, measure_training_share
 from metagraph.generation.train_plan import STOP, TrainingPlan, read_planned_takes, read_training_plan
 from metagraph.generation.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from metagraph.generation.training.export import export_model, model_so_far
@@ -57,12 +57,12 @@ class Run:
     @property
     def share(self) -> float:
         """How much of the training is over, 0..1."""
-        return training_share(self.plan, self.learner.step, self.seconds, self.minutes)
+        return measure_training_share(self.plan, self.learner.step, self.seconds, self.minutes)
 
     def go(self) -> Path | None:
-        """Learn until it is over or stopped; return the model's file, None where it was deserted: there is
-        a checkpoint then, and no model. Raises FileError where it cannot be written, TrainingError where
-        nothing is learned; the last checkpoint stays.
+        """Learn until it is over or stopped; return the model's file, None if it was deserted: there is a
+        checkpoint then, and no model. Raises FileError if it cannot be written, TrainingError if nothing is
+        learned; the last checkpoint stays.
         """
         plan, learner = self.plan, self.learner
         self.tell(
@@ -115,7 +115,7 @@ class Run:
         }
 
     def keep(self) -> None:
-        """Write a checkpoint where there is something new. One that cannot be written is told, and tried
+        """Write a checkpoint where there is something new. One that cannot be written is reported, and tried
         again the next time: what was learned is still in memory, and the one before is as it was.
         """
         if self._kept == self.learner.step:
@@ -136,7 +136,7 @@ class Run:
         self.tell({"event": "checkpoint", "step": self.learner.step, "path": str(path)})
 
     def judge(self) -> None:
-        """Tell the statistics of a short sample, and some of its poses."""
+        """Report the statistics of a short sample, and some of its poses."""
         found, poses = judge_held_out(model_so_far(self.learner), self.held, SHORT)
         self.tell(self._told("statistics", statistics=found))
         self.tell(self._told("poses", landmarks=poses))

@@ -82,9 +82,9 @@ def slow(metres: Array, height: float, blend: float) -> Array:
     return np.asarray((blend >= LONG) & (metres <= hidden(height, blend)))
 
 
-def distances_to_stance(project: Project, action: Action, times: Array) -> tuple[Array, Array]:
+def measure_distances_to_stance(project: Project, action: Action, times: Array) -> tuple[Array, Array]:
     """Return how far the pose at each of `times` `[F]`, seconds of an action's clip, is from the stance it
-    leaves and from the one it enters, metres `[F]`; infinite where that cannot be measured.
+    leaves and from the one it enters, metres `[F]`; infinite if that cannot be measured.
     """
     motion = motion_of(project, action)
     graph, out = project.graphs[action.layer], []

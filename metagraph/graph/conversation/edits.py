@@ -96,7 +96,7 @@ def set_word_lists(
     side: int | None = None,
     language: str | None = None,
 ) -> Project:
-    """Set which words make a segment a response or a hesitation, and label the segments anew by them.
+    """Set which words make a segment a response or a hesitation, and label the segments again by them.
 
     side: the one whose own lists they are; None: the lists of all, which have none of their own then.
     language: the code of what they are of, None to leave it. What was labelled otherwise than the lists
@@ -122,7 +122,7 @@ def _labelled(segment: Segment, before: Lists, after: Lists) -> Segment:
     """Return a segment as other lists label it, if it is what the lists before said."""
     if not split_tokens(segment.text):
         return segment
-    was, now = kind_of_words(segment.text, *before), kind_of_words(segment.text, *after)
+    was, now = classify_words(segment.text, *before), classify_words(segment.text, *after)
     return msgspec.structs.replace(segment, kind=now) if segment.kind == was != now else segment
 
 
@@ -131,9 +131,9 @@ def set_language(project: Project, language: str) -> Project:
     return replace(project, language=_clean(language) or AUTO)
 
 
-def kind_of_words(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
-    """Return what words are by two lists: a hesitation or a response where nothing else is said, else a
-    clause. Said of both, it is a response: the partner is answered.
+def classify_words(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
+    """Return what words are by two lists: a hesitation or a response if nothing else is said, else a clause.
+    Said of both, it is a response: the partner is answered.
     """
     words = [split_tokens(text)]
     answers, pauses, either, _ = kinds_of_words(tuple(responses), tuple(hesitations))
@@ -211,7 +211,7 @@ def split_segment(
     project: Project, ident: str, side: int, at: int, seconds: float, peak: float | None = None
 ) -> Project:
     """Part a segment in two, its words by their middles. peak: of the part the segment's own peak is not in.
-    Raises EditError where a part would be too short.
+    Raises EditError if a part would be too short.
     """
     of, seconds = _segment(project, ident, side, at), round(seconds, _DIGITS)
     if not of.start + SHORTEST <= seconds <= of.end - SHORTEST:
@@ -250,13 +250,13 @@ def merge_segments(project: Project, ident: str, side: int, first: int, last: in
 def add_segment(
     project: Project, ident: str, side: int, kind: Sound, start: float, end: float, peak: float | None = None
 ) -> tuple[Project, int]:
-    """Add a segment where there is none, as far as the gap round its start reaches; its words are those that
-    lie in it. Return the project and its place. Raises EditError where there is no room.
+    """Add a segment if there is none, as far as the gap round its start reaches; its words are those that lie
+    in it. Return the project and its place. Raises EditError if there is no room.
     """
     _spoken(kind)
     of = _conversation(project, ident)
     segments, start, end = of.sides[side].segments, *sorted((round(start, _DIGITS), round(end, _DIGITS)))
-    low, high = gap_at(of, side, (start + end) / 2) or (0.0, -1.0)
+    low, high = find_gap_at(of, side, (start + end) / 2) or (0.0, -1.0)
     start, end = max(low, start), min(high, end)
     if end - start < SHORTEST:
         raise EditError(
@@ -281,8 +281,8 @@ def remove_segments(project: Project, ident: str, places: Collection[Place]) -> 
     return project
 
 
-def gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float, float] | None:
-    """Return from when to when nothing is segmented round a time; None where a segment is, and out of the
+def find_gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float, float] | None:
+    """Return from when to when nothing is segmented round a time; None if a segment is, and out of the
     conversation.
     """
     low, high = 0.0, conversation.length

@@ -39,8 +39,8 @@ class Word(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 class Segment(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
     """A stretch of a conversation. kind: a phonemic clause, a listener response, a hesitation pause, or idle,
     which is never kept: it is what lies between. start, end: seconds. peak: of a clause, where its stress is,
-    seconds; None where there is none. text: its words. to: the side it is said to, `EVERYBODY` to all; None
-    where nobody said so, and it is inferred (`metagraph.speech.addressing`).
+    seconds; None if there is none. text: its words. to: the side it is said to, `EVERYBODY` to all; None if
+    nobody said so, and it is inferred (`metagraph.speech.addressing`).
     """
 
     kind: Sound
@@ -72,8 +72,8 @@ class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     moves this side, None for this one. character: path of the GLB it is drawn with, None for the character of
     the project that moves it. take: id of the clip that was recorded along with it, from the same moment.
     motion: id of the clip it moves with from the beginning on, instead of a graph: new motion of a motion
-    graph. language: the code of what it was read in ("de"); "und" where nobody knows, "" where it was never
-    said. responses, hesitations: its own lists, where the two speak different languages; None for the
+    graph. language: the code of what it was read in ("de"); "und" if nobody knows, "" if it was never said.
+    responses, hesitations: its own lists, where the two speak different languages; None for the
     conversation's. place: where it stands, metres to the right and towards the viewer; None for its place in
     the circle. words: as transcribed, by start. segments: of its own speech, by start, never overlapping,
     none idle.

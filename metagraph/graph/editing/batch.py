@@ -85,7 +85,7 @@ def _given(project: Project, source: Action, target: Action, fields: Sequence[st
     return out
 
 
-def names_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> dict[str, str]:
+def rename_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> dict[str, str]:
     """Return new names from a pattern: "{stance} {name} {n:02}", with `FIELDS` in braces; n counts from 1 in
     the order given.
 
@@ -123,7 +123,7 @@ def names_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> 
     return out
 
 
-def names_replaced(
+def rename_by_replacing(
     project: Project, actions: Sequence[str], find: str, put: str, regex: bool = False
 ) -> dict[str, str]:
     """Return new names with a text replaced wherever it stands; only of actions whose name has it. regex:

@@ -1,5 +1,5 @@
-"""What differs between two states of a project, as lines to read: clips, actions, stances and settings added,
-removed, changed.
+"""Describe the difference of two states of a project in lines: clips, actions, stances and settings that were
+added, removed or changed.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def _change(name: str, old: Any, new: Any) -> str:
 
 
 def _shown(value: Any) -> str:
-    """Return a value in a few characters, "" where it takes more."""
+    """Return a value in a few characters, "" if it takes more."""
     if isinstance(value, tuple) and all(isinstance(x, str) for x in value):
         value = ", ".join(value) or None
     if value is None:

@@ -1,5 +1,5 @@
 """Edits of what is on clips to find them again, and of the order in which actions are listed. Nothing plays
-otherwise for the first; the second changes nothing but lists either, since what plays is drawn by ids.
+differently for the first; the second changes nothing but lists either, since what plays is drawn by ids.
 """
 
 from __future__ import annotations

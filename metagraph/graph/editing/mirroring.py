@@ -1,7 +1,8 @@
 """Left/right twins of actions: which clips to mirror, and where their actions go.
 
 A mirrored clip must be written to a file before a project can keep it, so this comes in two halves:
-`twin_clips` gives the motion to write, `place_twins` the edit once those files are in the project's library.
+`make_twin_clips` gives the motion to write, `place_twins` the edit once those files are in the project's
+library.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class TwinClip:
     actions: tuple[str, ...]
 
 
-def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
+def make_twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
     """Return the mirrored clips that twins of these actions need, one for each clip, with names no other clip
     has.
 
@@ -50,7 +51,9 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
 
 
 def mirror_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
-    """Return the mirror images of clips, for the library alone. Raises EditError as `twin_clips` does."""
+    """Return the mirror images of clips, for the library alone. Raises EditError as
+    `make_twin_clips` does.
+    """
     if not clips:
         raise EditError(phrase("nothing to mirror"))
     names = {i: project.clips[i].name for i in dict.fromkeys(clips) if i in project.clips}
@@ -82,7 +85,7 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
                     far=100 * distance,
                 )
             )
-        name = find_free_name(twin_name(entry.name), taken)
+        name = find_free_name(name_twin(entry.name), taken)
         taken.add(name)
         out.append(TwinClip(name, twin.renamed(name), actions))
     return out
@@ -92,9 +95,8 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
     """Place twins of actions (id -> id of the mirrored clip) beside them.
 
     They keep kind, timing and likelihood; limb, tags, joints and name change sides; contacts are to be found
-    anew. A stance or end stance
-    that has a twin by name on its layer ("weight left", "weight right") is exchanged for that; a loop keeps
-    to its own stance only when it has none. Raises EditError.
+    again. A stance or end stance that has a twin by name on its layer ("weight left", "weight right") is
+    exchanged for that; a loop keeps to its own stance only when it has none. Raises EditError.
     """
     for ident, clip in pairs.items():
         action = _action(project, ident)
@@ -126,7 +128,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
             action,
             id=ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip),
             clip=clip,
-            name=twin_name(action.name),
+            name=name_twin(action.name),
             stance=stance,
             end_stance=end,
             limb=_OTHER[action.limb],
@@ -141,7 +143,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
     return project
 
 
-def twin_name(name: str) -> str:
+def name_twin(name: str) -> str:
     """Return the name with its sides exchanged, or "... mirrored" where it says none; the twin's twin has the
     first name again.
     """

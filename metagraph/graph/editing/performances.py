@@ -175,7 +175,9 @@ def close_up_after(
 def following(
     performance: Performance, asks: Collection[str], still: Collection[str] = ()
 ) -> tuple[str, ...]:
-    """Return some asks and all that are wanted from the first of them on, but for those that stay `still`."""
+    """Return some asks and all that are wanted from the first of them on, except for those that stay
+    `still`.
+    """
     first = min((ask_time(x) for x in performance.asks if x.id in asks), default=0.0)
     return tuple(
         x.id for x in performance.asks if x.id in asks or (ask_time(x) >= first and x.id not in still)
@@ -199,7 +201,7 @@ def set_line(project: Project, ident: str, line: Line | None) -> Project:
 
 
 def rename_line(project: Project, ident: str, new: str) -> Project:
-    """Give a line another id, in the performances that call it, too. Raises EditError where the new one is
+    """Give a line another id, in the performances that call it, too. Raises EditError if the new one is
     taken.
     """
     new = new.strip()

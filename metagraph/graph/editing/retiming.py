@@ -35,7 +35,7 @@ LATE = ("end", "earliest_exit", "relax")  # go to the end of a hold that is put 
 
 def set_retime(project: Project, clip: str, retime: Retime) -> Project:
     """Return the project with a clip retimed otherwise: its actions, the states and links that name moments
-    of it and the base pose follow. Raises EditError where the clip is gone or its file is missing.
+    of it and the base pose follow. Raises EditError if the clip is gone or its file is missing.
     """
     entry = project.clips.get(clip)
     if entry is None:
@@ -82,7 +82,7 @@ def _move_times(project: Project, after: ClipEntry, moved: Callable[..., float |
 
 def keep_clips_in_place(project: Project, clips: Iterable[str], on: bool = True) -> Project:
     """Return the project with clips kept in place, or with their own way: see `motion.in_place`. Times stay.
-    Raises EditError where a clip is gone or its file is missing.
+    Raises EditError if a clip is gone or its file is missing.
     """
     changed = {}
     for clip in clips:
@@ -103,7 +103,7 @@ def keep_clips_in_place(project: Project, clips: Iterable[str], on: bool = True)
 
 def scale_times(project: Project, clip: str) -> Project:
     """Return the project with all moments of a clip whose file has another length since they were timed
-    scaled to it, by as much as it is longer or shorter. Raises EditError where the clip is gone.
+    scaled to it, by as much as it is longer or shorter. Raises EditError if the clip is gone.
     """
     entry = project.clips.get(clip)
     if entry is None:

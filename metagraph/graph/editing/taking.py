@@ -192,7 +192,7 @@ def _action(
     there: Mapping[tuple[object, ...], Action],
     added: Mapping[str, Action | None],
 ) -> tuple[TakenItem, Action | None]:
-    """Return what becomes of an action, and the action as it is added, None where it is not."""
+    """Return what becomes of an action, and the action as it is added, None if it is not."""
 
     def thing(becomes: Becomes, words: str) -> TakenItem:
         return TakenItem("action", None, action.name, becomes, words)
@@ -233,14 +233,14 @@ class _Clips:
 
     @cached_property
     def joints(self) -> Mapping[str, str] | None:
-        """Joints of the other project -> those here; None where both call them alike."""
+        """Joints of the other project -> those here; None if both call them alike."""
         skeleton, own = self.other.skeleton, self.project.skeleton
         if skeleton is None or own is None or set(skeleton.names) <= set(own.names):
             return None
         return {pair.source: pair.target for pair in self.bringing.propose(skeleton).pairs}
 
     def fitted_action(self, action: Action) -> tuple[Action | None, str]:
-        """Return an action with the joints of this project, None where it moves none of them; and what was
+        """Return an action with the joints of this project, None if it moves none of them; and what was
         changed, in words.
         """
         joints = self.joints
@@ -259,7 +259,7 @@ class _Clips:
         return self.lost.get(ident, phrase("its clip is not in the other project"))
 
     def of(self, ident: str) -> str | None:
-        """Return the id here of a clip of the other project; None where it cannot be taken."""
+        """Return the id here of a clip of the other project; None if it cannot be taken."""
         if ident in self.given or ident in self.lost or ident not in self.other.clips:
             return self.given.get(ident)
         entry = self.other.clips[ident]
@@ -318,11 +318,11 @@ class _Clips:
 
 
 def _content(entry: ClipEntry) -> tuple[object, ...]:
-    """Return by what two clips are the same: content, or place where that is not known, and how they play."""
+    """Return by what two clips are the same: content, or place if that is not known, and how they play."""
     return (entry.digest or entry.path, entry.take, entry.as_is, entry.retime, entry.in_place)
 
 
-def words_of_taking(taking: Taking) -> str:
+def describe_taking(taking: Taking) -> str:
     """Say in a line what was taken."""
     counts = [
         plural_phrase("{count:,} new stance", "{count:,} new stances", taking.count("stance")),

@@ -14,7 +14,7 @@ from typing import Any
 
 from metagraph.graph.face.arkit import ARKIT
 from metagraph.graph.face.expression_presets import PRESETS
-from metagraph.graph.face.names import plain_curve_name
+from metagraph.graph.face.names import simplify_curve_name
 
 TABLE = Path(__file__).with_suffix(".toml")
 _PREFIX = re.compile(
@@ -72,7 +72,7 @@ def match_arkit_shape(name: str) -> str | None:
 
 
 def _keys(name: str) -> list[str]:
-    out = [plain_curve_name(name)]
+    out = [simplify_curve_name(name)]
     while (found := _PREFIX.match(out[-1])) and len(out[-1]) > found.end():
         out.append(out[-1][found.end() :])
     return out

@@ -1,6 +1,6 @@
 """Blend shape curves of clips on the project's own face, whatever the clips call them.
 
-A curve that has the name of one of the character's morph targets moves it. Any other is told by what its
+A curve that has the name of one of the character's morph targets moves it. Any other is chosen by what its
 name means (`blendshape_names`): it moves the target that is the same shape, else the channels of the face
 that come nearest, which may be joints. Curves of eyes and lids turn joints where the face moves those by
 joints, so that life's own blinks know what is shut already.

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.graph.face.names import find_morphs, plain_curve_name
+from metagraph.graph.face.names import find_morphs, simplify_curve_name
 
 # Preset -> ((channel of a face, how much of it), ...); the amounts are ours.
 PRESETS: dict[str, tuple[tuple[str, float], ...]] = {
@@ -42,7 +42,7 @@ def presets_of(names: Iterable[str], bound: Mapping[str, str] | None = None) -> 
     """
     targets = list(names)
     channels = find_morphs(targets, bound)
-    own = {plain_curve_name(name): name for name in reversed(targets)}
+    own = {simplify_curve_name(name): name for name in reversed(targets)}
     out: dict[str, dict[str, float]] = {}
     for preset, parts in PRESETS.items():
         if preset.lower() in own:

@@ -51,7 +51,7 @@ _PREFIX = re.compile(
 )
 
 
-def plain_curve_name(name: str) -> str:
+def simplify_curve_name(name: str) -> str:
     """Return a name without what differs from tool to tool: case, separators, what stands before a dot
     ("eyeBlink.L" is whole).
     """
@@ -63,7 +63,7 @@ def plain_curve_name(name: str) -> str:
 
 def _keys(name: str) -> list[str]:
     """Return the words a name may be known by: itself, then without its prefixes."""
-    out = [plain_curve_name(name)]
+    out = [simplify_curve_name(name)]
     while (found := _PREFIX.match(out[-1])) and len(out[-1]) > found.end():
         out.append(out[-1][found.end() :])
     return out
@@ -247,7 +247,7 @@ _SHORT = 0.6  # seconds; a clip that shows one shape is no longer
 _BLINK = 1.5
 
 
-def clip_shapes(project: Project) -> dict[str, str]:
+def find_clip_shapes(project: Project) -> dict[str, str]:
     """Return channel -> id of the clip that shows it, told by the clips' names.
 
     A clip called like a mouth shape counts only among others of the same file, or with "viseme" or the like
@@ -259,7 +259,7 @@ def clip_shapes(project: Project) -> dict[str, str]:
     for entry in project.clips.values():
         if entry.motion is None or entry.duration > _BLINK:
             continue
-        key = plain_curve_name(entry.name)
+        key = simplify_curve_name(entry.name)
         if re.match(r"^(eyes?)?(blink|eyesclosed?|lidsclosed?)", key):
             blinks.append((len(key), entry.name, entry.id))
         if entry.duration > _SHORT:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face.names import VISEMES, clip_shapes, find_morphs
+from metagraph.graph.face.names import VISEMES, find_clip_shapes, find_morphs
 from metagraph.graph.life import FacePose
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.remembered import Remembered
@@ -248,7 +248,7 @@ class _Reader:
         groups = self.lid_groups()
         if not groups:
             return {}
-        blink = clip_shapes(self.project).get("blink")
+        blink = find_clip_shapes(self.project).get("blink")
         if "blink" not in self.project.face.poses and blink is not None:
             shown = self.shown({"blink": FacePose(clip=blink)})
             if any(c in shown for c in LIDS):
@@ -280,14 +280,14 @@ class _Reader:
             for channel, part in {"jaw_open": 1.0, **{f"viseme_{v}": p for v, p in OPENING.items()}}.items():
                 if part > 0:
                     out[channel] = {jaw: (np.radians(JAW_OPEN) * part * axis, np.zeros(3))}
-        found = clip_shapes(self.project)
+        found = find_clip_shapes(self.project)
         clips = {c: FacePose(clip=found[c]) for c in MOUTH if c in found and c not in self.project.face.poses}
         shown = self.shown(clips)
         return {**({} if any(c.startswith("viseme") for c in shown) else out), **shown}
 
     def shown(self, poses: Mapping[str, FacePose]) -> dict[str, Shape]:
-        """Return the shapes that frames of clips show. A blink is told apart by lids; what else moves in it
-        is its own channel.
+        """Return the shapes that frames of clips show. A blink is distinguished by lids; what else moves in
+        it is its own channel.
         """
         out: dict[str, Shape] = {}
         groups = self.lid_groups(helpers=True)

@@ -36,7 +36,7 @@ def is_face_take(clip: Clip) -> bool:
 
 
 def put_on_body(project: Project, clip: Clip) -> Clip:
-    """Return a face's recording on the project's skeleton. Raises RetargetError where it has no head.
+    """Return a face's recording on the project's skeleton. Raises RetargetError if it has no head.
 
     Eyes that are joints turn by the recorded angles, and then not by the shapes that say the same.
     """
@@ -79,7 +79,7 @@ def put_on_body(project: Project, clip: Clip) -> Clip:
     )
 
 
-def face_joints(project: Project) -> tuple[str, ...]:
+def find_face_joints(project: Project) -> tuple[str, ...]:
     """Return the names of the joints that a face's recording moves: the head, and all of the face."""
     if project.skeleton is None:
         return ()

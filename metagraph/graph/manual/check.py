@@ -115,7 +115,7 @@ def _state(
             "ends at {end:.2f} s, which is not after its start at {start:.2f} s", end=end, start=state.start
         )
         yield at("error", "empty", message, phrase("Move its end after its start."))
-    if unknown := anatomy.unknown_joints(project.skeleton, state):
+    if unknown := anatomy.list_unknown_joints(project.skeleton, state):
         message = phrase("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0])
         yield at("error", "mask", message, phrase("Choose its joints again."))
 

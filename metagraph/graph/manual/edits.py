@@ -160,8 +160,8 @@ def update_links(project: Project, links: Collection[str], **changes: Any) -> Pr
     """Set fields of links; `condition` takes a mapping of the Condition fields to change, or a whole
     Condition.
 
-    A link that becomes a request is named after its target until it is told otherwise. Raises EditError for a
-    trigger without a letter.
+    A link that becomes a request is named after its target until it is renamed. Raises EditError
+    for a trigger without a letter.
     """
     condition = changes.get("condition")
     if isinstance(condition, Mapping):

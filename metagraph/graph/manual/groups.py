@@ -21,7 +21,7 @@ from metagraph.graph.model import Layer, Project
 
 def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool = False) -> Project:
     """Make an alias that stands for some states, or for every one, left of them and called by what their
-    names share. Raises EditError where there is no state.
+    names share. Raises EditError if there is no state.
     """
     found = get_machine(project, layer)
     chosen = tuple(i for i in found.states if i in states)
@@ -48,7 +48,7 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
 
 
 def find_shared_words(names: Sequence[str]) -> str:
-    """Return the words that all names begin with, or where there are none, those that most begin with; "" for
+    """Return the words that all names begin with, or if there are none, those that most begin with; "" for
     none.
     """
     starts: Counter[str] = Counter()
@@ -100,11 +100,11 @@ def find_links(manual: Manual, states: Collection[str], into: bool = False) -> t
 def paste_copied_links(
     project: Project, layer: Layer, links: Sequence[Link], nodes: Sequence[str]
 ) -> Project:
-    """Draw copied links anew for other states or aliases, with all their settings: those that left one state
+    """Draw copied links again for other states or aliases, with all their settings: those that left one state
     leave each of these, those that led to one lead to each of these.
 
     What the links share tells which: their source, or where they have several, their target. Raises EditError
-    where neither is shared, or nothing is left to draw.
+    if neither is shared, or nothing is left to draw.
     """
     found = get_machine(project, layer)
     sources, targets = Counter(x.source for x in links), Counter(x.target for x in links)

@@ -143,7 +143,7 @@ class Manual:
         return tuple(i for i in self.states if alias.every or i in chosen)
 
     def end(self, link: Link) -> str | None:
-        """Return the state a link leads to, None where its target is a group without an entry."""
+        """Return the state a link leads to, None if its target is a group without an entry."""
         group = self.aliases.get(link.target)
         end = link.target if group is None else group.entry
         return end if end in self.states else None
@@ -247,7 +247,7 @@ def _alias_without(alias: Alias, gone: Collection[str]) -> Alias:
 def remove_clips_from_machines(
     manuals: Mapping[Layer, Manual], clips: Collection[str]
 ) -> Mapping[Layer, Manual]:
-    """Return the machines without the states that use some clips; the same object where there are none."""
+    """Return the machines without the states that use some clips; the same object if there are none."""
     gone = {layer: [s.id for s in m.states.values() if s.clip in clips] for layer, m in manuals.items()}
     if not any(gone.values()):
         return manuals

@@ -43,8 +43,8 @@ def as_meta(project: Project) -> tuple[Project, Pairs, Pairs]:
 
 
 def describe_meta_differences(project: Project) -> list[str]:
-    """Say in words how the meta-graph differs from the manual machines it is made of; nothing where it does
-    not.
+    """Say in words how the meta-graph differs from the manual machines it is made of; nothing if it
+    does not.
     """
     made, missing, extra = as_meta(project)
     drawn = sum(len(m.states) for m in project.manual.values())
@@ -181,7 +181,7 @@ def _ends(
 def _placed(
     manual: Manual, state: State, of: Mapping[str, int], into: Counter[int], out: Counter[int]
 ) -> tuple[Kind, int, int] | None:
-    """Return kind, stance and end stance of a state; None where no stance is joined to it."""
+    """Return kind, stance and end stance of a state; None if no stance is joined to it."""
     if state.id in of:
         return "stance", of[state.id], of[state.id]
     if not into and not out:
@@ -267,7 +267,7 @@ def is_only_manual(project: Project) -> bool:
 def exportable(project: Project, manual: bool | None = None) -> tuple[Project, list[str]]:
     """Return what is exported of a project, and in words how far it differs from what was drawn.
 
-    manual: its manual machines, as what they amount to, rather than its meta-graph; None for where there is
+    manual: its manual machines, as what they amount to, rather than its meta-graph; None for if there is
     nothing else.
     """
     if is_only_manual(project) if manual is None else manual:

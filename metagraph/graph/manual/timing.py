@@ -6,8 +6,8 @@ from metagraph.graph.manual.machine import Link, State
 from metagraph.graph.model import Project
 
 
-def state_span(project: Project, state: State) -> tuple[float, float]:
-    """Return the part of its clip a state plays, clamped to the clip; nothing where the clip is gone."""
+def find_state_span(project: Project, state: State) -> tuple[float, float]:
+    """Return the part of its clip a state plays, clamped to the clip; nothing if the clip is gone."""
     entry = project.clips.get(state.clip)
     length = entry.duration if entry is not None else 0.0
     start = min(max(0.0, state.start), length)
@@ -20,7 +20,7 @@ def exit_moment(project: Project, state: State, link: Link) -> float | None:
     An exit time holds before a share. The blend is over with the share; at the end it is over with the
     source, and a loop that is asked to leave, which has no end, is left at once.
     """
-    start, end = state_span(project, state)
+    start, end = find_state_span(project, state)
     if link.exit_time is not None:
         return min(max(start, link.exit_time), end)
     asked = link.condition.when == "request"

@@ -3,7 +3,7 @@
 Read are gesture, pointing, head, posture, gaze, speech, face (blinks), wait, animation; constraints between
 their sync points; `composition`. What is not understood is left out with a note, never with an error: a block
 made for more than we can do still does what it can. Times BML leaves to the realiser (how long a gesture
-prepares) come from the project's clips where there is a project, and are guessed where there is none.
+prepares) come from the project's clips where there is a project, and are guessed if there is none.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ class Index:
 _latest: list[tuple[ref[Project], Index]] = []
 
 
-def index_of(project: Project) -> Index:
+def get_word_index(project: Project) -> Index:
     """Return a project's index."""
     if not _latest or _latest[0][0]() is not project:
         _latest[:] = [(ref(project), Index(project))]
@@ -78,7 +78,7 @@ class BmlWords:
 
     def __init__(self, project: Project | None) -> None:
         self.project = project
-        self.index = index_of(project) if project is not None else None
+        self.index = get_word_index(project) if project is not None else None
         self.lengths: dict[Any, dict[str, float]] = {}
 
     def gesture(self, words: Sequence[str], layer: str, fields: Mapping[str, Any]) -> a.Gesture | a.Play:
@@ -125,7 +125,7 @@ class BmlWords:
         return layer, word
 
     def line(self, ident: str) -> str:
-        """Return the project's line of this id, "" where there is none."""
+        """Return the project's line of this id, "" if there is none."""
         return ident if self.project is not None and ident in self.project.lines else ""
 
     def spoken(self, line: str, text: str) -> float:

@@ -43,8 +43,8 @@ class AnnotationInterval:
 
 @dataclass(frozen=True)
 class AnnotationTier:
-    """intervals: ascending by start. participant: whose tier it is, "" where the file does not say. parent:
-    the tier it refers to.
+    """intervals: ascending by start. participant: whose tier it is, "" if the file does not say. parent: the
+    tier it refers to.
     """
 
     name: str
@@ -220,7 +220,7 @@ _NEGATIVE = _set("negative neg no nein non disagree disagreement negation shake 
 
 
 def _known(label: str) -> str | None:
-    """Return what a label surely means, None where its words say nothing."""
+    """Return what a label surely means, None if its words say nothing."""
     parts = _words(label)
     words = " ".join(parts)
     if words in _NOTHING:

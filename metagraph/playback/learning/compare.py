@@ -1,4 +1,4 @@
-"""What was seen beside what a model makes of it: how often, what after what, how long; with what chance alone
+"""What was seen beside what a model makes of it: how often, what after what, how long; with which seed alone
 explains.
 
 A model of n draws visits its states not quite as often as its matrix says. How far off is to be expected
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Kind, Markov
-from metagraph.playback.learning.learn import Act, State, acts_of_metas, model_states, rests, state_of
+from metagraph.playback.learning.learn import Act, State, model_states, read_acts_of_metas, rests, state_of
 from metagraph.playback.planning.markov import write
 
 Array = NDArray[Any]
@@ -78,7 +78,7 @@ def tally(observed: Sequence[Sequence[Act]], states: Sequence[State], tagged: bo
 
 @dataclass(frozen=True)
 class ModelComparison:
-    """observed: None where nothing was; the matrix alone is compared with then. generated: by the model.
+    """observed: None if nothing was; the matrix alone is compared with then. generated: by the model.
     expected [n]: how often each state comes in the long run; deviation [n]: how far the generated shares may
     be off by chance alone, one standard deviation.
     """
@@ -99,7 +99,7 @@ class ModelComparison:
 
     def apart(self) -> Array:
         """By how many standard deviations what was seen is off what the model does in the long run, `[n]`; 0
-        where nothing was seen.
+        if nothing was seen.
         """
         if self.observed is None or not self.observed.count:
             return np.zeros(len(self.expected))
@@ -135,11 +135,11 @@ def generate(
     model: Markov, seconds: float, seed: int = 1, kinds: AbstractSet[Kind] | None = None
 ) -> tuple[Act, ...]:
     """Return what a model does in some seconds when nobody asks for anything."""
-    return acts_of_metas(write(model, seed, seconds, kinds)[0])
+    return read_acts_of_metas(write(model, seed, seconds, kinds)[0])
 
 
 def quantiles(lengths: Array) -> Array:
-    """Return the `LEVELS` of lengths `[5]`, NaN where there are none."""
+    """Return the `LEVELS` of lengths `[5]`, NaN if there are none."""
     return np.quantile(lengths, LEVELS) if len(lengths) else np.full(len(LEVELS), np.nan)
 
 

@@ -40,7 +40,7 @@ _WEIGHT: Mapping[Kind, int] = {"transition": 2, "gesture": 1, "fidget": 0, "stan
 @dataclass(frozen=True, slots=True)
 class Act:
     """Something one layer was seen, or is made, to do. start, end: seconds. stroke: its most telling moment,
-    where that is known.
+    if that is known.
     """
 
     start: float
@@ -58,7 +58,7 @@ class Act:
 # --- intervals to sequences
 
 
-def act_sequences(
+def find_act_sequences(
     annotation: Annotation, roles: Mapping[str, str], labels: Iterable[Label]
 ) -> dict[Layer, tuple[Act, ...]]:
     """Return what each layer does that some tier is read as, ascending by start.
@@ -314,7 +314,7 @@ def remove_state(model: Markov, place: int) -> Markov:
 # --- performing what was seen
 
 
-def asks_from_acts(layer: Layer, acts: Sequence[Act]) -> tuple[AnyRequest, ...]:
+def make_asks_from_acts(layer: Layer, acts: Sequence[Act]) -> tuple[AnyRequest, ...]:
     """Return what to ask for so that a layer does what was seen; which actions that takes is left to chance.
 
     A change of stance does not say which stance it leads to. Only arms are asked for by limb.
@@ -344,7 +344,7 @@ def as_performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: 
     seconds: how long it was watched, at least; it lasts a second longer than the last act in any case.
     """
     asks = sorted(
-        (ask for layer, acts in observed.items() for ask in asks_from_acts(layer, acts)),
+        (ask for layer, acts in observed.items() for ask in make_asks_from_acts(layer, acts)),
         key=lambda ask: ask.at or 0.0,
     )
     end = max((act.end for acts in observed.values() for act in acts), default=0.0)
@@ -353,9 +353,9 @@ def as_performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: 
     )
 
 
-def acts_of_asks(layer: Layer, asks: Iterable[AnyRequest]) -> tuple[Act, ...]:
+def read_acts_of_asks(layer: Layer, asks: Iterable[AnyRequest]) -> tuple[Act, ...]:
     """Return the acts that a performance asks of a layer, as far as it asks for kinds and times: the inverse
-    of `asks_from_acts`.
+    of `make_asks_from_acts`.
     """
     out = []
     for ask in asks:
@@ -371,6 +371,6 @@ def acts_of_asks(layer: Layer, asks: Iterable[AnyRequest]) -> tuple[Act, ...]:
     return tuple(sorted(out, key=lambda a: (a.start, a.end)))
 
 
-def acts_of_metas(metas: Iterable[MetaAction]) -> tuple[Act, ...]:
+def read_acts_of_metas(metas: Iterable[MetaAction]) -> tuple[Act, ...]:
     """Return what meta actions say is done, whichever actions realise them."""
     return tuple(Act(m.start, m.end, m.request.limb or "both", m.request.kind, m.request.tags) for m in metas)

@@ -74,15 +74,14 @@ class EyeAt:
 class Body:
     """What lives in a body. Directions `left`, `up`, `ahead` are the character's; metres.
 
-    chain: the joints from the root to the head, or to the chest where there is none. breath: for each of them
+    chain: the joints from the root to the head, or to the chest if there is none. breath: for each of them
     the axis it turns about in its own space and by how many radians at the top of a breath. bowed: by how
     many in a bowed posture, thrust: in one that leans into it. joints: all that life may turn: the chain,
     then shoulders and what else tightens, eyes that are joints, the face's. read: whose rotations it must
     know: the chain, eyes that are joints, lids. shoulders: their rotation vectors at the top of a breath;
-    tense: those of the same joints at full tension; closed: of arms kept close.
-    lookers: empty where there is no head, from the root upwards. trunk: its place in the chain; trunk_ahead,
-    head_ahead: ahead in their own space. eyes: left, right. partner: where "user" is; eyes_at_rest: between
-    the eyes in the base pose.
+    tense: those of the same joints at full tension; closed: of arms kept close. lookers: empty if there is no
+    head, from the root upwards. trunk: its place in the chain; trunk_ahead, head_ahead: ahead in their own
+    space. eyes: left, right. partner: where "user" is; eyes_at_rest: between the eyes in the base pose.
     """
 
     left: Vector
@@ -123,7 +122,7 @@ def _vector(values: Any) -> Vector:
 
 
 def _upright_pose(project: Project, roles: Mapping[str, int]) -> Pose:
-    """Return the base pose; where nobody has chosen one and the rest pose is a heap on the floor, the first
+    """Return the base pose; if nobody has chosen one and the rest pose is a heap on the floor, the first
     clip's first frame.
     """
     skeleton, pose = project.skeleton, anatomy.base_pose(project)

@@ -132,8 +132,8 @@ class BodyGaze:
         return Moves(tuple(parts), (eyes_x, eyes_y), (head_x, head_y))
 
     def _aim(self, place: int) -> Aim:
-        """Return a target as it is met; how long the move to it takes is told by how far it is from the one
-        before.
+        """Return a target as it is met; how long the move to it takes depends on how far it is from the
+        one before.
         """
         target = self.targets[place]
         at, seen = self._seen(target)

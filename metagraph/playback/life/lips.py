@@ -21,8 +21,8 @@ _TAPS = np.array([-1.0, 0.0, 1.0])
 
 
 def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Array) -> Array | None:
-    """Return how much of each shape but silence the mouth shows at `times [N]`: `[N, 14]`; None where nothing
-    is said.
+    """Return how much of each shape but silence the mouth shows at `times [N]`: `[N, 14]`; None if nothing is
+    said.
     """
     if not track.speeches or not len(times):
         return None

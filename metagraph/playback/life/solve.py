@@ -222,7 +222,7 @@ def _head(
 
 
 def _gap(body: Body, left: float, facing: Vector) -> float:
-    """Return how far it is from where somebody faces to `left`, the short way round; less of it where that is
+    """Return how far it is from where somebody faces to `left`, the short way round; less of it if that is
     behind, or where they face up or down.
     """
     x, z = _dot(body.left, facing), _dot(body.ahead, facing)

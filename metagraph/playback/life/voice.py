@@ -28,8 +28,8 @@ Array = NDArray[Any]
 class Voice:
     """One line, analysed. duration: seconds. peaks: times of its loudness peaks, a syllable each `[P]`. times
     `[K]`, weights `[K, 15]`: how much of each of `VISEMES` the mouth shows, 0..1, linear between the times.
-    strengths: how loud the peaks are `[P]`, 0..1; empty where that is not known. stresses: times of the
-    stressed syllables `[S]`, ascending, where they are known: the peaks of pitch of a conversation's clauses.
+    strengths: how loud the peaks are `[P]`, 0..1; empty if that is not known. stresses: times of the stressed
+    syllables `[S]`, ascending, where they are known: the peaks of pitch of a conversation's clauses.
     """
 
     duration: float
@@ -67,18 +67,18 @@ def voice_from_text(text: str, duration: float | None = None) -> Voice:
 
 
 @lru_cache(maxsize=256)
-def voice_from_timing(timing: LineTiming, duration: float) -> Voice:
-    """Return the voice of a line whose words and shapes are told with their times."""
+def make_voice_from_timing(timing: LineTiming, duration: float) -> Voice:
+    """Return the voice of a line whose words and shapes are given with their times."""
     said = timed_sounds(ALPHABET, timing)
     return make_voice(said.pieces, duration, np.array(said.peaks), np.array(said.strengths))
 
 
 def voice_for_speech(voices: Mapping[str, Voice], speech: Speech) -> Voice:
-    """Return the voice of something said: as its words and shapes were told, as its line's was read from the
-    sound, else one guessed from its text.
+    """Return the voice of something said: as its words and shapes were reported, as its line's was read from
+    the sound, else one guessed from its text.
     """
     if speech.timing is not None:
-        return voice_from_timing(
+        return make_voice_from_timing(
             speech.timing, speech.end - speech.start if speech.length is None else speech.length
         )
     known = voices.get(speech.line) if speech.line is not None else None

@@ -22,9 +22,9 @@ class AskedLine:
     at: float
 
 
-def asked_line(project: Project, action: Action) -> AskedLine | None:
+def find_asked_line(project: Project, action: Action) -> AskedLine | None:
     """Return the line that an action is asked for with: beside it in a kept performance, else by the line's
-    own asks; where several are, the one that names the action itself, then the first. None where none is.
+    own asks; where several are, the one that names the action itself, then the first. None if none is.
     """
     found = [*_in_performances(project, action), *_by_lines(project, action)]
     return max(found, key=lambda f: f[0])[1] if found else None
@@ -57,7 +57,7 @@ def _by_lines(project: Project, action: Action) -> Iterator[tuple[bool, AskedLin
 
 
 def _names(ask: a.AnyRequest, action: Action) -> bool | None:
-    """Return whether an ask names an action itself; None where it may not be that action at all."""
+    """Return whether an ask names an action itself; None if it may not be that action at all."""
     match ask:
         case a.Play():
             fits = ask.action in (action.id, action.name) and ask.layer in (None, action.layer)
@@ -76,7 +76,7 @@ def _names(ask: a.AnyRequest, action: Action) -> bool | None:
 def _begins(
     project: Project, action: Action, ask: a.AnyRequest, default: float | None = None
 ) -> float | None:
-    """Return when an action begins that an ask is answered with; None where it does not say when."""
+    """Return when an action begins that an ask is answered with; None if it does not say when."""
     stroke = getattr(ask, "stroke", None)
     if stroke is not None:
         return float(stroke) - lead(project, action)

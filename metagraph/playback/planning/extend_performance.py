@@ -125,7 +125,7 @@ def _answer(ident: str, found: _Found) -> AskAnswer:
     why = "; ".join(dict.fromkeys(r.message for r in told))
     if cues or items:
         starts = [c.start for c in cues] + [i.start for i in items]
-        ends = [c.end for c in cues] + [item_end(i) for i in items]
+        ends = [c.end for c in cues] + [find_item_end(i) for i in items]
         late = any(r.outcome in ("late", "queued", "resumed") for r in told)
         what = (*(c.action.name for c in cues), *(name_item(i) for i in items))
         return AskAnswer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
@@ -143,7 +143,7 @@ def _answer(ident: str, found: _Found) -> AskAnswer:
     return AskAnswer(ident, "refused", None, None, (), why or "nothing came of it")
 
 
-def item_end(item: Any) -> float:
+def find_item_end(item: Any) -> float:
     """Return when something that lasts ends: a mode or a place when another one comes, a blink at once."""
     if isinstance(item, ModeFrom | PlaceFrom):
         return FOREVER

@@ -1,8 +1,8 @@
 """What of a running plan lies so far back that planning on neither reads nor changes it: its head.
 
-Planning on from the rest alone, with what the head leaves behind (`Past`), gives the very same plan, in a
-time that grows with what is new and with what is remembered (`RECENT`, the settings' memory), not with the
-plan. What it leaves as it was is shared, not copied (`strand`).
+Planning on from the rest alone, with what the head leaves behind (`Past`), gives the same plan, in a time
+that grows with what is new and with what is remembered (`RECENT`, the settings' memory), not with the plan.
+What it leaves as it was is shared, not copied (`strand`).
 """
 
 from __future__ import annotations
@@ -77,8 +77,8 @@ def share_layer(of: LayerPlan) -> LayerPlan:
 
 
 def find_plan_head(project: Project, plan: Plan, now: float, again: Collection[str]) -> PlanHead | None:
-    """Return the head of a plan at `now`; None where there is none, or where all has to be looked at. again:
-    ids of what is asked for anew or withdrawn.
+    """Return the head of a plan at `now`; None if there is none, or where all has to be looked at. again: ids
+    of what is requested again or withdrawn.
     """
     cut = now - max(RECENT, project.settings.memory)
     if cut <= 0:

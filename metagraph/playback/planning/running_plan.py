@@ -26,9 +26,7 @@ from metagraph.playback.planning.plan_head import RECENT
 
 AHEAD = 20.0  # seconds of plan
 SLACK = 2.0  # seconds by which a plan may fall behind its horizon before it is extended
-REPLAYED = (
-    10.0  # seconds planned at a time where nobody waits for an answer, beyond what a live session plans
-)
+REPLAYED = 10.0  # seconds planned at a time if nobody waits for an answer, beyond what a live session plans
 CUT = 15.0  # seconds between two cuts
 
 
@@ -48,8 +46,8 @@ class RunningPlan:
         self.plan = hear_asks(project, empty, 0.0, [], ahead, self.stances, idle)
 
     def reach(self, now: float, anew: bool = False) -> None:
-        """Plan on where less than `ahead`, but for a little, is left at `now`; anew: also what has not begun,
-        for an edited project.
+        """Plan on where less than `ahead`, except for a little, is left at `now`; again: also what has not
+        begun, for an edited project.
         """
         end = (
             self.plan.end

@@ -66,7 +66,7 @@ _FIELDS: dict[type, tuple[str, ...]] = {}
 
 
 def _plain(project: Project, ask: a.AnyRequest) -> PlainAsk:
-    """Return an ask with every field. Raises RequestError where it tells times that make no sense."""
+    """Return an ask with every field. Raises RequestError if it tells times that make no sense."""
     kind = type(ask)
     if kind not in _FIELDS:
         _FIELDS[kind] = tuple(name for name in kind.__struct_fields__ if name not in _TOLD)

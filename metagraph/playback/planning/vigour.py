@@ -20,8 +20,8 @@ STILL = 0.02  # metres a second: slower than this nothing is
 
 def vigour(project: Project, action: Action) -> float:
     """Return how fast an action's hands (arms), head or trunk and feet move on average, beside the median of
-    its layer's actions of its kind: -1 for half as fast or less, 1 for twice as fast or more. 0 where nothing
-    is known of its motion. An export says it.
+    its layer's actions of its kind: -1 for half as fast or less, 1 for twice as fast or more. 0 if nothing is
+    known of its motion. An export says it.
     """
     if isinstance(project, ResolvedProject):
         return project.vigours.get(action.id, 0.0)
@@ -79,7 +79,7 @@ def mean_speed_within(
     project: Project, action: Action, motion: Clip, start: float, end: float
 ) -> float | None:
     """Return the mean speed of the fastest mover in the part that plays (`Project.span`), metres a second;
-    None where nothing plays.
+    None if nothing plays.
     """
     if motion.frames < 2 or end <= start:
         return None

@@ -169,10 +169,10 @@ class ContactStage:
                 [replace(g, weight=g.weight * part) for g in some if g.weight * part > LEAST]
                 for some, part in zip(goals, shown.tolist(), strict=True)
             ]
-        return pose_with_contacts(pose, rig, goals)
+        return solve_pose_with_contacts(pose, rig, goals)
 
 
-def pose_with_contacts(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
+def solve_pose_with_contacts(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
     """Return poses `[N, J]` with hands at their goals, and outside the body if the rig's guard is on."""
     busy = np.array([bool(g) for g in goals])
     if rig.guard and not busy.all():
@@ -208,14 +208,14 @@ def contact_depths(rig: ContactRig, pose: Pose) -> Array:
     """Return `[N, P]` how deep forearms and hands are inside other parts, in metres, negative outside, for
     every pair.
     """
-    first, second, _ = capsule_pairs(rig)
+    first, second, _ = list_capsule_pairs(rig)
     a, b = ends(rig, pose)
     radii = np.array([c.radius for c in rig.capsules])
     way, _ = nearest_between_lines(a[:, first], b[:, first], a[:, second], b[:, second])
     return np.asarray(radii[first] + radii[second] - np.linalg.norm(way, axis=-1))
 
 
-def capsule_pairs(rig: ContactRig) -> tuple[list[int], list[int], list[tuple[int, int]]]:
+def list_capsule_pairs(rig: ContactRig) -> tuple[list[int], list[int], list[tuple[int, int]]]:
     """Return the indices of capsules that are kept apart: those that are pushed, the others, and
     the pairs.
     """

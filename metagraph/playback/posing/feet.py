@@ -32,8 +32,7 @@ SAME = 10  # units of a row: a clip that moves less all along needs only one row
 
 def find_feet_layer(project: Project, rig: WeightRig) -> Layer | None:
     """Return the layer that alone moves the joints from the root to the feet, with full weight: the feet are
-    then where its clips have them. None where several do, or one in part. A layer without actions moves
-    nothing.
+    then where its clips have them. None if several do, or one in part. A layer without actions moves nothing.
     """
     parts = anatomy.project_parts(project)
     legs = {rig.body.joints[p] for leg in rig.body.arms for p in leg.below}

@@ -24,7 +24,7 @@ from metagraph.playback.posing.feet import STANDS as HELD_BELOW
 from metagraph.playback.posing.feet import FeetOfPlan
 from metagraph.playback.posing.layers import loop_seconds, weight_of_cue
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.playback.posing.weight import foot_rows_of, has_planted_feet
+from metagraph.playback.posing.weight import find_foot_rows, has_planted_feet
 
 Array = NDArray[Any]
 
@@ -67,14 +67,14 @@ class FeetSeen:
         return np.asarray(self.slides > least)
 
 
-def feet_joints(project: Project) -> list[list[int]]:
+def find_feet_joints(project: Project) -> list[list[int]]:
     """Return the joints of the left and the right foot; an empty list if a foot is missing."""
     roles = anatomy.project_roles(project)
     out = [[roles[f"{s}_{p}"] for p in ("foot", "toes") if f"{s}_{p}" in roles] for s in SIDES]
     return out if all(out) else []
 
 
-def slide_speeds(places: Array, rate: float) -> Array:
+def measure_slide_speeds(places: Array, rate: float) -> Array:
     """Return how fast places `[N, ..., 3]`, `rate` a second, move `[N - w, ...]` in the window that begins at
     each, in metres a second, from its beginning to its end.
     """
@@ -90,7 +90,7 @@ def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Arra
     skeleton = project.skeleton
     assert skeleton is not None
     layer = plan.layers[rigs_of(project).weight.feet_layer or "body"]
-    feet = [joint for side in feet_joints(project) for joint in side]
+    feet = [joint for side in find_feet_joints(project) for joint in side]
     own, kind = np.zeros((len(times), len(feet))), np.full(len(times), "loops", object)
 
     def speed(action: Action, seconds: Array) -> Array:
@@ -143,7 +143,7 @@ class FeetWatch:
         clip: Clip | None = None,
     ) -> None:
         self.project, self.plan, self.length = project, plan, length
-        self.feet = feet_joints(project) if project.skeleton is not None else []
+        self.feet = find_feet_joints(project) if project.skeleton is not None else []
         self._joints = [joint for side in self.feet for joint in side]
         self._places_at, self._clip = places_at, clip
         weight = rigs_of(project).weight if self.feet else None
@@ -152,7 +152,7 @@ class FeetWatch:
         layer = weight.feet_layer if weight is not None else None
         steps = plan is not None and has_planted_feet(project) and rig is not None
         self._layer = layer or "body"
-        rows = partial(foot_rows_of, weight) if steps and weight is not None else None
+        rows = partial(find_foot_rows, weight) if steps and weight is not None else None
         self._goals = FeetOfPlan(rows, self._height, layer) if rows and layer else None
         self._floor: Array | None = None
         self._known: dict[int, tuple[Array, Array, Array]] = {}  # by sample: places, clips' speeds, steps
@@ -184,7 +184,7 @@ class FeetWatch:
             return FeetSeen(times[:0], none.astype(int), none, np.zeros((0, 2, 3)))
         rows = [self._known[n] for n in _widened(numbers)]
         at, own, steps = (np.array(part) for part in zip(*rows, strict=True))
-        speed = slide_speeds(at, RATE)  # of the windows that begin at each sample
+        speed = measure_slide_speeds(at, RATE)  # of the windows that begin at each sample
         if self.plan is None:
             own = speed
         count = len(times)
@@ -242,7 +242,7 @@ def _widened(numbers: range) -> range:
     return range(numbers.start - 2 * HALF, numbers.stop + 2 * HALF)
 
 
-def worst_slide(seen: FeetSeen) -> tuple[float, int, float] | None:
+def find_worst_slide(seen: FeetSeen) -> tuple[float, int, float] | None:
     """Return time, side and speed, in metres a second, of the fastest slide; None if there is none."""
     if not len(seen.times) or not seen.sliding().any():
         return None

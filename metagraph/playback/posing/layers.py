@@ -131,7 +131,7 @@ class _LayerStage:
     def _rest(self, rest: Rest, times: Array) -> Sample:
         motion = playable(self._project, rest.action)
         if motion is None:
-            return zero_offsets(len(times), len(self._reach.joints))
+            return make_zero_offsets(len(times), len(self._reach.joints))
         seconds, other, old = loop_seconds(self._project, rest.action, times - rest.start)
         found = self._sample(motion, seconds)
         return crossfade(found, self._sample(motion, other), old) if old.any() else found
@@ -140,7 +140,7 @@ class _LayerStage:
         return sample_offsets(self._ground, self._reach, motion, seconds)
 
 
-def zero_offsets(count: int, joints: int) -> Sample:
+def make_zero_offsets(count: int, joints: int) -> Sample:
     """Return offsets that leave the base pose unchanged."""
     return rotation.identity_rotations((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
 

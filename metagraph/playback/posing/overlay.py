@@ -21,7 +21,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.posing.composer import ComposerRig, Reach, find_composer
-from metagraph.playback.posing.layers import Sample, ease_blend, sample_offsets, zero_offsets
+from metagraph.playback.posing.layers import Sample, ease_blend, make_zero_offsets, sample_offsets
 
 Array = NDArray[Any]
 
@@ -74,7 +74,7 @@ def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample],
 
 def _whole(rig: ComposerRig, layers: Mapping[Layer, Sample], layer: Layer, count: int) -> Sample:
     """Return what a layer adds on every joint `[count, J]`."""
-    rotations, translations = zero_offsets(count, len(rig.ground.skeleton))
+    rotations, translations = make_zero_offsets(count, len(rig.ground.skeleton))
     if layer in layers:
         reach = rig.reach[layer]
         turned, away = layers[layer]

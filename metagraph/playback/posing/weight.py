@@ -161,7 +161,7 @@ def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: f
     )
 
 
-def arm_track_rows(weight: Weight, project: Project, clip: str) -> Rows:
+def find_arm_track_rows(weight: Weight, project: Project, clip: str) -> Rows:
     """Return the rows of a clip's `ArmTrack`; empty if the clip is missing or has another skeleton."""
     found = weight.rows.get(clip)
     if found is None:
@@ -173,7 +173,7 @@ def arm_track_rows(weight: Weight, project: Project, clip: str) -> Rows:
     return found
 
 
-def foot_rows_of(weight: Weight, project: Project, clip: str) -> Rows:
+def find_foot_rows(weight: Weight, project: Project, clip: str) -> Rows:
     """Return the rows of a clip's `FootTrack`; empty if the clip is missing, has another skeleton, or if no
     single layer moves the legs.
     """
@@ -278,7 +278,7 @@ class WeightStage:
         self._sways: dict[int, list[float]] = {}
         rig = weight.rig
         self._feet = (
-            FeetOfPlan(partial(foot_rows_of, weight), rig.height, weight.feet_layer)
+            FeetOfPlan(partial(find_foot_rows, weight), rig.height, weight.feet_layer)
             if rig and weight.feet_layer and has_planted_feet(project)
             else None
         )
@@ -363,6 +363,6 @@ class WeightStage:
         actions += [of.rests[n].action for n in (place, place - 1) if n >= 0]
         for action in actions:
             if action.id not in self._tracks:
-                rows = arm_track_rows(self._weight, self._project, action.clip) if whole else ()
+                rows = find_arm_track_rows(self._weight, self._project, action.clip) if whole else ()
                 self._tracks[action.id] = ArmTrack(action.clip, rows)
         return cue, place

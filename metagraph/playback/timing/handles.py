@@ -144,7 +144,7 @@ class PhaseBlock:
     own: bool
 
 
-def handles_of(project: Project, action: Action) -> tuple[Handle, ...]:
+def list_handles(project: Project, action: Action) -> tuple[Handle, ...]:
     """Return an action's handles that can be seen and taken; a gesture's stroke also where it was found."""
     t, at = action.timing, handle_times(project, action)
     own = {"ready": t.ready, "hold": t.stroke_end, "relax": t.relax, "stroke": t.stroke}
@@ -159,7 +159,7 @@ def handles_of(project: Project, action: Action) -> tuple[Handle, ...]:
     )
 
 
-def blocks_of(project: Project, action: Action) -> tuple[PhaseBlock, ...]:
+def find_blocks(project: Project, action: Action) -> tuple[PhaseBlock, ...]:
     """Return a gesture's phases in time; none of other kinds."""
     if action.kind != "gesture":
         return ()
@@ -175,7 +175,7 @@ def block_moved(project: Project, action: Action, block: str, by: float) -> dict
     """Return the Timing fields that dragging one of `BLOCKS` by seconds changes: it keeps its length as far
     as its neighbours let it, and what is beside it gives way. Nothing of what is no gesture.
     """
-    found = blocks_of(project, action)
+    found = find_blocks(project, action)
     if not found:
         return {}
     place = BLOCKS.index(block)
@@ -230,7 +230,7 @@ def move_handle_by(
         action = project.action(ident)
         if action is None or action.clip not in project.clips:
             continue
-        at = next((h.at for h in handles_of(project, action) if h.name == handle), None)
+        at = next((h.at for h in list_handles(project, action) if h.name == handle), None)
         if at is not None:
             out[ident] = {"timing": move_handle(project, action, handle, at + by)}
     return out

@@ -28,7 +28,7 @@ Array = NDArray[Any]
 RESTING = 0.1  # of the way from the least to the greatest speed: below is rest (Yang et al., section 3.1)
 SLOWING = 0.5  # a slowing to less than this share of the slower peak beside it parts two bouts
 SMOOTH = 0.06  # seconds, standard deviation of the filter on speeds
-REMEMBERED = 32_768  # actions; were they fewer than a project has, an export would find all anew each time
+REMEMBERED = 32_768  # actions; were they fewer than a project has, an export would find all again each time
 SHORTEST = 0.08  # seconds of a bout or rest worth the name
 
 

@@ -41,7 +41,7 @@ class SpeedCurve:
 
 def speed_of(project: Project, action: Action) -> tuple[Array, str]:
     """Return the speed over an action's clip `[F]`, metres a second, of the fastest of what it moves, and in
-    words what of; nothing and "" where there is no motion on the project's skeleton.
+    words what of; nothing and "" if there is no motion on the project's skeleton.
     """
     motion = motion_of(project, action)
     if motion is None:
@@ -51,8 +51,8 @@ def speed_of(project: Project, action: Action) -> tuple[Array, str]:
     return features.speed(motion, joints, ground), f"{part} speed"
 
 
-def curves_of(project: Project, action: Action, joint: str = "") -> tuple[SpeedCurve, ...]:
-    """Return an action's curves; none where there is no motion on the project's skeleton. joint: of which, by
+def find_curves(project: Project, action: Action, joint: str = "") -> tuple[SpeedCurve, ...]:
+    """Return an action's curves; none if there is no motion on the project's skeleton. joint: of which, by
     name; "" for what its layer moves, a curve for each hand.
     """
     motion = motion_of(project, action)
@@ -75,7 +75,7 @@ def curves_of(project: Project, action: Action, joint: str = "") -> tuple[SpeedC
     return (_curve(motion, "head" if action.layer == "head" else "body", found, ground, names),)
 
 
-def joints_offered(project: Project) -> tuple[tuple[str, str], ...]:
+def list_offered_joints(project: Project) -> tuple[tuple[str, str], ...]:
     """Return the joints whose curve can be asked for, (name, words): those that tell most first."""
     if project.skeleton is None:
         return ()

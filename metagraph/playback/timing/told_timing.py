@@ -16,7 +16,7 @@ LARGEST = 1e15
 
 
 def read_given_timing(ask: Say) -> LineTiming | None:
-    """Return when a line's words and shapes come; None where that is not told. Raises RequestError naming the
+    """Return when a line's words and shapes come; None if that is not told. Raises RequestError naming the
     entry.
     """
     if ask.audio is not None:

@@ -1,1 +1,3 @@
-"""What the three papers show, beside what Metagraph does: tables and drawings that one command makes anew."""
+"""What the three papers show, beside what Metagraph does: tables and drawings that one command makes
+again.
+"""

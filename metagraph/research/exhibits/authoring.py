@@ -29,7 +29,7 @@ def exhibit_growth(material: ExhibitMaterial) -> MadeExhibit:
         counted = count_machine_size(smaller(project, count))
         found.append((count, counted.connections))
     slope = _slope([(n, c) for n, c in found if c])
-    imagined = count_machine_size(figure_1())
+    imagined = count_machine_size(make_figure_1())
     rows = [(f"{n}", f"{n}", f"{c:,}", f"{c / n:.1f}") for n, c in found]
     drawn = drawings.draw_series(
         {
@@ -167,7 +167,7 @@ def smaller(project: Project, count: int) -> Project:
     return remove_actions(project, [a.id for a in order[count:]])
 
 
-def figure_1() -> Project:
+def make_figure_1() -> Project:
     """Return the graph that figure 1 imagines: a gesture and a fidget so many times on each stance, and a
     transition from each stance to each other.
     """

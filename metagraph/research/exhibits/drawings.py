@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from metagraph.common.svg import WIDTH, format_px, svg_dot, svg_drawing, svg_line, svg_text
+from metagraph.common.svg import WIDTH, draw_svg_dot, format_px, svg_drawing, svg_line, svg_text
 from metagraph.common.xml_text import escape
 from metagraph.research.study.reports.plot_axes import RATIOS, Place, log_axis, plain_axis
 
@@ -63,7 +63,7 @@ def draw_series(
         placed = [(x(a), y(b)) for a, b in points if isfinite(a) and isfinite(b)]
         parts.append(polyline(css, placed))
         if len(placed) <= DOTTED:
-            parts += [f"<g class='{css}'>{svg_dot(a, b, 3)}</g>" for a, b in placed]
+            parts += [f"<g class='{css}'>{draw_svg_dot(a, b, 3)}</g>" for a, b in placed]
     parts += draw_legend([(css, words) for words, (css, _) in series.items()], BOTTOM + 48)
     return svg_drawing(BOTTOM + 68, parts, title)
 

@@ -34,7 +34,7 @@ class ExhibitDrawing:
 class MadeExhibit:
     """An exhibit that was made. material: what it was made of, and whether anything here was made to fit it.
     says: what can be read off it, the paper's mistakes among it. parts: tables and drawings, in order.
-    numbers: the same for programs, plain values. missing: why there is nothing to show, "" where there is.
+    numbers: the same for programs, plain values. missing: why there is nothing to show, "" if there is.
     """
 
     material: str
@@ -126,8 +126,8 @@ NAMES = tuple(e.name for e in EXHIBITS)
 
 
 def choose_exhibits(names: Sequence[str]) -> tuple[Exhibit, ...]:
-    """Return exhibits by name or by paper, each once, in the papers' order; all where nothing is named.
-    Raises ValueError for a name that is none.
+    """Return exhibits by name or by paper, each once, in the papers' order; all if nothing is named. Raises
+    ValueError for a name that is none.
     """
     papers = {e.paper for e in EXHIBITS}
     wrong = [n for n in names if n not in NAMES and n not in papers]

@@ -14,7 +14,7 @@ from metagraph.formats.clips import digest
 from metagraph.generation.features import PARTNER, RATE, SELF
 from metagraph.generation.landmarks import LANDMARKS
 from metagraph.generation.networks import Kind, parameters, sizes_of
-from metagraph.generation.performing import moves_skeleton, side_sound
+from metagraph.generation.performing import moves_skeleton, read_side_sound
 from metagraph.generation.statistics import mean_landmarks, wasserstein
 from metagraph.generation.takes import SplitError, Take, TakeError, TakeSound, TakeSource, make_take
 from metagraph.graph.editing.retargeting import Bringing
@@ -45,7 +45,7 @@ def exhibit_distance(material: ExhibitMaterial) -> MadeExhibit:
         return MadeExhibit(_about(material), missing=found)
     mean = mean_landmarks(found.true)
     motion = {"recorded": found.true, "generated": next(iter(found.made.values()))[0]}
-    far = {name: figures.landmark_distances(m, mean) for name, m in motion.items()}
+    far = {name: figures.measure_landmark_distances(m, mean) for name, m in motion.items()}
     top = max(float(v.max()) for v in far.values())
     rows = []
     for n, landmark in enumerate(LANDMARKS):
@@ -91,7 +91,7 @@ def exhibit_roles(material: ExhibitMaterial) -> MadeExhibit:
     parts, rows = [], []
     means: dict[str, list[float]] = {}
     for who, words in ((SELF, "speaking"), (PARTNER, "listening")):
-        grown = {name: figures.distance_changes(m, mean, who) for name, m in motion.items()}
+        grown = {name: figures.measure_distance_changes(m, mean, who) for name, m in motion.items()}
         parts.append(ExhibitDrawing(f"While {words}", figures.draw_boxes(grown, "cm/s")))
         for name, values in grown.items():
             fast = float(np.abs(values).mean()) if len(values) else float("nan")
@@ -161,7 +161,7 @@ def _judged(material: ExhibitMaterial) -> JudgedModels | str:
             if recorded.samples is not None:
                 samples = recorded.samples[::-1] if side else recorded.samples
             else:
-                samples, told = side_sound(recorded.conversation, side, Path())
+                samples, told = read_side_sound(recorded.conversation, side, Path())
                 material.notes.extend(told)
             try:
                 if clip.skeleton != model.rig.skeleton and bringing is not None:

@@ -42,7 +42,9 @@ SEARCHES: Mapping[str, tuple[Search, JumpRules]] = {
 
 
 def exhibit_costs(material: ExhibitMaterial) -> MadeExhibit:
-    """Figure 4: how dear a transition is that takes themselves make, and the distribution fitted to it."""
+    """Figure 4: how expensive a transition is that takes themselves make, and the distribution fitted to
+    it.
+    """
     actor = material.actors[0]
     states = read_states(actor.clips)
     parts: list[ExhibitDrawing] = []

@@ -49,9 +49,9 @@ class ExhibitActor:
 
 @dataclass(frozen=True, eq=False)
 class ExhibitMaterial:
-    """project: whose actions are exhibited. given: somebody's own conversations; made up where there are
-    none. told: what these are called in words. model: of the third paper's exhibits, None where there is
-    none. full: as much as the papers have, where that can be made.
+    """project: whose actions are exhibited. given: somebody's own conversations; made up if there are none.
+    told: what these are called in words. model: of the third paper's exhibits, None if there is none. full:
+    as much as the papers have, if that can be made.
     """
 
     project: Project
@@ -68,7 +68,7 @@ class ExhibitMaterial:
 
     @cached_property
     def conversations(self) -> tuple[Recorded, ...]:
-        """All conversations. Raises ValueError where the project cannot perform."""
+        """All conversations. Raises ValueError if the project cannot perform."""
         if self.given:
             return self.given
         count, seconds = WHOLE if self.full else QUICK
@@ -117,7 +117,7 @@ class ExhibitMaterial:
 
     @cached_property
     def learned(self) -> Model | None:
-        """The learned generator, None where there is none. Raises FileError for one that cannot be read."""
+        """The learned generator, None if there is none. Raises FileError for one that cannot be read."""
         from metagraph.generation.stored import read_model
 
         return None if self.model is None else read_model(self.model)
@@ -131,8 +131,8 @@ def make_conversations(
     rates: Sequence[Rates] | None = None,
     fps: float = RATE,
 ) -> tuple[Recorded, ...]:
-    """Return made-up conversations. rates: of both sides, else the paper's two actors'. Raises ValueError
-    where the project has no skeleton, or conversations would be too short.
+    """Return made-up conversations. rates: of both sides, else the paper's two actors'. Raises ValueError if
+    the project has no skeleton, or conversations would be too short.
     """
     out = []
     both = actors_rates() if rates is None else tuple(rates)

@@ -88,7 +88,7 @@ def exhibit_as_text(exhibit: Exhibit, shown: MadeExhibit) -> str:
     return "\n".join([*lines, *(f"  {words}" for words in shown.says)])
 
 
-def exhibits_as_data(made: Sequence[Made]) -> list[dict[str, Any]]:
+def encode_exhibits(made: Sequence[Made]) -> list[dict[str, Any]]:
     """Return exhibits as plain data."""
     return [
         {

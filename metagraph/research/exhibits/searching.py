@@ -277,7 +277,7 @@ def exhibit_competing(material: ExhibitMaterial) -> MadeExhibit:
 
 def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEED) -> ExhibitActor:
     """Return takes of made-up conversations with less to choose from, of both sides or the first alone, as
-    one actor's. Raises ValueError where the project cannot perform.
+    one actor's. Raises ValueError if the project cannot perform.
     """
     clips, speech = [], []
     rates = actors_rates()

@@ -105,7 +105,7 @@ NAMES = tuple(c.name for c in CHANGES)
 
 
 def sizes_for(change: AblationChange, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
-    """Return what is trained, None where the change says nothing about such a model."""
+    """Return what is trained, None if the change says nothing about such a model."""
     name = change.name
     if name in ("paper's loss", "no third term"):
         return (kind, sizes) if isinstance(sizes, FlowSizes) and sizes.code == "autoencoder" else None
@@ -229,7 +229,7 @@ def ablate_model(
     progress: Callable[[str], None] | None = None,
 ) -> Ablated:
     """Train and judge a model with one thing changed at a time. folder: where models are kept, and found
-    again by the next run. Raises FileError where the folder is of another ablation, and what trainings raise.
+    again by the next run. Raises FileError if the folder is of another ablation, and what trainings raise.
     """
     seconds, trainings = training.seconds, training.trainings
     if not seconds > 0 or not 1 <= trainings <= 20:

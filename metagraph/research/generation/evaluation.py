@@ -82,7 +82,7 @@ def generate_poses(model: Model, heard: Array, seed: int, number: int, manner: S
 
 def unseen(model: Model, takes: Sequence[Take]) -> tuple[tuple[Take, ...], tuple[str, ...]]:
     """Return the takes that a model may be judged on, and names of those left out, which it has learned from.
-    Of one recording that was learned from but for a block, that block alone. Raises SplitError where none is
+    Of one recording that was learned from except for a block, that block alone. Raises SplitError if none is
     left.
     """
     card = model.card
@@ -124,7 +124,7 @@ def judge_on_takes(
     cancelled: Callable[[], bool] | None = None,
 ) -> JudgedModels:
     """Judge models on takes. hear: what a model is given of a take, its features unless given. Raises
-    ValueError where there is too little to judge, CancelledError once `cancelled` says so.
+    ValueError if there is too little to judge, CancelledError once `cancelled` says so.
     """
     takes, floor = held.takes, held.floor
     if not takes:

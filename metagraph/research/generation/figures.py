@@ -41,12 +41,12 @@ _EVERY = 5  # frames between two points of a line
 _LEFT, _RIGHT = 46, 626
 
 
-def landmark_distances(motion: Sequence[MotionSample], mean: Array) -> Array:
+def measure_landmark_distances(motion: Sequence[MotionSample], mean: Array) -> Array:
     """Return how far each landmark is from its mean `[T, 9]`, cm. mean: `[9, 3]` metres."""
     return np.concatenate([np.linalg.norm(m.landmarks - mean, axis=-1) for m in motion]) * 100
 
 
-def distance_changes(motion: Sequence[MotionSample], mean: Array, who: int) -> Array:
+def measure_distance_changes(motion: Sequence[MotionSample], mean: Array, who: int) -> Array:
     """Return how fast those distances grow `[n, 9]`, cm/s, where somebody (`SELF`, `PARTNER`) speaks."""
     rows = []
     for m in motion:
@@ -57,7 +57,7 @@ def distance_changes(motion: Sequence[MotionSample], mean: Array, who: int) -> A
 
 def draw_over_time(motion: MotionSample, mean: Array, most: float | None = None) -> str:
     """Draw the distance of each landmark from its mean. most: cm, what the axis ends at."""
-    far = landmark_distances([motion.part(0, round(LONGEST * FPS))], mean)
+    far = measure_landmark_distances([motion.part(0, round(LONGEST * FPS))], mean)
     top, bottom, height = 12, 190, 236
     most = max(float(far.max()), 1.0) if most is None else most
     seconds = max(len(far) / FPS, 1.0)

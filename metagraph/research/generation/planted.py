@@ -63,7 +63,7 @@ def make_planted_talk(planted: Planted, n: int) -> PlantedSpeech:
 
 
 def perform_planted(project: Project, conversation: Conversation, side: int) -> Clip:
-    """Return how a side moves, FPS frames a second. Raises ValueError where the project has no skeleton."""
+    """Return how a side moves, FPS frames a second. Raises ValueError if the project has no skeleton."""
     _, plan = drive(conversation, side, project, together=False)
     return bake(Evaluator(plan, project), project, conversation.length, FPS)
 
@@ -104,7 +104,7 @@ def write_planted(
 
 
 def again(project: Project, planted: Planted, take: Take, rig: PoseRig) -> Take:
-    """Return a planted take performed anew, by chance of its own: what a perfect model might do. Raises
+    """Return a planted take performed again, by chance of its own: what a perfect model might do. Raises
     ValueError for a take that was not planted.
     """
     if planted.version != VERSION:
@@ -140,7 +140,7 @@ def _write(
 
 
 def read_planted(folder: Path) -> Planted | None:
-    """Return what a folder's takes were planted as, None where they were not. Raises FileError."""
+    """Return what a folder's takes were planted as, None if they were not. Raises FileError."""
     path = folder / CARD
     if not path.is_file():
         return None

@@ -1,4 +1,4 @@
-"""An evaluation of searches as a table to read, and as values to reckon with."""
+"""An evaluation of searches as a table to read, and as values to compute with."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from metagraph.common.csv_text import csv_text
 from metagraph.research.motion_graph.search_evaluation import Evaluation, HeldOutCase
 
 
-def cases_as_csv(cases: Sequence[HeldOutCase]) -> str:
+def format_cases_as_csv(cases: Sequence[HeldOutCase]) -> str:
     """Return cases as comma-separated values, a line each, under a line of names."""
     rows = (
         [round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v for v in astuple(case)]
@@ -19,7 +19,7 @@ def cases_as_csv(cases: Sequence[HeldOutCase]) -> str:
     return csv_text([[f.name for f in fields(HeldOutCase)], *rows])
 
 
-def cases_as_text(evaluation: Evaluation) -> str:
+def format_cases_as_text(evaluation: Evaluation) -> str:
     """Return rows as a table in text."""
     return "\n".join(_lines(evaluation))
 

@@ -70,7 +70,7 @@ Driven = tuple[MotionGraph, HeardStates, Sequence[Segment], float]  # a graph; s
 
 def news_of(segments: Iterable[Segment], ahead: float | None) -> list[tuple[float, SpeechNews]]:
     """Return what becomes known of speech and when, seconds. ahead: seconds before a segment begins at which
-    it is announced; None where it is only heard, as late as `live.heard_voice` hears it.
+    it is announced; None if it is only heard, as late as `live.heard_voice` hears it.
     """
     out: list[tuple[float, SpeechNews]] = []
     for s in segments:
@@ -220,7 +220,7 @@ def hold_out_takes(
     most: int | None = None,
 ) -> list[Driven]:
     """Return, for each take longer than LEAST, the graph of all others and the speech of that one. Raises
-    SynthesisError where there are not two.
+    SynthesisError if there are not two.
     """
     pairs = [(t, s) for t, s in zip(takes, speech, strict=True) if t.frames >= 2]
     if len(pairs) < 2:
@@ -244,7 +244,7 @@ def hold_out_takes(
     return out
 
 
-def rows_as_text(rows: Sequence[LiveRow]) -> str:
+def format_rows_as_text(rows: Sequence[LiveRow]) -> str:
     """Return rows as a table in text."""
     names = ("strokes", "met", "chance", "answered", "later by", "kind", "jumps/s", "again", "rest", "takes")
     out = [f"{'speech is':<18}" + "".join(f"{name:>9}" for name in (*names, "search", "most"))]

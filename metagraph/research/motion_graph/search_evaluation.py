@@ -88,9 +88,9 @@ SETTINGS: tuple[Setting, ...] = (
 class HeldOutCase:
     """One window of a take that was held out. start, length, seconds of the search: seconds. found: whether
     there is motion that does not stand still (`PathQuality`). transitions, cost, repeated, rest: of what was
-    found, 0 where nothing was; `why` says why nothing was found, or not counted. loudness, pace: spreads that
+    found, 0 if nothing was; `why` says why nothing was found, or not counted. loudness, pace: spreads that
     what was found is off of how it is said; words: share of the words that are met; off, was: seconds that
-    starts, ends and stresses are off, after retiming and before; None where nobody asked, or nobody knows.
+    starts, ends and stresses are off, after retiming and before; None if nobody asked, or nobody knows.
     """
 
     take: str
@@ -132,7 +132,7 @@ class EvaluationRow:
     interval (Wilson). seconds: median of the searches, whether they found something or not. per_second, cost:
     of those found, transitions a second, and the mean. repeated: mean share of their frames that were shown
     within 3 s before. rest: seconds of the longest rest in any. loudness, pace, words, off, was: means of
-    `Case`, None where no case has any.
+    `Case`, None if no case has any.
     """
 
     setting: str
@@ -373,7 +373,7 @@ def _graph(
 
 
 def hold_out_states(states: States, take: int) -> States:
-    """Return the states of all takes but one, w_v worked out anew."""
+    """Return the states of all takes but one, w_v worked out again."""
     a, b = int(states.starts[take]), int(states.starts[take + 1])
     places, velocities = np.delete(states.places, np.s_[a:b], 0), np.delete(states.velocities, np.s_[a:b], 0)
     starts = np.concatenate([states.starts[: take + 1], states.starts[take + 2 :] - (b - a)])

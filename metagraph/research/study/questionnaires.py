@@ -133,7 +133,7 @@ def sus_score(answers: Mapping[str, Any]) -> float:
     """Return 0..100: odd items give their place on the scale less 1, even ones 5 less it; the sum times 2.5
     (Brooke 1996).
 
-    answers: sus1..sus10, each 1..5. Raises ValueError where one is missing or no such number.
+    answers: sus1..sus10, each 1..5. Raises ValueError if one is missing or no such number.
     """
     total = 0.0
     for n, item in enumerate(SUS.items, 1):
@@ -142,7 +142,7 @@ def sus_score(answers: Mapping[str, Any]) -> float:
     return total * 2.5
 
 
-def tlx_raw(answers: Mapping[str, Any]) -> float:
+def compute_tlx_raw(answers: Mapping[str, Any]) -> float:
     """Return 0..100: the mean of the six scales ("raw TLX"). Raises ValueError as `sus_score` does."""
     return sum(_value(answers, item) for item in TLX.items) / len(TLX.items)
 

@@ -66,7 +66,7 @@ Files = Mapping[str, bytes]
 
 def write_study_report(results: Results, folder: Path, paper: Paper | None = None) -> list[Path]:
     """Write the page, the tables and the figures into a folder; return what was written, the page first.
-    paper: makes a PDF of an SVG file's text, where that can be done. Raises FileError.
+    paper: makes a PDF of an SVG file's text, if that can be done. Raises FileError.
     """
     drawn = {name: standalone(drawing) for name, (drawing, _) in draw_study_figures(results).items()}
     papers = {name: paper(text) for name, text in drawn.items()} if paper is not None else {}

@@ -266,16 +266,16 @@ class Sitting:
             self.writer.add("end")
 
     def decline(self) -> None:
-        """Tell that the participant does not agree to take part; the sitting stays where it is."""
+        """Report that the participant does not agree to take part; the sitting stays where it is."""
         self.writer.add("declined")
 
     def freeze(self, digests: Mapping[str, str]) -> None:
-        """Tell what is worked with, name -> SHA-256; nothing where the sitting was left meanwhile."""
+        """Report what is worked with, name -> SHA-256; nothing if the sitting was left meanwhile."""
         if not self.writer.closed:
             self.writer.add("frozen", digests=dict(digests))
 
     def keep(self, why: str = "done") -> None:
-        """Tell of the project that was made in the phase, as it is in its file, and end the phase. Raises
+        """Report the project that was made in the phase, as it is in its file, and end the phase. Raises
         FileError.
         """
         phase = self.now.phase
@@ -294,7 +294,7 @@ class Sitting:
         self.end(why)
 
     def answer(self, item: str, value: Any) -> None:
-        """Tell an answer; the last one to an item counts."""
+        """Report an answer; the last one to an item counts."""
         phase = self.now.phase
         assert phase is not None and phase.questionnaire is not None
         if self.now.answers.get(item) != value:

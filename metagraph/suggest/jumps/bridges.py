@@ -1,10 +1,10 @@
 """Ways between stances that no clip leads to or from: blends from pose to pose, told as what they are.
 
 A set of takes often lacks a transition. Without it a stance is never reached and all its gestures never play.
-A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; where
-that is too short, the loop of the stance it leaves, and takes long to blend out of it. It takes so long that
-no joint goes faster on average than it usually goes in the clips: at its fastest, half as fast again. No
-bridge is made where the body would slide or turn on the spot, or where there is no time for the distance.
+A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; if that
+is too short, the loop of the stance it leaves, and takes long to blend out of it. It takes so long that no
+joint goes faster on average than it usually goes in the clips: at its fastest, half as fast again. No bridge
+is made where the body would slide or turn on the spot, or if there is no time for the distance.
 """
 
 from __future__ import annotations
@@ -162,7 +162,7 @@ def describe_unbridged(project: Project) -> list[str]:
 
 def _without_far_rests(project: Project, layer: Layer, poses: Mapping[str, _Rest]) -> dict[str, _Rest]:
     """Return the poses without those of stances in which no gesture or fidget plays, nor in any that
-    transitions join to them, and which are so far from the others that a blend shows: nothing is lost where
+    transitions join to them, and which are so far from the others that a blend shows: nothing is lost if
     nobody stands in them.
     """
     graph, most = project.graphs[layer], NOTICED * _size(project)
@@ -198,7 +198,7 @@ def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -
 def _nearest(
     project: Project, poses: Mapping[str, _Rest], home: Iterable[str], lost: Collection[str], there: bool
 ) -> tuple[Project, Bridge | None]:
-    """Bridge the shortest way between stances at home and lost ones: there, or back; None where none can."""
+    """Bridge the shortest way between stances at home and lost ones: there, or back; None if none can."""
     ways = [(_metres(poses[a], poses[b]), *((a, b) if there else (b, a))) for a in home for b in lost]
     for metres, start, end in sorted(ways):
         if _refusal(project, poses[start], poses[end]) is None:
@@ -251,7 +251,7 @@ class _Pace:
     @cached_property
     def limits(self) -> Array:
         """How fast each joint may go on average, `[J]` m/s: as fast as it usually goes in what plays. Only
-        HASTY limits it where nothing but loops plays.
+        HASTY limits it if nothing but loops plays.
         """
         size, speeds = _size(self.project), []
         moves = False

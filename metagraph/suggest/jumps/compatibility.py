@@ -26,8 +26,8 @@ from metagraph.motion.clip import Clip
 from metagraph.suggest.jumps.johnson import JohnsonSB, fit_johnson
 from metagraph.suggest.tracks import (
     RATE,
-    floor_track,
     joint_track,
+    track_floor,
     track_rig,
     track_seconds,
     velocity_of,
@@ -43,7 +43,7 @@ ACTIVE = 0.1  # of the way from the least to the greatest speed: alpha_W of equa
 SEAMLESS = 0.3  # of the threshold: a seam that needs no overlap
 BLEND = (0.15, 0.5)  # seconds, shortest and longest
 SLOWEST = 0.5  # seconds, the most that w_v can be: of motion whose speed never changes it would be endless
-ALIKE = 0.05  # of the threshold: moments that are as good as one another
+ALIKE = 0.05  # of the threshold: moments that are almost one another
 STAYS = 0.015  # heights that hips may be off the spot at which a clip ends when it is left early
 UNSEEN = 0.25  # of a clip that a blend takes which nobody would miss
 STILL = 1e-3  # metres summed over joints: a threshold below says only that nothing moved
@@ -99,8 +99,8 @@ class ProposedTimes:
 @dataclass(frozen=True, eq=False)
 class Matrix:
     """Clips x stances of a layer. clips, stances: their ids, C and S. enter_cost, leave_cost `[C, S]`: at the
-    best moment, beside the threshold, infinite where nothing is known; enter_at, leave_at `[C, S]`: that
-    moment, seconds.
+    best moment, beside the threshold, infinite if nothing is known; enter_at, leave_at `[C, S]`: that moment,
+    seconds.
     """
 
     layer: Layer
@@ -186,7 +186,7 @@ def stance_frames(
     return np.concatenate(places), np.concatenate(speeds)
 
 
-def transition_costs(
+def measure_transition_costs(
     stats: Statistics, clip: Clip, stance: tuple[Array, Array], roles: Mapping[str, int] | None = None
 ) -> Array:
     """Return `[F]` what it costs to change between each frame of a clip, RATE a second, and the stance's
@@ -256,7 +256,7 @@ def mask_statistics(
     return replace(stats, weights=stats.weights * (moved[rig.keep[rig.joints]] > 0))
 
 
-def seam_cost(
+def measure_seam_cost(
     stats: Statistics,
     clip: Clip,
     start: float,
@@ -374,12 +374,12 @@ def propose_times(
 
 def _settled(clip: Clip, roles: Mapping[str, int] | None) -> float:
     """Return from which second on the hips stay over the spot on the floor at which the clip ends."""
-    at = floor_track(track_rig(clip, roles), clip)
+    at = track_floor(track_rig(clip, roles), clip)
     away = np.linalg.norm(at - at[-1], axis=-1) > STAYS * clip.skeleton.height
     return float(track_seconds(clip)[min(int(np.flatnonzero(away).max(initial=-1)) + 1, len(at) - 1)])
 
 
-def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> ProposedTimes:
+def find_loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> ProposedTimes:
     """Return a timing for a clip that loops: all of it, with an overlap as long as its seam needs."""
     track = joint_track(track_rig(clip, roles), clip)
     v = velocity_of(track)

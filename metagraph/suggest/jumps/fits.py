@@ -38,7 +38,7 @@ class DistributionFit:
 
 def fit_distributions(values: ArrayLike, level: float) -> tuple[DistributionFit, ...]:
     """Return what each distribution makes of values, the nearest first. level: the share asked for, 0..1.
-    None where there are fewer than ten values or all are alike.
+    None if there are fewer than ten values or all are alike.
     """
     x = np.sort(np.asarray(values, np.float64).ravel())
     x = x[np.isfinite(x)]

@@ -123,7 +123,7 @@ class Measured:
         return self.labelled >= FEWEST_CLIPS and self.stats.count >= FEWEST_COSTS
 
     def costs(self, project: Project, action: Action, stance: str | None) -> Array | None:
-        """Return `[F]` what changing between each frame of an action's clip and a stance costs; None where
+        """Return `[F]` what changing between each frame of an action's clip and a stance costs; None if
         nothing can be compared.
         """
         entry = project.clips.get(action.clip)
@@ -134,7 +134,7 @@ class Measured:
         moved = anatomy.action_mask(project, action)
         key = id(motion), stance, None if moved is None else moved.tobytes()
         if key not in self._costs:
-            self._costs[key] = c.transition_costs(
+            self._costs[key] = c.measure_transition_costs(
                 c.mask_statistics(self.stats, motion, moved, self.roles), motion, frames, self.roles
             )
         return self._costs[key]
@@ -232,7 +232,7 @@ def _loop(project: Project, measured: Measured, action: Action) -> list[Jump]:
     overlap = min(max(0.0, action.timing.blend_in), (end - start) / 2)
     if motion is None or motion.skeleton != project.skeleton or motion.frames < 2 or end <= start:
         return []
-    raw = c.seam_cost(measured.stats, motion, start, end, overlap, measured.roles)
+    raw = c.measure_seam_cost(measured.stats, motion, start, end, overlap, measured.roles)
     now = float(c.visible_difference(raw, overlap))
     if now <= 1:
         return []
@@ -244,9 +244,7 @@ def _at(cost: Array, seconds: float) -> float:
 
 
 def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -> float | None:
-    """Return the moment from first to last, nearest to now, at which no jump shows; None where there is
-    none.
-    """
+    """Return the moment from first to last, nearest to now, at which no jump shows; None if there is none."""
     times = np.arange(len(cost)) / RATE
     inside = (times >= first - 1e-6) & (times <= last + 1e-6)
     for most in (ROOM, 1.0):
@@ -266,7 +264,7 @@ def _mend(
 
 
 def _blended(name: str, cost: float, room: float) -> dict[str, Any]:
-    """Return the blend that hides a difference, nothing where it would take too long."""
+    """Return the blend that hides a difference, nothing if it would take too long."""
     needed = 1.5 * (c.STEP - 1) / RATE * cost / ROOM
     return {name: round(needed + 0.005, 2)} if needed + 0.005 <= min(room, c.BLEND[1]) else {}
 
@@ -290,7 +288,7 @@ def _fits(
 
 
 def stance_curves(project: Project, measured: Measured, action: Action) -> Curves | None:
-    """Return an action's clip beside its stances; None where nothing can be compared."""
+    """Return an action's clip beside its stances; None if nothing can be compared."""
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
     if motion is None or motion.frames < 2 or motion.skeleton != project.skeleton:
@@ -299,8 +297,8 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     if action.kind == "stance":
         start = project.span(action)[0]
         first = c.stance_frames(measured.stats, [(motion, start, start + 1e-6)], roles)
-        cost = c.transition_costs(measured.stats, motion, first, roles)
-        return Curves(_times(motion, cost), cost, cost, c.loop_times(measured.stats, motion, roles))
+        cost = c.measure_transition_costs(measured.stats, motion, first, roles)
+        return Curves(_times(motion, cost), cost, cost, c.find_loop_times(measured.stats, motion, roles))
     into, left = (
         measured.costs(project, action, action.stance),
         measured.costs(project, action, find_end_stance(action)),
@@ -310,7 +308,7 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     stats = c.mask_statistics(measured.stats, motion, anatomy.action_mask(project, action), roles)
     stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
     times = _times(motion, into)
-    gaps = end_gaps.distances_to_stance(project, action, times)
+    gaps = end_gaps.measure_distances_to_stance(project, action, times)
     if cycle_of(action.kind, action.timing, *project.span(action)) > 0:
         proposed = _cycle_times(project, action)
     else:

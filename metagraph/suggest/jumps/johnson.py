@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[Any]
 
 EDGE = 1e-4  # of the range: values nearer to a bound count as that near
-STEEPEST = 1e6  # delta of values that are all alike
+STEEPEST = 1e6  # delta of values that are all the same
 
 
 @dataclass(frozen=True, slots=True)

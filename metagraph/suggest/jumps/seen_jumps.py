@@ -56,7 +56,7 @@ class SeenJumps:
         return np.where(np.arange(len(self.times)) < self.pivot, self.enter, self.leave)
 
     def spans(self) -> list[tuple[float, float]]:
-        """Return where nothing shows, seconds; from the first such frame to the last."""
+        """Return if nothing shows, seconds; from the first such frame to the last."""
         good = self.curve() <= 1
         good_in, good_out = (
             good & (np.arange(len(good)) < self.pivot),
@@ -69,9 +69,7 @@ class SeenJumps:
         return out
 
     def snaps(self, handle: str) -> list[float]:
-        """Return the moments a handle comes to rest at: the proposed one, and where nothing begins to
-        show.
-        """
+        """Return the moments a handle comes to rest at: the proposed one, and if nothing begins to show."""
         if handle == "start":
             if self.loops:
                 return []
@@ -83,7 +81,7 @@ class SeenJumps:
         return []
 
 
-def words_at(project: Project, action: Action, seen: SeenJumps, seconds: float) -> str:
+def find_words_at(project: Project, action: Action, seen: SeenJumps, seconds: float) -> str:
     """Say what a moment would be like to begin or end at."""
     entering = seen.at(seconds) < seen.pivot
     cost = seen.cost("start" if entering else "end", seconds)
@@ -124,7 +122,7 @@ def describe_ends(costs: Mapping[str, float], far: Mapping[str, str] | None = No
 
 
 def _cost_words(what: str, cost: float, again: bool) -> str:
-    """Say what one of both costs. again: whether a jump was spoken of before."""
+    """Say what one of both costs. again: whether a jump was spoken from before."""
     if what == "Repeats":
         if cost <= 1:
             return phrase("Loops smoothly")
@@ -140,7 +138,7 @@ def _cost_words(what: str, cost: float, again: bool) -> str:
     return phrase("ends with a jump, {cost:.1f} times the visible threshold", cost=cost)
 
 
-def far_ends(project: Project, action: Action) -> dict[str, str]:
+def find_far_ends(project: Project, action: Action) -> dict[str, str]:
     """Return which ends of an action are too far from their stance, by how `verdict` calls them, in words."""
     graph = project.graphs[action.layer]
     return {

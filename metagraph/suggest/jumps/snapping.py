@@ -61,8 +61,8 @@ def snaps_of(
 
 
 def find_nearest_snap(snaps: Iterable[Snap], seconds: float, within: float) -> Snap | None:
-    """Return the nearest place to rest within some seconds, of equally near ones the first; None where there
-    is none.
+    """Return the nearest place to rest within some seconds, of equally near ones the first; None if there is
+    none.
     """
     best = min(snaps, key=lambda s: round(abs(s.at - seconds), 4), default=None)
     return best if best is not None and abs(best.at - seconds) <= within else None

@@ -49,7 +49,7 @@ class Shape:
     names: points, n. poses `[k, n, 3]`, heights. members: clips that rest, begin or end in it. clip, at: a
     clip and the second in which it can be seen. confidence: 0..1, that it is one. calm: energy of the clip
     that is taken for its loop as the quietest; 0 where one rests, or none is. spread `[n]`: how far half of
-    its clips' ends are from it, heights; empty where that is not known.
+    its clips' ends are from it, heights; empty if that is not known.
     """
 
     id: str
@@ -341,8 +341,8 @@ def discover_stances(traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, .
 
 
 def _limits(poses: Array, clips: Sequence[str], weights: Array, layer: Layer) -> tuple[float, float]:
-    """Return between which distances stances are told apart, heights: those of SAME, less where the ends of
-    most clips meet as exactly as only one pose does.
+    """Return between which distances stances are distinguished, heights: those of SAME, less where the ends
+    of most clips meet as exactly as only one pose does.
 
     How exactly: of four ends, the nearest end of another clip is no farther for three.
     """

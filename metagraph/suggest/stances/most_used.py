@@ -10,7 +10,7 @@ from metagraph.common.wording import phrase
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.proposal import Proposal, StancePlace
 
-UNKNOWN = 0.4  # confidence of the most used stance where nothing is known of a clip's pose
+UNKNOWN = 0.4  # confidence of the most used stance if nothing is known of a clip's pose
 BELONGS = 0.6  # how likely a clip that begins in none of the stances belongs to one of them all the same
 
 

@@ -2,7 +2,7 @@
 
 Names and motion are one inference. A pose is called by the words most of the clips have that begin or end in
 it, a word means the pose most of its clips are in; how well both agree says how far a name can be believed
-where a clip's own pose disagrees. Two words may call one pose where nothing tells the poses of their clips
+where a clip's own pose disagrees. Two words may call one pose if nothing tells the poses of their clips
 apart, and one pose is parted where words and poses part alike.
 """
 
@@ -44,8 +44,8 @@ ASTRAY = 0.15  # heights from every stance, beyond which a first pose says nothi
 @dataclass
 class ClipEvidence:
     """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer
-    that all agree on. posture: its poses as stances are told. cycle: whether it is one cycle of a gesture.
-    away: how far it begins from the nearest stance of its layer, heights; 0 where that is not known.
+    that all agree on. posture: its poses as stances are reported. cycle: whether it is one cycle of a
+    gesture. away: how far it begins from the nearest stance of its layer, heights; 0 if that is not known.
     """
 
     clip: str

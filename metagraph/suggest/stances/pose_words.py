@@ -24,7 +24,7 @@ WEIGHT = 0.02  # heights the hips are to a side of the feet, of a body that rest
 def describe_pose(
     shape: Shape, usual: Shape | None = None, scale: Mapping[Layer, float] | None = None
 ) -> str:
-    """Return words for a stance's pose: "sitting, arms crossed". usual: the most used stance, where that is
+    """Return words for a stance's pose: "sitting, arms crossed". usual: the most used stance, if that is
     another. scale: how much longer each layer's points are than they are (see `whole_body`).
     """
     p = _points(shape, scale)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import Action, Project
@@ -23,9 +24,9 @@ RATE = 30.0  # moments a second
 @dataclass(frozen=True, eq=False)
 class StanceDistance:
     """times, metres, shows `[F]`: seconds of the clip, how far the farthest joint is, whether beginning or
-    ending there would show; infinite metres where nothing can be measured. pivot: from which moment on it is
-    the stance it enters that is measured to. limits: metres that its blends hide, at its beginning and its
-    end. names: of both stances.
+    ending there would show; infinite metres if nothing can be measured. pivot: from which moment on it is the
+    stance it enters that is measured to. limits: metres that its blends hide, at its beginning and its end.
+    names: of both stances.
     """
 
     times: Array
@@ -36,23 +37,24 @@ class StanceDistance:
     names: tuple[str, str]
 
     def words(self, seconds: float) -> str:
-        """Say what a moment is like: "12 cm from 'hands at sides', shows"."""
+        """Return how far the pose at a moment is from its stance, such as "12 cm from 'on hips'"."""
         if not len(self.times):
             return ""
         at = int(np.argmin(np.abs(self.times - seconds)))
         name = self.names[0 if at < self.pivot else 1]
         if not np.isfinite(self.metres[at]):
             return ""
-        return (
-            f"{self.metres[at] * 100:.0f} cm from '{name}', {'shows' if self.shows[at] else 'does not show'}"
-        )
+        far = 100 * float(self.metres[at])
+        if self.shows[at]:
+            return phrase("{far:.0f} cm from '{name}', a visible jump", far=far, name=name)
+        return phrase("{far:.0f} cm from '{name}', no visible jump", far=far, name=name)
 
 
-def distance_of(
+def measure_stance_distances(
     project: Project, action: Action, seen: SeenJumps | None, both: tuple[Array, Array, Array] | None = None
 ) -> StanceDistance:
     """Return an action's distances. seen: what is known of its jumps, which decides what shows. both: what
-    `measured` returned for the same action, where that is known.
+    `measured` returned for the same action, if that is known.
     """
     times, into, left = measure_stance_distance(project, action) if both is None else both
     motion = end_gaps.motion_of(project, action)
@@ -77,7 +79,7 @@ def measure_stance_distance(project: Project, action: Action) -> tuple[Array, Ar
     if motion is None:
         return np.zeros(0), np.zeros(0), np.zeros(0)
     times = np.linspace(0, motion.duration, max(2, round(motion.duration * RATE) + 1))
-    return (times, *end_gaps.distances_to_stance(project, action, times))
+    return (times, *end_gaps.measure_distances_to_stance(project, action, times))
 
 
 def _pivot(action: Action, times: Array, into: Array, left: Array, seen: SeenJumps | None) -> int:

@@ -11,7 +11,7 @@ from typing import Final, Literal, get_args
 
 from msgspec.structs import asdict
 
-from metagraph.suggest.words.files import english_meanings, list_phrases
+from metagraph.suggest.words.files import list_english_meanings, list_phrases
 from metagraph.suggest.words.languages import synonyms
 
 Field = Literal["kinds", "layers", "limbs", "tags", "postures", "joins", "junk", "synonyms"]
@@ -24,7 +24,7 @@ def _english() -> Mapping[str, Meanings]:
         field: MappingProxyType(
             {phrase: meaning for meaning, said in of.items() for phrase in list_phrases(said)}
         )
-        for field, of in asdict(english_meanings()).items()
+        for field, of in asdict(list_english_meanings()).items()
     }
 
 

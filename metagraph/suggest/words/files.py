@@ -77,7 +77,7 @@ def list_phrases(said: Phrases) -> list[str]:
 
 
 @cache
-def english_meanings() -> EnglishFile:
+def list_english_meanings() -> EnglishFile:
     """Return what English phrases mean."""
     return read_words(FOLDER / f"{ENGLISH}.json", EnglishFile)
 

@@ -34,7 +34,7 @@ def list_own_words(changes: Mapping[Any, Mapping[str, str | None]]) -> dict[str,
 
 
 def find_spoken_languages(batch: Sequence[Sequence[Token]], patterns: Any) -> SpokenLanguages | None:
-    """Return what languages a batch of names speaks beside English, None where it is English alone."""
+    """Return what languages a batch of names speaks beside English, None if it is English alone."""
     meanings = patterns.meanings
     own = list_own_words(patterns.changes)
     distinct = list(dict.fromkeys(tuple(t for t in name if not t.text.isdecimal()) for name in batch))

@@ -60,7 +60,7 @@ _UP: Final = frozenset(("up", "stand", "rise", "get"))
 
 @dataclass(frozen=True, slots=True)
 class NameGuess:
-    """What one name says; None where it says nothing. stance, end_stance: words for stances, "arms crossed".
+    """What one name says; None if it says nothing. stance, end_stance: words for stances, "arms crossed".
 
     number: which of several like it, as the name counts them. other: the word that says that it is none of
     the four kinds.

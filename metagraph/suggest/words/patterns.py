@@ -133,7 +133,7 @@ class Patterns:
         return Patterns(changes, _learned(data.get("learned", {})))
 
 
-_PLAIN: Final = Patterns()  # what words mean where nobody has changed a thing
+_PLAIN: Final = Patterns()  # what words mean if nobody has changed a thing
 
 
 def _learned(data: Any) -> Learned:
@@ -202,7 +202,7 @@ def count_correction(patterns: Patterns, name: str, words: Sequence[str], value:
 
 
 def recall_correction(patterns: Patterns, name: str, words: Sequence[str]) -> tuple[str, str, int] | None:
-    """Return (meaning, the words it comes from, how often) of what was corrected before; None where that is
+    """Return (meaning, the words it comes from, how often) of what was corrected before; None if that is
     unknown or disputed.
 
     The whole phrase counts from the first time; a single word only when two corrections agree and none

@@ -77,7 +77,7 @@ class SpokenLanguages:
         return None
 
     def compound(self, word: str) -> tuple[str, ...]:
-        """Return the parts of a word, each of which is known; () where there are none."""
+        """Return the parts of a word, each of which is known; () if there are none."""
         if word not in self._compounds:
             cut: tuple[str, ...] = ()
             if len(word) in _COMPOUND and word not in self.own:
@@ -329,7 +329,7 @@ def _posture(item: _Said, meanings: Any) -> bool:
 
 
 def _joined(items: list[_Said], meanings: Any) -> list[_Said]:
-    """Tell what joins stances from what only looks like it, and put it before the stance it leads to."""
+    """Report what joins stances from what only looks like it, and put it before the stance it leads to."""
 
     def again(item: _Said, meaning: str) -> _Said:
         return _Said(meaning, item.written, item.start, item.end)

@@ -329,7 +329,7 @@ class Stances:
         return variant(words) == len(words)
 
     def _designated(self, distinct: Sequence[TakenName]) -> None:
-        """Stances called alike but for a number or letter ("idle 1", "idle 2", "sit a") are different ones
+        """Stances called alike except for a number or letter ("idle 1", "idle 2", "sit a") are different ones
         where clips go on from one or pass into it, whether or not they have clips of their own.
         """
         marks: dict[Words, dict[str, bool]] = {}  # core -> designator -> whether anything goes on from it
@@ -403,8 +403,8 @@ class Stances:
         return self._begun.get(stance.words, 0) > COMMON * self._count
 
     def within(self, words: Words) -> tuple[FoundStance, int, int] | None:
-        """Return a stance of posture that is told after what is done ("talk_sitting_01"), and from where to
-        where.
+        """Return a stance of posture that is reported after what is done ("talk_sitting_01"), and from where
+        to where.
         """
         best: tuple[int, int, FoundStance] | None = None
         for start in range(1, len(words)):

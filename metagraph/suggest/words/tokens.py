@@ -72,7 +72,7 @@ def _parts(name: str) -> list[tuple[str, int]]:
 
 
 def find_name_languages(names: Sequence[str], patterns: Patterns) -> SpokenLanguages | None:
-    """Return what languages names speak beside English, None where they are English alone."""
+    """Return what languages names speak beside English, None if they are English alone."""
     return find_spoken_languages(
         [
             [t for part, at in _parts(name) for t in cut_tokens(part, at) if isinstance(t, Token)]
@@ -183,7 +183,7 @@ def drop_shared_words(taken: Sequence[TakenName], patterns: Patterns) -> list[Ta
 
 
 def _shared_first(taken: Sequence[TakenName], patterns: Patterns) -> str | None:
-    """Return the word that names begin with and that says nothing of any, None where there is none."""
+    """Return the word that names begin with and that says nothing of any, None if there is none."""
     named = [t.words for t in taken if t.words and not _is_other(t.words, patterns)]
     if len(named) < 2:
         return None

@@ -19,7 +19,7 @@ Array = Any
 class KnownStates(NamedTuple):
     """What is known of states. kinds `[F]` uint8: bits of what was heard there. events `[F]` uint8: STRESS
     and EDGE. stops `[F]`: the first state behind a run that goes through each. recent `[F]` float32: 1 where
-    it was shown a moment ago, less where that is longer ago.
+    it was shown a moment ago, less if that is longer ago.
     """
 
     kinds: Array
@@ -81,7 +81,7 @@ def _total(t: Any, x: Any, price: Any, met: Any, shown: Any, prices: Any, rules:
 
 @compiled_exactly
 def _noise(random: Any, number: Any) -> Any:
-    """Return a number 0..1 that is as good as drawn."""
+    """Return a number 0..1 that is almost drawn."""
     mixed = (random ^ np.uint64(number)) * np.uint64(0x9E3779B97F4A7C15)
     mixed ^= mixed >> np.uint64(29)
     mixed *= np.uint64(0xBF58476D1CE4E5B9)

@@ -81,8 +81,8 @@ class DriverGraph:
 
 
 def driver_graph(graph: MotionGraph, heard: HeardStates, rules: ExtendingRules | None = None) -> DriverGraph:
-    """Return a graph made ready: no way through it comes to an end. Raises SynthesisError where nothing is
-    left of it to move with.
+    """Return a graph made ready: no way through it comes to an end. Raises SynthesisError if nothing is left
+    of it to move with.
     """
     from metagraph.synthesis.search.greedy_search_kernels import find_next_marked
 
@@ -194,7 +194,7 @@ class PathExtender:
             self._forget()
 
     def _search(self, first: int) -> None:
-        """Plan anew from a frame on, or from where the plan ends before."""
+        """Plan again from a frame on, or from where the plan ends before."""
         from metagraph.synthesis.extending.extension_kernels import Prices, extend_path
 
         first = max(self._first + 1, min(first, self.end))
@@ -256,8 +256,8 @@ class PathExtender:
 
 
 def replay_path(graph: DriverGraph, told: Sequence[Told], frames: int, seed: int = 1) -> Path:
-    """Return the path that was extended so far when this was told: the same, frame by frame. told: by frame;
-    frames: how many were shown.
+    """Return the path that was extended so far when this was reported: the same, frame by frame. told: by
+    frame; frames: how many were shown.
     """
     extender, place = PathExtender(graph, seed), 0
     out = np.empty(frames, np.int64)

@@ -1,7 +1,7 @@
 """What is known of speech while it goes on: what was announced, what was heard, and what is likely to come.
 
 Somebody who speaks is taken to go on speaking, somebody silent to stay silent; the farther off, the less that
-counts. What is announced counts wholly, until it is taken back.
+counts. What is announced counts entirely, until it is taken back.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def weigh(cost: Array, alive: Array, starts: Array, reach: Any, width: Any) -> A
 
 @compiled_exactly
 def find_least(cost: Array, alive: Array, classes: Array, count: Any) -> Array:
-    """Return `[2, C]` what the cheapest of each class costs, without and with the event met; infinite where
+    """Return `[2, C]` what the cheapest of each class costs, without and with the event met; infinite if
     nobody is. classes `[F]`: of states.
     """
     states = len(classes)
@@ -184,7 +184,7 @@ def draw_leap(
     """Return and write what `leap` does, looking from where one may land for the cheapest way there: sooner
     where many cost the least.
 
-    cost `[2 F]`: infinite where nobody is. lowest `[2, C]`: what nobody of a class is below, without and with
+    cost `[2 F]`: infinite if nobody is. lowest `[2, C]`: what nobody of a class is below, without and with
     the event met. entered: states that jumps lead to. firsts, targets, costs: as `arranged` writes the
     transitions turned round; leaving: the classes of states that fitted a frame before. first `[F]`: whether
     a state is the first of its take. cheapest: what a transition costs at least. Whoever comes along the take
@@ -323,7 +323,7 @@ def arrive(
 
 @compiled_exactly
 def close(cost: Array, alive: Array, back: Array, runs: Array) -> Any:
-    """Forget ways on which the event was not met whose window ends; the others begin anew. Return how many
+    """Forget ways on which the event was not met whose window ends; the others begin again. Return how many
     are alive.
     """
     states, number = len(cost) // 2, 0

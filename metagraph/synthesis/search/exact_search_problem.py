@@ -131,7 +131,7 @@ def _turned(wanted: WantedSegment) -> WantedSegment:
 @dataclass(frozen=True, eq=False)
 class StateClasses:
     """States of which frames ask the same. of_state `[F]` int32: which class a state is of, -1 for one of no
-    path. fits `[T, C]`: which classes may come at a frame, but for which states alone may; meets `[T, C]`:
+    path. fits `[T, C]`: which classes may come at a frame, except for which states alone may; meets `[T, C]`:
     which are the event its window waits for.
     """
 

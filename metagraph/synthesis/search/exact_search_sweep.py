@@ -42,9 +42,9 @@ class Foresight:
 
 
 class Sweep:
-    """One sweep within a bound. cost `[2 F]`: of the cheapest way to where somebody is; alive: where that
-    is, as the loops count it. through: what some way all through costs that was come upon, infinite without.
-    exact: the sweep as it was when it first left somebody out for others were cheaper; None before.
+    """One sweep within a bound. cost `[2 F]`: of the cheapest way to where somebody is; alive: if that is, as
+    the loops count it. through: what some way all through costs that was come upon, infinite without. exact:
+    the sweep as it was when it first left somebody out for others were cheaper; None before.
     """
 
     exact: Sweep | None = None
@@ -120,8 +120,8 @@ class Sweep:
 
     def forwards(self) -> list[tuple[Array, Array]]:
         """Sweep up to the last frame, where cost is with what frames cost; return of each frame where
-        somebody is, and where the way there comes from. Raises SynthesisError where none comes as far, or
-        when it was cancelled.
+        somebody is, and where the way there comes from. Raises SynthesisError if none comes as far, or when
+        it was cancelled.
         """
         frames = len(self._problem.wanted)
         if not self._frame:
@@ -297,8 +297,8 @@ class Sweep:
         return self.alive[costs <= dear], min(reach, dear + self._spare)
 
     def _foresee(self, t: int) -> tuple[Array, Any]:
-        """Look up what it costs to go on for who jumps to arrive at frame t; return where that is known, and
-        the least.
+        """Look up what it costs to go on for who jumps to arrive at frame t; return if that is known, and the
+        least.
         """
         from metagraph.synthesis.search.exact_search_kernels import foresee
 
@@ -311,7 +311,7 @@ class Sweep:
         return codes, foresee(codes, costs, crossing, self._unknown, self._ahead)
 
     def _close(self, t: int) -> None:
-        """Forget ways on which the event was not met whose window ends; the others begin anew."""
+        """Forget ways on which the event was not met whose window ends; the others begin again."""
         from metagraph.synthesis.search.exact_search_kernels import close
 
         if is_due_at(self._problem.wanted, t):

@@ -25,7 +25,7 @@ MOST = 1_000_000_000  # bytes of what frames cost that are held at once
 
 @dataclass(frozen=True, eq=False)
 class FrameCost:
-    """One kind of cost. name: what it is about. at `[T]` int32: which row a moment is charged by, -1 where
+    """One kind of cost. name: what it is about. at `[T]` int32: which row a moment is charged by, -1 if
     nothing is charged. rows `[R, F]` float32: what each state costs then, metres, as transitions do; 0 or
     more, finite.
     """
@@ -61,7 +61,7 @@ class FrameCosts:
         return at, rows
 
     def row(self, t: int) -> Array | None:
-        """Return `[F]` what each state costs at a moment, None where nothing does."""
+        """Return `[F]` what each state costs at a moment, None if nothing does."""
         at, rows = self.sums
         return rows[at[t]] if at[t] >= 0 else None
 
@@ -71,8 +71,8 @@ class FrameCosts:
 
 
 def join_costs(kinds: Iterable[FrameCost | None]) -> FrameCosts | None:
-    """Return kinds of costs as one, None where nothing is charged. Raises SynthesisError where they would not
-    fit into memory.
+    """Return kinds of costs as one, None if nothing is charged. Raises SynthesisError if they would not fit
+    into memory.
     """
     some = tuple(kind for kind in kinds if kind is not None and (kind.at >= 0).any())
     if not some:
@@ -105,7 +105,7 @@ class PaidAlong:
     def copied(self) -> PaidAlong:
         """Return another one that is as far, and goes on by itself."""
         out = copy.copy(self)
-        out.before = self.before.copy()  # the other array is made anew for each frame
+        out.before = self.before.copy()  # the other array is made again for each frame
         return out
 
     def go_on(self, t: int) -> None:

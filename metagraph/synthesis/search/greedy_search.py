@@ -1,6 +1,6 @@
 """Paths through a motion graph that go with speech: the paper's stochastic greedy search.
 
-It keeps the cheapest few hundred of what it came upon, and may come to an end where nothing fits.
+It keeps the cheapest few hundred of what it came upon, and may come to an end if nothing fits.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ DEEPER = (
 )  # transitions one after another in a stretch, branches more: when a search comes to an end
 TRIES = 16  # and at most so many by chance
 LONGEST = 60  # frames of a stretch that is searched at once
-LOOK = 90  # frames beyond a stretch: who goes on that long by itself is not held to be dear
+LOOK = 90  # frames beyond a stretch: who goes on that long by itself is not held to be expensive
 AHEAD = 0.05  # of the threshold: what a second less of that counts as
 APART = 3  # frames: ends of kept candidates
 

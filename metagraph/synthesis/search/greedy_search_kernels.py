@@ -91,7 +91,7 @@ def find_next_until(fits: Array, last: Array) -> Array:
 
 @compiled
 def find_next_marked(marked: Array) -> Array:
-    """Return `[F]` the first marked state from each on, itself included; F where there is none."""
+    """Return `[F]` the first marked state from each on, itself included; F if there is none."""
     out = np.empty(len(marked), np.int32)
     at = len(marked)
     for state in range(len(marked) - 1, -1, -1):

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States
@@ -24,10 +25,9 @@ LEAST = 1.0  # seconds: a rest as short as that is never too long
 
 @dataclass(frozen=True)
 class PathQuality:
-    """jumps: a second. distinct: share of frames that show what it did not show
-    before. repeated: share of frames
-    that were shown within RECENT seconds before. frozen: seconds of the longest rest, in which no joint moves
-    faster than STILL; source: the same of the takes it is made of.
+    """What a path looks like. jumps: number a second. distinct: share of frames that show something new.
+    repeated: share of frames that show what was shown in the last RECENT seconds. frozen: seconds of the
+    longest rest, in which no joint moves faster than STILL. source: the same for the takes.
     """
 
     jumps: float
@@ -38,18 +38,27 @@ class PathQuality:
 
     @property
     def stands_still(self) -> bool:
-        """Whether it rests longer than those did whom it is made of."""
+        """Whether it rests longer than its takes do."""
         return self.frozen > max(LEAST, LONGER * self.source)
 
     def words(self) -> str:
         """Return it in words."""
-        again = f"{self.repeated:.0%} shown again within {RECENT:g} s"
+        again = f"{self.repeated:.0%} repeats within {RECENT:g} s"
         return f"{self.jumps:.2f} transitions a second, {again}, {self.rest_words()}"
 
     def rest_words(self) -> str:
-        """Return how long it rests, in words."""
-        still = "stands still for" if self.stands_still else "rests"
-        return f"{still} {self.frozen:.1f} s at most (its takes {self.source:.1f} s)"
+        """Return in words how long it rests."""
+        if self.stands_still:
+            return phrase(
+                "stands still for up to {rest:.1f} s (its takes for up to {source:.1f} s)",
+                rest=self.frozen,
+                source=self.source,
+            )
+        return phrase(
+            "rests for up to {rest:.1f} s (its takes for up to {source:.1f} s)",
+            rest=self.frozen,
+            source=self.source,
+        )
 
 
 def quality(states: States, path: Path) -> PathQuality:

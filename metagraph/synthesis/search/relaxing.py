@@ -1,5 +1,5 @@
-"""Motion for speech that no path goes with exactly: constraints are given up one by one, and what is then
-missed is told with its time.
+"""Find motion for speech that no path fits exactly: constraints are dropped one by one, and what the motion
+misses is reported with its time.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.graph.conversation.model import SOUNDS, Segment, Sound
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import EDGE, STRESS, TOLERANCE, HeardStates, WantedSegment, list_wanted
@@ -29,6 +30,19 @@ Array = NDArray[Any]
 WIDER = 2.0  # times the tolerance: what is tried first
 PARTS = (1.0, 0.5, 0.25)  # of the speed that may be changed: less is tried where more would lose something
 FAR = 1.0  # seconds: an event farther off than that is none
+_EVENTS = {"start": phrase("start"), "end": phrase("end"), "stress": phrase("stress")}
+_KINDS: dict[Sound, str] = {
+    "clause": phrase("clause"),
+    "response": phrase("response"),
+    "hesitation": phrase("hesitation"),
+    "idle": phrase("silence"),
+}
+_ALL: dict[Sound, str] = {
+    "clause": phrase("clauses"),
+    "response": phrase("responses"),
+    "hesitation": phrase("hesitations"),
+}
+_MET = phrase("all starts, ends and stresses are met")
 
 
 @dataclass(frozen=True)
@@ -53,8 +67,8 @@ class Constraints:
 @dataclass(frozen=True)
 class Miss:
     """Something of speech that the motion was not made with. what: "start", "end" or "stress" of a kind of
-    segment. at: when, seconds. off: how far the nearest such event of the motion is, seconds; None where
-    there is none within FAR.
+    segment. at: when, seconds. off: how far the nearest such event of the motion is, seconds; None if there
+    is none within FAR.
     """
 
     what: str
@@ -63,16 +77,20 @@ class Miss:
     off: float | None
 
     def words(self) -> str:
-        """Return it in words."""
-        off = f"{self.off:.2f} s off" if self.off is not None else "nowhere near"
-        return f"{self.what} of the {self.kind} at {self.at:.1f} s: {off}"
+        """Return a phrase such as "start of the clause at 2.5 s: 0.50 s off"."""
+        event = phrase(
+            "{what} of the {kind} at {at:.1f} s", what=_EVENTS[self.what], kind=_KINDS[self.kind], at=self.at
+        )
+        if self.off is None:
+            return phrase("{event}: not met", event=event)
+        return phrase("{event}: {off:.2f} s off", event=event, off=self.off)
 
 
 @dataclass(frozen=True, eq=False)
 class RelaxedAnswer:
     """path: what was found. kept: the constraints it keeps to. given_up: the others, in words. misses: what
     is off by more than the tolerance that was asked for. retiming: how it is played faster and slower, None
-    where it is not.
+    if it is not.
     """
 
     path: Path
@@ -82,12 +100,16 @@ class RelaxedAnswer:
     retiming: Retiming | None = None
 
     def words(self) -> str:
-        """Return what was given up and missed, "" where nothing was."""
+        """Return what was dropped and missed, or "" if all constraints are met."""
         if not self.given_up:
             return ""
-        missed = ", ".join(m.words() for m in self.misses[:3]) or "no start, end or stress is missed"
-        more = f" and {len(self.misses) - 3} more" if len(self.misses) > 3 else ""
-        return f"given up: {', '.join(self.given_up)}; {missed}{more}"
+        missed = join_phrases([m.words() for m in self.misses[:3]], ", ") if self.misses else _MET
+        dropped, more = join_phrases(self.given_up, ", "), len(self.misses) - 3
+        if more > 0:
+            return phrase(
+                "dropped: {dropped}; {missed} and {more} more", dropped=dropped, missed=missed, more=more
+            )
+        return phrase("dropped: {dropped}; {missed}", dropped=dropped, missed=missed)
 
 
 def list_relaxations(asked: Constraints) -> Iterator[Constraints]:
@@ -126,19 +148,19 @@ def _taken_back(kept: Constraints, asked: Constraints) -> Iterator[Constraints]:
 
 
 def describe_given_up(asked: Constraints, kept: Constraints) -> tuple[str, ...]:
-    """Return which constraints were not kept, in words."""
-    out = [f"{kind}s" for kind in asked.use if kind not in kept.use and kind != "idle"]
-    out += ["silence"] if "idle" in asked.use and "idle" not in kept.use else []
+    """Return the names of the dropped constraints."""
+    out = [_ALL[kind] for kind in asked.use if kind not in kept.use and kind != "idle"]
+    out += [phrase("silence")] if "idle" in asked.use and "idle" not in kept.use else []
     if asked.peaks and not kept.peaks:
-        out.append("stresses")
+        out.append(phrase("stresses"))
     if asked.edges and not kept.edges:
-        out.append("where segments begin and end")
+        out.append(phrase("starts and ends of segments"))
     if asked.tolerance != kept.tolerance:
-        out.append(f"exactness, {kept.tolerance:g} s instead")
+        out.append(phrase("exact timing ({tolerance:g} s allowed)", tolerance=kept.tolerance))
     if asked.rules != kept.rules:
-        out.append("how often it jumps")
+        out.append(phrase("the limit on jumps"))
     if asked.words and not kept.words:
-        out.append("that all words are met")
+        out.append(phrase("required words"))
     return tuple(out)
 
 
@@ -166,11 +188,10 @@ def answer_speech(
 ) -> RelaxedAnswer:
     """Return motion for speech, with as many of the constraints as there is any for: they are given up until
     there is some, and then taken back one by one. soft: what it should have beside them. Raises
-    SynthesisError where the takes cannot even go on so long, or with nothing given up, or when it was
-    cancelled.
+    SynthesisError if the takes cannot even go on so long, or with nothing given up, or when it was cancelled.
 
-    What may be retimed is looked for with WIDER the tolerance too where there is nothing within it: where
-    speed brings all of it within the tolerance that was asked for, nothing was given up.
+    What may be retimed is looked for with WIDER the tolerance too if there is nothing within it: where speed
+    brings all of it within the tolerance that was asked for, nothing was given up.
     """
     asked = Constraints() if asked is None else asked
     asked = replace(asked, words=soft.hard and bool(soft.places))
@@ -235,7 +256,7 @@ class _Task:
         )
 
     def _path(self, kept: Constraints) -> Path:
-        """Return a path that keeps to constraints. Raises SynthesisError where there is none."""
+        """Return a path that keeps to constraints. Raises SynthesisError if there is none."""
         soft, how = self.soft, self.searching
         want = self._wanted(kept)
         charged = soft.charged
@@ -248,8 +269,8 @@ class _Task:
         )
 
     def _path_or_none(self, kept: Constraints) -> Path | None:
-        """Return a path that keeps to constraints, None where there is none. Raises SynthesisError when it
-        was cancelled.
+        """Return a path that keeps to constraints, None if there is none. Raises SynthesisError when it was
+        cancelled.
         """
         try:
             return self._path(kept)

@@ -1,9 +1,9 @@
 """Paths through a motion graph that jump only where it is worth it.
 
-A jump that costs what it looks like costs nothing where a pose resembles itself: the cheapest path then
-leads from a frame to itself, again and again, and stands still. A jump costs something by itself here, more
-where it shows again what was just seen; it goes away from where it would go on anyway, and the next is some
-time off.
+A jump that costs what it looks like costs nothing if a pose resembles itself: the cheapest path then leads
+from a frame to itself, again and again, and stands still. A jump costs something by itself here, more where
+it shows again what was just seen; it goes away from where it would go on anyway, and the next is some time
+off.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def find_path(
 ) -> Path:
     """Return a path that has what is wanted, by rules for its jumps: the one of the lowest price, which is of
     all that keep to them ("exact"), or a cheap one, other with other seeds ("greedy"). charged: what frames
-    cost, which both searches count. Raises SynthesisError where there is none.
+    cost, which both searches count. Raises SynthesisError if there is none.
     """
     allowed = _allowed(graph, rules)
     try:

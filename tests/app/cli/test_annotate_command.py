@@ -78,11 +78,14 @@ WRONG = {
         ("--tier", "Left arms=left arm"),
         "there is no 'Left arms' in the annotation; did you mean 'Left arm'?",
     ),
-    "a role that is none": (("--tier", "Body=tail"), "a tier is read as one of left arm"),
+    "a role that is none": (("--tier", "Body=tail"), "the role of a tier is one of left arm"),
     "no role": (("--tier", "Body"), "--tier is given as"),
     "a label that is not there": (("--label", "dance=gesture"), "--label: there is no 'dance'"),
-    "a meaning that is none": (("--label", "fidget=dance"), "a label means gesture, fidget"),
-    "negative smoothing": (("--smoothing", "-1"), "--smoothing is 0 or more"),
+    "a meaning that is none": (
+        ("--label", "fidget=dance"),
+        "the meaning of a label is one of gesture, fidget",
+    ),
+    "negative smoothing": (("--smoothing", "-1"), "--smoothing must be 0 or more"),
     "nothing to learn from": (
         tuple(
             x
@@ -90,7 +93,7 @@ WRONG = {
             for x in ("--tier", f"{t}=ignore")
         )
         + ("--learn",),
-        "nothing in it is read as an action; its tiers are 'Speech'",
+        "no tier is read as an action; the tiers are 'Speech'",
     ),
 }
 

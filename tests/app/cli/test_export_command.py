@@ -48,10 +48,10 @@ def test_vectors_are_written_beside_the_graph_they_are_of(few, tmp_path, capsys,
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
-        (["export"], 2, "which project"),
-        (["export", str(SAMPLE)], 2, "where to"),
+        (["export"], 2, "give a project and a folder"),
+        (["export", str(SAMPLE)], 2, "give a project and a folder"),
         (["export", str(SAMPLE), "-o", "x", "-t", "godott"], 1, "did you mean 'godot'"),
-        (["export", str(SAMPLE), "-o", "x", "--serve"], 2, "--target web --serve"),
+        (["export", str(SAMPLE), "-o", "x", "--serve"], 2, "--serve needs --target web"),
     ],
 )
 def test_what_is_missing_or_misspelt_is_told(arguments, code, words, capsys):

@@ -104,9 +104,9 @@ def test_help_tells_the_guidance_in_use(capsys: pytest.CaptureFixture[str]) -> N
 
 def test_planted_takes_are_made_once(takes: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = run(capsys, "planted", "-o", takes, "--count", 2, "-s", 20)
-    assert "2 conversations, 4 takes" in text and "(0 new, 2 were there)" in text
+    assert "2 conversations, 4 takes" in text and "(0 new, 2 made earlier)" in text
     assert "planted otherwise" in run(capsys, "planted", "-o", takes, "--seed", 9, code=1)
-    assert "from 0 on" in run(capsys, "planted", "-o", takes, "--moves", -1, code=1)
+    assert "0 or more" in run(capsys, "planted", "-o", takes, "--moves", -1, code=1)
 
 
 def test_a_model_is_told_of_in_words(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -255,7 +255,7 @@ def test_sounds_that_nobody_can_move_to_are_refused_in_words(
         "lasts 0.50 s": sound(tmp_path / "short.wav", voice[:, : RATE // 2]),
         "3 channels": sound(tmp_path / "three.wav", np.stack([voice[0]] * 3)),
         "sound file does not exist": tmp_path / "none.wav",
-        "is no sound": model,
+        "is not a sound file": model,
     }
     for words, path in bad.items():
         assert words in run(capsys, "sample", model, "--speech", path, *out, code=1), words
@@ -280,7 +280,7 @@ def test_what_is_odd_about_a_sound_is_told_and_it_is_used(
     assert np.isfinite(
         read_clips(_sampled(model, sound(tmp_path / "h.wav", holed, "FLOAT")))[0].rotations
     ).all()
-    for path, words in ((alone, "only one voice"), (loud, "is clipped")):
+    for path, words in ((alone, "only the speaker's voice"), (loud, "of the sound clips")):
         assert (
             main(["generate", "sample", str(model), "--speech", str(path), "-o", str(tmp_path / "o.bvh")])
             == 0
@@ -338,7 +338,7 @@ def test_models_are_judged_on_what_was_held_out(
     assert "2 takes, 0.67 min, 2 seeds" in text
     for name in ("true", "floor", "mismatched", "mean pose", "plain", "perfect"):
         assert f"\n{name}" in text
-    assert "little to judge a model on" in text
+    assert "too short to judge a model well" in text
     data = json.loads((tmp_path / "report" / "report.json").read_text())
     rows = {r["name"]: r["values"] for r in data["rows"]}
     assert rows["true"]["speed"] == pytest.approx(1) and rows["mean pose"]["profile"] is None
@@ -372,8 +372,8 @@ def test_a_model_is_not_judged_on_what_it_has_learned(
 
 
 def test_what_cannot_be_judged_is_told(model: Path, takes: Path, tmp_path: Path, capsys) -> None:
-    assert "no takes to judge" in run(capsys, "evaluate", model, code=1)
-    assert "there is no model" in run(capsys, "evaluate", takes, code=1)
+    assert "takes are missing" in run(capsys, "evaluate", model, code=1)
+    assert "is missing" in run(capsys, "evaluate", takes, code=1)
     assert "no such file" in run(capsys, "evaluate", model, tmp_path / "none", code=1)
     assert "--seeds" in run(capsys, "evaluate", model, takes, "--seeds", 0, code=1)
     (tmp_path / "plain.mgmodel").write_bytes(model.read_bytes())
@@ -422,16 +422,16 @@ def test_each_bad_take_fails_alone_and_in_words(
     ):
         assert words in told.err, words
     assert "'alone'" in told.err
-    assert "half of the takes beside the other half" in told.out
+    assert "one half of the takes with the other" in told.out
     assert "\n3 takes, " in f"\n{told.out}"
 
 
 def test_takes_none_of_which_can_be_used_are_an_error(
     tmp_path: Path, model: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert "holds no takes" in run(capsys, "evaluate", model, tmp_path, code=1)
+    assert "has no takes" in run(capsys, "evaluate", model, tmp_path, code=1)
     _take(tmp_path, "short", moving(2.0), np.stack([babble(2.0), babble(2.0, 2)]))
-    assert "none of the 1 takes" in run(capsys, "evaluate", model, tmp_path, code=1)
+    assert "cannot use any of the 1 takes" in run(capsys, "evaluate", model, tmp_path, code=1)
 
 
 # --- train, ablate
@@ -452,11 +452,11 @@ def test_what_cannot_be_trained_is_told_before_anything_is_read(
     monkeypatch.setattr(train_process, "find_missing_tools", lambda: None)
     out = ("-o", tmp_path / "m.mgmodel")
     assert "written as .mgmodel" in run(capsys, "train", takes, "-o", tmp_path / "m.pt", code=1)
-    assert "--minutes is more than 0" in run(capsys, "train", takes, *out, "--minutes", 0, code=1)
+    assert "--minutes must be more than 0" in run(capsys, "train", takes, *out, "--minutes", 0, code=1)
     assert "give takes" in run(capsys, "train", *out, code=1)
     assert "training to go on" in run(capsys, "train", *out, "--resume", code=1)
     (tmp_path / "m.mgmodel").write_bytes(b"mine")
-    assert "there already" in run(capsys, "train", takes, *out, code=1)
+    assert "exists already" in run(capsys, "train", takes, *out, code=1)
     assert (tmp_path / "m.mgmodel").read_bytes() == b"mine"
 
 

@@ -44,7 +44,7 @@ def test_edits_that_a_crash_left_are_counted(
     journal = leave(saved, count)
     main([command, str(saved)])
     said = capsys.readouterr().err
-    assert said.startswith(f"note: {journal.name} holds {words}that a crash kept from being saved")
+    assert said.startswith(f"note: {journal.name} has {words}from before a crash that ")
     assert saved.name in said.replace(journal.name, "")
 
 
@@ -107,4 +107,4 @@ def test_a_damaged_journal_says_how_many_edits_are_lost(saved: Path, capsys: Cap
     content = journal.read_bytes()
     journal.write_bytes(content.replace(b"name 2", b"name_2", 1))
     main(["info", str(saved)])
-    assert "holds 2 edits" in (said := capsys.readouterr().err) and "1 edit " in said
+    assert "has 2 edits" in (said := capsys.readouterr().err) and "(1 of them is damaged)" in said

@@ -142,7 +142,7 @@ def test_a_folder_that_is_not_there_or_empty_is_told(
 ) -> None:
     (tmp_path / "empty").mkdir()
     assert main(["label", str(tmp_path / given)]) == 1
-    assert "on labelling it" in (told := capsys.readouterr().err) or "on importing it" in told
+    assert "while labelling it" in (told := capsys.readouterr().err) or "while importing it" in told
 
 
 def test_names_are_escaped_in_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -110,7 +110,7 @@ def test_what_was_left_aside_stands_at_the_end_by_reason_with_a_count() -> None:
     aside = {one: "name says 'x<y'", two: "goes 2.0 m away", three: "goes 3.5 m away"}
     taken = AcceptedProposals(project, (), {})
     page = format_label_report(project, Proposals({}, {}, aside), taken, {})
-    assert "<h2 id='aside'>Left aside (3)</h2>" in page
+    assert "<h2 id='aside'>Skipped (3)</h2>" in page
     assert "2 clips: goes 2.0 to 3.5 m away" in page and "(run, jog)" in page
     assert "1 clip: name says &#x27;x&lt;y&#x27;" in page and "a&lt;b&gt;" in page and "a<b>" not in page
     assert page.index("2 clips: goes") < page.index("1 clip: name")

@@ -93,7 +93,7 @@ def test_what_was_asked_can_be_kept_and_performed_again(
     done = subprocess.run(
         words, input='{"do":"nod","id":"n","at":1}\n', capture_output=True, text=True, cwd=ROOT, timeout=120
     )
-    assert done.returncode == 0 and "kept as 'talk'" in done.stderr
+    assert done.returncode == 0 and "saved as 'talk'" in done.stderr
     kept = list(open_project(project).project.performances.values())[-1]
     assert kept.name == "talk" and [type(ask).__name__ for ask in kept.asks] == ["Nod"]
     assert main(["plan", str(project), "--performance", "talk", "-s", "3", "--json"]) == 0
@@ -107,10 +107,10 @@ def test_what_was_asked_can_be_kept_and_performed_again(
     [
         (
             ("--host", "0.0.0.0"),
-            "a token is needed, so that not everyone there can move the character; choose one, for example "
+            "needs a token, so that not everyone there can control the character; choose one, for example "
             "--token ",
         ),
-        (("--port", "70000"), "between 0 and 65535"),
+        (("--port", "70000"), "from 0 to 65535"),
     ],
 )
 def test_what_is_not_safe_is_refused_in_words(
@@ -143,9 +143,9 @@ def test_a_session_whose_project_was_damaged_meanwhile_is_kept_beside_it(
 ) -> None:
     session, options = played
     options.project.write_text("graphs: [")
-    with pytest.raises(FileError, match="kept in") as told:
+    with pytest.raises(FileError, match="saved in") as told:
         live_command._keep(session, options)
-    place = Path(re.search("kept in '(.*?)'", str(told.value))[1])  # type: ignore[index]
+    place = Path(re.search("saved in '(.*?)'", str(told.value))[1])  # type: ignore[index]
     assert place.parent == options.project.parent and options.project.read_text() == "graphs: ["
     opened = open_project(place)
     assert "talk" in [p.name for p in opened.project.performances.values()] and not opened.notes
@@ -158,7 +158,7 @@ def test_a_session_whose_folder_takes_nothing_is_kept_where_passing_files_are(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     shutil.rmtree(options.project.parent)
     options.project.parent.write_text("a file where the folder was")
-    with pytest.raises(FileError, match="is kept in"):
+    with pytest.raises(FileError, match="was saved in"):
         live_command._keep(session, options)
     (place,) = tmp_path.glob("* - talk *.metagraph.yaml")
     assert read_project(place).performances

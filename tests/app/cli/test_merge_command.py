@@ -185,7 +185,7 @@ def test_git_stops_at_a_conflict_and_the_project_can_be_opened(shared: Path) -> 
 
 
 def test_a_text_merge_that_keeps_one_sides_clip_is_found_by_check() -> None:
-    """Two people had made `c12` before ids were told apart; by hand somebody kept the wrong line."""
+    """Two people had made `c12` before ids were distinguished; by hand somebody kept the wrong line."""
     from metagraph.formats.store import encode_project, parse_project
 
     base = beginning()

@@ -146,9 +146,9 @@ def test_a_contact_sheet_is_drawn(project: Path, tmp_path: Path, capsys: pytest.
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["-o", "show.gif"], "it is written as .mp4, .png, .glb, .usda, .bvh, .json, not as '.gif'"),
+        (["-o", "show.gif"], "the file can be .mp4, .png, .glb, .usda, .bvh, .json, not '.gif'"),
         (["--fps", "0"], "frames a second"),
-        (["--picture", "wide"], "a size is given as 960x540"),
+        (["--picture", "wide"], "give --size as 960x540"),
     ],
 )
 def test_what_cannot_be_is_refused(

@@ -15,7 +15,7 @@ import pytest
 from app.cli.parser import main
 from metagraph.research.study.perceive.folder import read_folder
 from preview.video import write_video
-from preview.video_reading import read_pictures, read_video_sound, video_seconds
+from preview.video_reading import measure_video_seconds, read_pictures, read_video_sound
 from tests.processes import started
 from tests.research.study.perceive.perceive_makers import sheet, study, text
 
@@ -50,7 +50,7 @@ def test_simulated_raters_are_reported_and_the_planted_preference_is_found(
     assert first["model_low"] < 0.68 < first["model_high"]  # 0.8 log odds, among people and items that differ
     assert main(["study", "perceive", "withdraw", str(out), "P01"]) == 0
     assert main(["study", "perceive", "delete", str(out), "P02", "--yes"]) == 0
-    assert "write the report anew" in capsys.readouterr().out
+    assert "write the report again" in capsys.readouterr().out
     assert main(["study", "perceive", "report", str(out)]) == 0
     assert "Nobody took part" in capsys.readouterr().out
 
@@ -62,13 +62,13 @@ def test_simulated_raters_are_reported_and_the_planted_preference_is_found(
         (["simulate", "OUT", "--liked", "who=1"], "no condition 'who'"),
         (["simulate", "OUT", "--lapses", "2"], "share of 0 to 1"),
         (["simulate", "OUT", "--participants", "0"], "1 to 1000"),
-        (["simulate", "TAKEN"], "holds a study already"),
-        (["make", "PLAN", "--into", "TAKEN"], "holds a study already"),
+        (["simulate", "TAKEN"], "has a study already"),
+        (["make", "PLAN", "--into", "TAKEN"], "has a study already"),
         (["report", "OUT"], "cannot be read"),
         (["report", "."], "holds no perceptual study"),
         (["collect", "TAKEN", "nowhere.json"], None),
         (["withdraw", "TAKEN", "P77"], "does not take part"),
-        (["delete", "TAKEN", "P01"], "say --yes"),
+        (["delete", "TAKEN", "P01"], "confirm with --yes"),
         (["serve", "TAKEN"], "videos are not there"),
         (["plan", "--share", "0.4"], "more than 0.5"),
         (["plan", "--share", "0.6", "--smallest", "1"], "--smallest"),
@@ -142,13 +142,13 @@ def test_videos_of_others_are_shown_with_one_size_length_and_loudness(
     assert not made.differences()
     loud = []
     for name, (condition, _) in made.key.stimuli.items():
-        assert video_seconds(made.video(name)) == pytest.approx(1.0, abs=0.08)
+        assert measure_video_seconds(made.video(name)) == pytest.approx(1.0, abs=0.08)
         sound = read_video_sound(made.video(name), 44100)
         assert (sound is None) == (condition == "quiet")
         loud += [] if sound is None else [float(np.abs(sound[4000:40000]).max())]
     assert max(loud) < 1.1 * min(loud)
     assert main(["study", "perceive", "make", str(tmp_path), "--into", str(out)]) == 1
-    assert "holds a study already" in capsys.readouterr().err
+    assert "has a study already" in capsys.readouterr().err
 
 
 def test_a_video_that_is_too_short_is_told_before_anything_is_drawn(
@@ -211,7 +211,7 @@ def pictures(path: Path) -> np.ndarray:
     ("condition", "error"),
     [
         ("{conversation: Nowhere}", "there is no conversation 'Nowhere'"),
-        ("{conversation: Office, taken: true}", "no take that was recorded"),
+        ("{conversation: Office, taken: true}", "no take recorded with it"),
         ("{performance: Nowhere}", "no performance 'Nowhere'"),
         ("{clip: nowhere}", "there is no clip 'nowhere'"),
         ("{motion: nowhere.bvh}", "nowhere.bvh"),

@@ -53,4 +53,4 @@ def test_a_mode_beside_a_kept_performance_is_refused_and_not_ignored(tmp_path, c
     out = str(tmp_path / "a.png")
     words = ["render", str(SAMPLE), "-o", out, "-s", "1", "--performance", "greeting", "--mode", "idle"]
     assert main(words) == 1
-    assert "a kept performance has a mode of its own" in capsys.readouterr().err
+    assert "a saved performance has its own mode" in capsys.readouterr().err

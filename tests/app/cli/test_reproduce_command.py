@@ -26,7 +26,7 @@ def test_it_lists_every_exhibit_with_how_long_it_takes(capsys: pytest.CaptureFix
 @pytest.mark.parametrize(
     ("words", "cause"),
     [
-        (["ratings"], "say where the report goes"),
+        (["ratings"], "give a folder for the report"),
         (["ratngs", "--into", "x"], "there is no exhibit 'ratngs'"),
         (["ratings", "--into", "x", "--takes", "gone"], "there is no such folder"),
         (["ratings", "--into", "x", "--model", "gone.mgmodel"], "there is no such model"),
@@ -98,4 +98,4 @@ def test_an_exhibit_that_fails_in_a_way_nobody_foresaw_spoils_no_other(
     monkeypatch.setattr("metagraph.research.exhibits.planning.exhibit_matrix", broken)
     assert main(["reproduce", "matrix", "ratings", "--into", str(tmp_path / "out")]) == 3
     told = capsys.readouterr().out
-    assert "it failed (KeyError: 'odd')" in told and "without responses" in told
+    assert "failed (KeyError: 'odd')" in told and "without responses" in told

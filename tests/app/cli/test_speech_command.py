@@ -158,8 +158,8 @@ def test_three_are_kept_and_it_says_where_each_looks(
     assert all(found & {"addressed", "aside"} and any("speaking" in d for d in found) for found in doing)
     assert main(["speech", *map(str, given), "--name", "Again"]) == 0
     out = capsys.readouterr().out
-    assert "SPEAKER_02, speaking" in out
-    assert "whoever is addressed, looks at the speaker for" in out
+    assert "SPEAKER_02: when speaking" in out
+    assert "all speakers: when addressed, looks at the speaker for" in out
 
 
 def test_who_takes_part_is_chosen_by_name_or_number(
@@ -170,6 +170,6 @@ def test_who_takes_part_is_chosen_by_name_or_number(
         code, data, _ = run(capsys, *given, chosen)
         assert code == 0 and [s["name"] for s in data["sides"]] == ["SPEAKER_02", "SPEAKER_00"]
         assert data["looks"] == []
-    for chosen, why in (("Zoe,1", "nobody is called 'Zoe'"), ("2", "two or more"), ("2,2", "two or more")):
+    for chosen, why in (("Zoe,1", "there is no speaker 'Zoe'"), ("2", "two or more"), ("2,2", "two or more")):
         assert main(["speech", *map(str, given), chosen]) == 1
         assert why in capsys.readouterr().err

@@ -21,7 +21,7 @@ def project(tmp_path: Path) -> Path:
 def test_a_whole_project_ends_with_0_and_says_so(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(project)]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == f"{project} (project)" and lines[-1] == "Everything is whole."
+    assert lines[0] == f"{project} (project)" and lines[-1] == "Everything is intact."
     assert "  versions    none" in lines, "one line a part, aligned"
 
 

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import QApplication
 
-from app.look.theme import DARK, KIND_MARKS, KIND_TITLES, LIGHT, apply_theme, palette, style_sheet, theme
+from app.look.theme import DARK, KIND_MARKS, KIND_TITLES, LIGHT, apply_theme, make_style_sheet, palette, theme
 from metagraph.graph.model import KINDS
 
 GROUNDS = ("ground", "panel", "card", "field", "hover")
@@ -57,5 +57,5 @@ def test_applying_a_theme_reaches_palette_and_style(qapp):
     for look in (LIGHT, DARK):
         apply_theme(QApplication.instance(), look)
         assert QApplication.palette().color(QPalette.ColorRole.Window).name() == look.panel
-        assert qapp.styleSheet() == style_sheet(look)
+        assert qapp.styleSheet() == make_style_sheet(look)
         assert palette(look).color(QPalette.ColorRole.PlaceholderText).name() == look.dim

@@ -12,7 +12,7 @@ from metagraph.formats.elan import read_elan
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.learning.annotation import Annotation, AnnotationInterval, AnnotationTier
-from metagraph.playback.learning.learn import acts_of_asks
+from metagraph.playback.learning.learn import read_acts_of_asks
 from metagraph.playback.planning.running_plan import plan_performance
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
@@ -98,7 +98,7 @@ def test_what_was_seen_is_kept_as_a_performance_of_its_own_name(conversation: An
     kept = second.project.performances[second.performance or ""]
     assert not kept.idle and kept.length >= conversation.end
     for layer, acts in reading.observed.items():
-        back = acts_of_asks(layer, kept.asks)
+        back = read_acts_of_asks(layer, kept.asks)
         assert [(a.kind, a.limb, a.tags) for a in back] == [(a.kind, a.limb, a.tags) for a in acts]
         assert all(
             abs(a.start - b.start) < 1e-3 and abs(a.end - b.end) < 2e-3

@@ -25,7 +25,7 @@ from tests.processes import started
 
 ROOT = Path(__file__).resolve().parents[3]
 
-# A window that is told by lines what to do, and tells by lines what it shows; questions wait for their
+# A window that is given by lines what to do, and tells by lines what it shows; questions wait for their
 # answer.
 WINDOW = """
 import sys, threading

@@ -8,8 +8,8 @@ import numpy as np
 import soundfile
 
 from app.project.speech_files import (
-    channels_of,
-    facts_of,
+    count_channels,
+    describe_sound_file,
     find_transcripts_beside,
     is_conversation,
     sort_speech_files,
@@ -61,7 +61,7 @@ def test_words_beside_a_sound_are_found_whatever_the_case(tmp_path: Path) -> Non
 
 def test_a_file_that_is_no_sound_has_no_channels(tmp_path: Path) -> None:
     (tmp_path / "no.wav").write_text("no")
-    assert channels_of(tmp_path / "no.wav") == 0
-    assert channels_of(tmp_path / "gone.wav") == 0
-    assert facts_of(tmp_path / "gone.wav") == "gone.wav"
-    assert facts_of(sound(tmp_path / "a.wav", 2)) == "a.wav (2 channels, 0:00)"
+    assert count_channels(tmp_path / "no.wav") == 0
+    assert count_channels(tmp_path / "gone.wav") == 0
+    assert describe_sound_file(tmp_path / "gone.wav") == "gone.wav"
+    assert describe_sound_file(sound(tmp_path / "a.wav", 2)) == "a.wav (2 channels, 0:00)"

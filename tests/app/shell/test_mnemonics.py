@@ -11,7 +11,7 @@ from collections import Counter
 import pytest
 
 from app import translation
-from app.shell.mnemonics import mnemonic_key, with_distinct_keys
+from app.shell.mnemonics import read_mnemonic_key, with_distinct_keys
 
 
 @pytest.mark.parametrize(
@@ -19,7 +19,7 @@ from app.shell.mnemonics import mnemonic_key, with_distinct_keys
     [("&Save", "s"), ("S&ave && go", "a"), ("R&&D", ""), ("none", ""), ("end&", ""), ("", "")],
 )
 def test_a_text_marks_one_key_or_none(text: str, key: str) -> None:
-    assert mnemonic_key(text) == key
+    assert read_mnemonic_key(text) == key
 
 
 def test_the_first_keeps_a_key_and_another_has_one_of_its_other_letters() -> None:
@@ -65,5 +65,5 @@ def test_no_menu_has_a_key_twice(code: str) -> None:
     assert len(menus) > 8 and sum(map(len, menus.values())) > 100
     assert menus[""][0] == {"en": "&File", "de": "&Datei", "pl": "&Plik"}[code]
     for menu, texts in menus.items():
-        keys = Counter(key for text in texts if (key := mnemonic_key(text)))
+        keys = Counter(key for text in texts if (key := read_mnemonic_key(text)))
         assert not [key for key, count in keys.items() if count > 1], (menu, texts)

@@ -1,4 +1,4 @@
-"""What a view does where there is no OpenGL."""
+"""What a view does if there is no OpenGL."""
 
 from __future__ import annotations
 

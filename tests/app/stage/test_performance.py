@@ -1,4 +1,4 @@
-"""What plays: a clip alone, an action in context, the plan; made anew after edits, on a thread."""
+"""What plays: a clip alone, an action in context, the plan; made again after edits, on a thread."""
 
 from __future__ import annotations
 

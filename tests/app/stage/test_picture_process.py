@@ -1,4 +1,4 @@
-"""The process that draws pictures ends with whoever wants them, and tells of nothing else."""
+"""The process that draws pictures ends with whoever wants them, and reports nothing else."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
 
 
 class Noted(PressDrag):
-    """Notes what it is told."""
+    """Notes what it is reported."""
 
     catch = 3.0
 

@@ -1,4 +1,4 @@
-"""Things are made anew only when what they are made of has changed."""
+"""Things are made again only when what they are made of has changed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A widget is styled anew only where its sheet is another."""
+"""A widget is styled again only where its sheet is another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is asked for many times in one go is done once."""
+"""What is requested many times in one go is done once."""
 
 from __future__ import annotations
 

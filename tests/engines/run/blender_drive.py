@@ -144,7 +144,7 @@ if len(sys.argv) > 5:
     bpy.context.window_manager.metagraph_address = "ws://127.0.0.1:9"
     try:
         noted["nobody"] = sorted(bpy.ops.metagraph.live())
-    except RuntimeError as error:  # reports of errors are raised where there is no window
+    except RuntimeError as error:  # reports of errors are raised if there is no window
         noted["nobody"] = str(error)
 metagraph_blender.unregister()
 (out / "noted.json").write_text(json.dumps(noted, default=str))

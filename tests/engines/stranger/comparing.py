@@ -62,7 +62,7 @@ def kinds(character: Character, case: dict[str, Any], t: float) -> Iterator[str]
 
 
 def told(case: dict[str, Any], character: Character, t: float) -> list[tuple[float, float, str]] | None:
-    """What is said by voices: start, end, line; None where anything is said that only letters tell of."""
+    """What is said by voices: start, end, line; None if anything is said that only letters report."""
     out, voices = [], character.data.get("voices", {})
     for now, ask in ((step["now"], ask) for step in case["steps"] for ask in step["asks"]):
         if ask["do"] == "say" and "at" in ask and ask.get("line") in voices:

@@ -1,4 +1,4 @@
-"""What each of two is read in, and what is told of it."""
+"""What each of two is read in, and what is reported about it."""
 
 from __future__ import annotations
 

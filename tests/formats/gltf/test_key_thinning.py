@@ -19,7 +19,7 @@ Array = NDArray[Any]
 
 
 def forget() -> None:
-    """Let nothing of before be remembered."""
+    """Let nothing from before be remembered."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(key_thinning, "MOST", 0)
         find_kept_frames([np.zeros((1, 1, 3))], 0.0, False)

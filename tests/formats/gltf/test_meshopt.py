@@ -1,4 +1,4 @@
-"""Packed buffer views are read as the extension's own library packs them, and what is damaged is told."""
+"""Packed buffer views are read as the extension's own library packs them, and what is damaged is reported."""
 
 from __future__ import annotations
 

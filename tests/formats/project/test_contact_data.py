@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from metagraph.formats.project.contact_data import contacts_data, contacts_from
+from metagraph.formats.project.contact_data import decode_contacts, encode_contacts
 from metagraph.formats.project.fields import DataError
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
 
@@ -17,8 +17,8 @@ SPAN = ContactSpan(
 
 
 def test_contacts_come_back_as_they_were() -> None:
-    data = contacts_data([SPAN])
-    assert contacts_from({"contacts": data}, "a") == (SPAN,)
+    data = encode_contacts([SPAN])
+    assert decode_contacts({"contacts": data}, "a") == (SPAN,)
     assert "ease_out" not in data[0], "defaults are left out"
 
 
@@ -38,7 +38,7 @@ def test_contacts_come_back_as_they_were() -> None:
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(change: dict[str, object]) -> None:
-    data = {**contacts_data([SPAN])[0], **change}
+    data = {**encode_contacts([SPAN])[0], **change}
     with pytest.raises(DataError) as error:
-        contacts_from({"contacts": [data]}, "actions[0]")
+        decode_contacts({"contacts": [data]}, "actions[0]")
     assert error.value.where.startswith("actions[0].contacts[0]")

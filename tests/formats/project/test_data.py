@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.formats.project.data import from_data, skeleton_data, skeleton_from, to_data
+from metagraph.formats.project.data import decode_skeleton, encode_skeleton, from_data, to_data
 from metagraph.formats.project.fields import DataError
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import add_conversation
@@ -92,7 +92,7 @@ def test_a_number_that_could_not_be_read_back_is_not_written(value: float) -> No
 
 
 def test_a_skeleton_comes_back_to_the_bit() -> None:
-    back = skeleton_from(skeleton_data(SKELETON))
+    back = decode_skeleton(encode_skeleton(SKELETON))
     assert back == SKELETON
     assert (back.rest_rotations == SKELETON.rest_rotations).all()
     assert (back.rest_translations == SKELETON.rest_translations).all()
@@ -314,7 +314,7 @@ def test_whatever_stands_in_a_field_the_error_says_where(chance: random.Random, 
     else:
         assert to_data(from_data(to_data(project))) == to_data(
             project
-        )  # but for what lies below a microsecond
+        )  # except for what lies below a microsecond
 
 
 def test_every_layer_is_there_whatever_the_data_holds() -> None:

@@ -1,4 +1,4 @@
-"""A journal's steps told apart again: every state of every step as it was."""
+"""A journal's steps distinguished again: every state of every step as it was."""
 
 from __future__ import annotations
 

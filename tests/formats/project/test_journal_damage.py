@@ -1,4 +1,4 @@
-"""Damaged journals: what is whole is read, what is lost is told, and nothing is thrown away."""
+"""Damaged journals: what is whole is read, what is lost is reported, and nothing is thrown away."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import write_glb
-from metagraph.formats.project.pieces import is_piece, piece_text, read_other_project, read_piece
+from metagraph.formats.project.pieces import encode_piece, is_piece, read_other_project, read_piece
 from metagraph.formats.store import SUFFIX, open_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -60,7 +60,7 @@ def test_what_is_copied_in_one_window_is_pasted_in_another(two: tuple[Path, Path
     ours, theirs = two
     source = open_project(theirs).project
     (point,) = (a.id for a in source.actions() if a.name == "point")
-    text = piece_text(source, theirs.parent, actions=[point])
+    text = encode_piece(source, theirs.parent, actions=[point])
     assert is_piece(text) and json.loads(text)
     taking = read_piece(text, ours).into(open_project(ours).project)
     assert names(taking.project) == {"idle", "wave", "point"}
@@ -73,7 +73,7 @@ def test_a_stance_is_copied_with_all_on_it_into_an_untitled_project(
 ) -> None:
     _, theirs = two
     source = open_project(theirs).project
-    text = piece_text(source, theirs.parent, stances=list(source.graphs["arms"].stances))
+    text = encode_piece(source, theirs.parent, stances=list(source.graphs["arms"].stances))
     after = read_piece(text, None).into(Project()).project
     assert names(after) == {"pose", "point"}
     assert all(Path(e.path).is_absolute() and e.motion is not None for e in after.clips.values())

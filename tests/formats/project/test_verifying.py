@@ -1,4 +1,4 @@
-"""Verifying a project tells of each file that is not whole, hides none of them, and changes nothing."""
+"""Verifying a project reports each file that is not whole, hides none of them, and changes nothing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.project.journal import Journal, journal_path
 from metagraph.formats.project.verified import Verified
 from metagraph.formats.project.verifying import verify_project
-from metagraph.formats.project.versions import version_path, write_project
+from metagraph.formats.project.versions import make_version_path, write_project
 from metagraph.formats.recovery import DAMAGED, retire
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
@@ -196,7 +196,7 @@ def test_a_character_that_cannot_be_read_is_told(home: Path) -> None:
 def test_a_truncated_project_is_told_and_all_beside_it_is_looked_at(home: Path, share: float) -> None:
     content = home.read_bytes()
     home.write_bytes(content[: int(len(content) * share)])
-    version_path(home, 1).write_bytes(b"nothing")
+    make_version_path(home, 1).write_bytes(b"nothing")
     assert {"file", "versions"} <= {*said(verify_project(home))}
 
 
@@ -216,7 +216,7 @@ def test_an_action_that_plays_another_clip_than_it_was_made_of_is_told(home: Pat
 
 
 def test_a_damaged_earlier_version_is_told(home: Path) -> None:
-    version_path(home, 1).write_bytes(b"\xff\xfe")
+    make_version_path(home, 1).write_bytes(b"\xff\xfe")
     (line,) = said(verify_project(home))["versions"]
     assert line.startswith(f"{NAME}.1")
 

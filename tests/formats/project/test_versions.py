@@ -12,7 +12,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.project import versions as v
-from metagraph.formats.project.versions import earlier_versions, is_version, version_path, write_project
+from metagraph.formats.project.versions import earlier_versions, is_version, make_version_path, write_project
 from metagraph.formats.store import SUFFIX
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -63,7 +63,7 @@ def test_the_same_content_makes_no_version(path: Path) -> None:
 def test_a_gap_is_filled_before_anything_goes(path: Path) -> None:
     for n in range(4):
         write_project(path, f"{n}".encode(), 3)
-    version_path(path, 2).unlink()
+    make_version_path(path, 2).unlink()
     write_project(path, b"next", 3)
     assert texts(path) == ["3", "2", "0"]
 
@@ -92,7 +92,7 @@ def test_other_files_are_no_versions(path: Path) -> None:
     for name in ("01", "0", "x", "100", "1.bak", "-1"):
         path.with_name(f"{path.name}.{name}").write_text("mine")
     assert earlier_versions(path) == ()
-    version_path(path, 1).mkdir()
+    make_version_path(path, 1).mkdir()
     note = write_project(path, b"b", 3)
     assert note is not None and path.read_text() == "b", "a folder in the way does not hold the save up"
 

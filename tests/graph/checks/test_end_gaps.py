@@ -35,7 +35,7 @@ def test_a_project_without_clips_has_no_distances(toy: Any) -> None:
     bare = edits.remove_clips(project, [*project.clips])
     assert end_gaps.find_end_gaps(bare, bare.graphs["arms"], action) == []
     assert end_gaps.measure_seam(bare, bare.graphs["arms"], action) is None
-    assert np.isinf(end_gaps.distances_to_stance(bare, action, np.zeros(2))).all()
+    assert np.isinf(end_gaps.measure_distances_to_stance(bare, action, np.zeros(2))).all()
     assert end_gaps.find_end_gaps(Project(), Project().graphs["arms"], action) == []
 
 
@@ -44,6 +44,6 @@ def test_distances_over_time_are_the_gaps_at_its_ends(toy: Any) -> None:
     action = project.action(toy.id(project, "up to far"))
     found = end_gaps.find_end_gaps(project, project.graphs["arms"], action)
     times = np.array(project.span(action))
-    leaves, enters = end_gaps.distances_to_stance(project, action, times)
+    leaves, enters = end_gaps.measure_distances_to_stance(project, action, times)
     assert [g.edge for g in found] == ["begins", "ends"] and leaves[1] > 0.2 < enters[0]
     assert [leaves[0], enters[1]] == pytest.approx([g.metres for g in found])

@@ -191,8 +191,8 @@ def test_each_side_may_have_lists_and_a_language_of_its_own() -> None:
 
 
 def test_what_is_said_of_both_lists_answers() -> None:
-    assert c.kind_of_words("嗯", ["嗯", "对"], ["嗯", "呃"]) == "response"
-    assert c.kind_of_words("हाँ।", ["हाँ"], []) == "response" and c.kind_of_words("ह", ["हाँ"], []) == "clause"
+    assert c.classify_words("嗯", ["嗯", "对"], ["嗯", "呃"]) == "response"
+    assert c.classify_words("हाँ।", ["हाँ"], []) == "response" and c.classify_words("ह", ["हाँ"], []) == "clause"
 
 
 def test_the_language_conversations_are_read_in_is_kept() -> None:
@@ -201,11 +201,11 @@ def test_the_language_conversations_are_read_in_is_kept() -> None:
 
 
 def test_words_are_compared_without_case_hyphens_and_punctuation() -> None:
-    assert c.kind_of_words("Uh-huh, yeah!", ["uh huh", "yeah"], ["uh"]) == "response"
-    assert c.kind_of_words("%HESITATION", [], ["%hesitation"]) == "hesitation"
-    assert c.kind_of_words("um, right", ["right"], ["um"]) == "response"
-    assert c.kind_of_words("um, the door", ["right"], ["um"]) == "clause"
-    assert c.kind_of_words("...", ["right"], ["um"]) == "clause"
+    assert c.classify_words("Uh-huh, yeah!", ["uh huh", "yeah"], ["uh"]) == "response"
+    assert c.classify_words("%HESITATION", [], ["%hesitation"]) == "hesitation"
+    assert c.classify_words("um, right", ["right"], ["um"]) == "response"
+    assert c.classify_words("um, the door", ["right"], ["um"]) == "clause"
+    assert c.classify_words("...", ["right"], ["um"]) == "clause"
 
 
 times = st.floats(-1, 12)

@@ -32,7 +32,7 @@ def gestures(project: Project) -> list[str]:
 
 def test_a_pattern_names_and_numbers_in_the_order_given(project: Project) -> None:
     ids = gestures(project)[:2]
-    names = batch.names_by_pattern(project, ids[::-1], "{stance} {kind} {n:02}")
+    names = batch.rename_by_pattern(project, ids[::-1], "{stance} {kind} {n:02}")
     assert [names[i].rpartition(" ")[2] for i in ids[::-1]] == ["01", "02"]
     after = batch.rename_actions(project, names)
     assert {i: after.action(i).name for i in ids} == names  # type: ignore[union-attr]
@@ -42,31 +42,31 @@ def test_a_pattern_names_and_numbers_in_the_order_given(project: Project) -> Non
 @pytest.mark.parametrize("pattern", ["{colour}", "{n", "{n:x!}", "{0}", "{name[0][0][0]}x{", "{n:s}"])
 def test_a_pattern_that_cannot_be_read_says_what_may_stand_in_braces(project: Project, pattern: str) -> None:
     with pytest.raises(EditError, match=r"\{name\}"):
-        batch.names_by_pattern(project, gestures(project), pattern)
+        batch.rename_by_pattern(project, gestures(project), pattern)
 
 
 def test_a_name_is_never_left_empty(project: Project) -> None:
     with pytest.raises(EditError, match="empty"):
-        batch.names_by_pattern(project, gestures(project), "  ")
+        batch.rename_by_pattern(project, gestures(project), "  ")
     name = project.action(gestures(project)[0]).name  # type: ignore[union-attr]
     with pytest.raises(EditError, match="empty"):
-        batch.names_replaced(project, gestures(project)[:1], name, "")
+        batch.rename_by_replacing(project, gestures(project)[:1], name, "")
     with pytest.raises(EditError, match="text to find"):
-        batch.names_replaced(project, gestures(project), "", "x")
+        batch.rename_by_replacing(project, gestures(project), "", "x")
 
 
 def test_a_text_is_replaced_only_where_it_stands(project: Project) -> None:
     first = gestures(project)[0]
     named = batch.rename_actions(project, {first: "Wave_Lf 01"})
-    assert batch.names_replaced(named, gestures(named), "_Lf", r"\1 left") == {first: r"Wave\1 left 01"}
-    assert batch.names_replaced(named, gestures(named), r"(\w+)_Lf (\d+)", r"\2 \1", regex=True) == {
+    assert batch.rename_by_replacing(named, gestures(named), "_Lf", r"\1 left") == {first: r"Wave\1 left 01"}
+    assert batch.rename_by_replacing(named, gestures(named), r"(\w+)_Lf (\d+)", r"\2 \1", regex=True) == {
         first: "01 Wave"
     }
-    assert batch.names_replaced(named, ["nobody"], "Wave", "x") == {}
+    assert batch.rename_by_replacing(named, ["nobody"], "Wave", "x") == {}
     with pytest.raises(EditError, match="not a valid regular expression"):
-        batch.names_replaced(named, gestures(named), "(", "x", regex=True)
+        batch.rename_by_replacing(named, gestures(named), "(", "x", regex=True)
     with pytest.raises(EditError, match="not a valid regular expression"):
-        batch.names_replaced(named, gestures(named), "Wave", r"\7", regex=True)
+        batch.rename_by_replacing(named, gestures(named), "Wave", r"\7", regex=True)
 
 
 # --- properties

@@ -16,7 +16,7 @@ from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.mirroring import place_twins, twin_clips, twin_name
+from metagraph.graph.editing.mirroring import make_twin_clips, name_twin, place_twins
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -24,7 +24,7 @@ from metagraph.motion.clip import Clip
 
 def with_twins(project: Project, actions: list[str]) -> Project:
     """Make and place the twins of actions, as a caller does that has written the files."""
-    made = twin_clips(project, actions)
+    made = make_twin_clips(project, actions)
     ids = {}
     for twin in made:
         project = add_clips(project, [(f"{twin.name}.glb", 0, "", twin.motion)])
@@ -39,13 +39,13 @@ def new_actions(before: Project, after: Project) -> list[Any]:
 
 def test_nothing_to_mirror_is_said(toy: Any) -> None:
     with pytest.raises(EditError, match="nothing to mirror"):
-        twin_clips(toy.project(), [])
+        make_twin_clips(toy.project(), [])
 
 
 def test_an_action_that_is_gone_is_said(toy: Any) -> None:
     project = toy.project()
     with pytest.raises(EditError, match="no longer"):
-        twin_clips(project, ["a999"])
+        make_twin_clips(project, ["a999"])
     with pytest.raises(EditError, match="no longer"):
         place_twins(project, {"a999": "c1"})
 
@@ -61,7 +61,7 @@ def test_a_motion_that_is_the_same_on_both_sides_has_no_twin(toy: Any) -> None:
     assert action is not None
     project = edits.with_motions(project, {action.clip: still})
     with pytest.raises(EditError, match=r"'rest beat lf' .*0\.0 cm"):
-        twin_clips(project, [ident])
+        make_twin_clips(project, [ident])
 
 
 def test_a_clip_whose_file_is_missing_is_said(toy: Any) -> None:
@@ -70,7 +70,7 @@ def test_a_clip_whose_file_is_missing_is_said(toy: Any) -> None:
     clip = project.action(ident).clip  # type: ignore[union-attr]
     project = replace(project, clips={**project.clips, clip: replace(project.clips[clip], motion=None)})
     with pytest.raises(EditError, match=r"'rest wave rt' .*missing"):
-        twin_clips(project, [ident])
+        make_twin_clips(project, [ident])
 
 
 def test_a_character_that_is_not_the_same_on_both_sides_is_said(toy: Any) -> None:
@@ -87,7 +87,7 @@ def test_a_character_that_is_not_the_same_on_both_sides_is_said(toy: Any) -> Non
     }
     project = replace(project, clips=clips, skeleton=lopsided)
     with pytest.raises(EditError, match="differ in length"):
-        twin_clips(project, [toy.id(project, "rest wave rt")])
+        make_twin_clips(project, [toy.id(project, "rest wave rt")])
 
 
 def test_a_twin_stands_beside_its_original_with_sides_exchanged(toy: Any) -> None:
@@ -122,7 +122,7 @@ def test_a_twin_stands_beside_its_original_with_sides_exchanged(toy: Any) -> Non
 
 def test_the_motion_of_the_twin_is_the_mirror_image(toy: Any) -> None:
     project = toy.project()
-    (twin,) = twin_clips(project, [toy.id(project, "rest beat lf")])
+    (twin,) = make_twin_clips(project, [toy.id(project, "rest beat lf")])
     clip = project.clips[project.action(toy.id(project, "rest beat lf")).clip].motion  # type: ignore[union-attr]
     assert clip is not None and twin.name == "rest beat rt" == twin.motion.name
     _, before = clip.skeleton.globals(clip.poses())
@@ -139,7 +139,7 @@ def test_two_actions_of_one_clip_share_one_mirrored_clip(toy: Any) -> None:
     stance = toy.id(project, "up")
     project = edits.place_clips(project, [action.clip], "arms", "gesture", stance)
     two = next(a.id for a in project.actions() if a.clip == action.clip and a.id != one)
-    made = twin_clips(project, [one, two, one])
+    made = make_twin_clips(project, [one, two, one])
     assert [(t.name, t.actions) for t in made] == [("rest wave lf", (one, two))]
 
 
@@ -147,7 +147,7 @@ def test_a_name_that_says_no_side_or_is_taken_stays_unique(toy: Any) -> None:
     project = toy.project()
     after = with_twins(project, [toy.id(project, "rest scratch")])
     assert [a.name for a in new_actions(project, after)] == ["rest scratch mirrored"]
-    again = twin_clips(after, [toy.id(project, "rest scratch")])
+    again = make_twin_clips(after, [toy.id(project, "rest scratch")])
     assert again[0].name == "rest scratch mirrored 2"
 
 
@@ -170,7 +170,7 @@ def test_a_transition_into_its_own_mirror_image_is_refused(toy: Any) -> None:
     action = project.action(ident)
     assert action is not None
     project = edits.rename_stance(project, toy.id(project, "up"), "lean right")
-    twin = twin_clips(project, [ident])[0]
+    twin = make_twin_clips(project, [ident])[0]
     project = add_clips(project, [("t.glb", 0, "", twin.motion)])
     clip = next(e.id for e in project.clips.values() if e.path == "t.glb")
     after = place_twins(project, {ident: clip})
@@ -210,7 +210,7 @@ def test_the_twin_of_a_twin_is_the_original_but_for_its_ids(sample: Project, dat
 
 
 def test_names_keep_their_case() -> None:
-    assert [twin_name(n) for n in ("Wave_L", "wave_lf_01", "RightPoint", "nod")] == [
+    assert [name_twin(n) for n in ("Wave_L", "wave_lf_01", "RightPoint", "nod")] == [
         "Wave_R",
         "wave_rt_01",
         "LeftPoint",
@@ -220,7 +220,7 @@ def test_names_keep_their_case() -> None:
 
 def test_a_mirrored_clip_can_be_written_and_read_back(sample: Project, tmp_path: Path) -> None:
     action = next(a for a in sample.actions() if a.limb == "left")
-    (twin,) = twin_clips(sample, [action.id])
+    (twin,) = make_twin_clips(sample, [action.id])
     path = tmp_path / f"{twin.name}.glb"
     write_glb(path, [twin.motion])
     (read,) = read_clips(path)

@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
-from metagraph.graph.editing.taking import piece_of, take, words_of_taking
+from metagraph.graph.editing.taking import describe_taking, piece_of, take
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
@@ -55,14 +55,14 @@ def test_an_empty_project_becomes_what_the_other_is(other: Project) -> None:
     base = taking.project.base.clip
     assert base is not None and taking.project.clips[base].name == other.clips[other.base.clip].name
     assert not [p for p in check_project(taking.project) if p.severity == "error"]
-    assert [words.split()[0] for words in words_of_taking(taking).split(", ")] == ["3", "16", "16"]
+    assert [words.split()[0] for words in describe_taking(taking).split(", ")] == ["3", "16", "16"]
 
 
 def test_taking_twice_changes_nothing_more(other: Project) -> None:
     once = take(Project(), other).project
     again = take(once, other)
     assert again.project == once and set(became(again, "action").values()) == {"there"}
-    assert "16 actions" in words_of_taking(again)
+    assert "16 actions" in describe_taking(again)
 
 
 def test_a_stance_of_the_same_name_is_joined_and_its_new_actions_added(other: Project, toy: Any) -> None:
@@ -180,7 +180,7 @@ def test_an_action_that_moves_no_joint_of_this_project_is_left_out(other: Projec
     touch = [*theirs.actions()][-1].id
     taking = take(renamed(other), edits.update_actions(theirs, [touch], joints=("LeftIndexProximal",)))
     assert became(taking, "action") == {"their pose": "new", "their touch": "left out"}
-    assert "1 action skipped" in words_of_taking(taking)
+    assert "1 action skipped" in describe_taking(taking)
 
 
 def test_without_retargeting_clips_are_left_out_and_so_are_stances_that_would_be_empty(
@@ -191,7 +191,7 @@ def test_without_retargeting_clips_are_left_out_and_so_are_stances_that_would_be
     assert set(became(left, "clip").values()) == set(became(left, "action").values()) == {"left out"}
     assert became(left, "stance") == {"other rest": "left out"}
     assert left.project == mine and all(x.words for x in left.things)
-    assert "2 actions" in words_of_taking(left)
+    assert "2 actions" in describe_taking(left)
 
 
 def test_a_stance_that_has_nothing_in_the_other_project_comes_as_it_is(other: Project) -> None:

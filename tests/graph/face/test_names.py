@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
-from metagraph.graph.face.names import VISEMES, clip_shapes, find_morphs
+from metagraph.graph.face.names import VISEMES, find_clip_shapes, find_morphs
 from metagraph.graph.model import Project
 
 ARKIT = [
@@ -171,7 +171,7 @@ def named(toy: Any, *names: str, path: str = "face.glb", seconds: float = 0.1) -
 
 
 def shapes(project: Project) -> dict[str, str]:
-    return {channel: project.clips[clip].name for channel, clip in clip_shapes(project).items()}
+    return {channel: project.clips[clip].name for channel, clip in find_clip_shapes(project).items()}
 
 
 def test_one_clip_called_a_is_no_mouth_shape(toy: Any) -> None:
@@ -209,4 +209,4 @@ def test_the_plainest_of_several_blinks_is_taken_and_a_long_one_is_not(toy: Any)
 def test_a_clip_whose_file_is_missing_shows_nothing(toy: Any) -> None:
     project = named(toy, "blink")
     gone = replace(project, clips={i: replace(c, motion=None) for i, c in project.clips.items()})
-    assert clip_shapes(project) and not clip_shapes(gone)
+    assert find_clip_shapes(project) and not find_clip_shapes(gone)

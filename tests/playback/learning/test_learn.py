@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.formats.elan import read_elan
-from metagraph.formats.project.data import markov_data, markov_from
+from metagraph.formats.project.data import decode_markov, encode_markov
 from metagraph.graph.model import Layer, Markov
 from metagraph.graph.requests import Change, Fidget, Gesture, Nod
 from metagraph.playback.learning.annotation import (
@@ -24,14 +24,14 @@ from metagraph.playback.learning.annotation import (
 )
 from metagraph.playback.learning.learn import (
     Act,
-    act_sequences,
-    acts_of_asks,
     as_performance,
-    asks_from_acts,
     describe_state,
+    find_act_sequences,
     learn_model,
+    make_asks_from_acts,
     merge_acts,
     model_states,
+    read_acts_of_asks,
     remove_state,
     rests,
     with_cell,
@@ -51,7 +51,7 @@ def annotated(**tiers: list[tuple[float, float, str]]) -> dict[Layer, tuple[Act,
         )
     )
     roles = guess_roles(annotation)
-    return act_sequences(annotation, roles, labels(annotation, roles))
+    return find_act_sequences(annotation, roles, labels(annotation, roles))
 
 
 def act(start: float, end: float, what: str = "both gesture", *tags: str) -> Act:
@@ -204,7 +204,7 @@ def test_labels_that_were_said_otherwise_count() -> None:
         Label("arms", "gesture", 1, "ignore"),
         Label("head", "cup", 1, "gesture"),
     ]
-    assert act_sequences(annotation, {"LH": "arms"}, said) == {
+    assert find_act_sequences(annotation, {"LH": "arms"}, said) == {
         "arms": (act(0, 1, "both fidget", "calm", "idle"),)
     }
 
@@ -340,7 +340,7 @@ def test_every_model_that_is_learned_is_sound_and_can_be_saved(some, tagged: boo
     assert matrix.shape == (len(model.states),) * 2
     assert np.allclose(matrix.sum(axis=1), 1) and matrix.min() >= 0
     assert len(set(model_states(model))) == len(model.states) == len(model.lengths)
-    assert markov_from("arms", markov_data(model), "markov") == model
+    assert decode_markov("arms", encode_markov(model), "markov") == model
     if smoothing == 0:
         moves = {
             pair
@@ -399,22 +399,23 @@ def test_acts_become_asks_with_their_times_and_back() -> None:
         act(2, 3, "right fidget"),
         act(4, 5, "both transition"),
     )
-    asks = asks_from_acts("arms", acts)
+    asks = make_asks_from_acts("arms", acts)
     assert asks == (
         Gesture(id="arms1", at=0.5, layer="arms", tags=("positive",), limb="left", duration=1.25, stroke=1.0),
         Fidget(id="arms2", at=2.0, layer="arms", limb="right", duration=1.0),
         Change(id="arms3", at=4.0, layer="arms", limb="both", duration=1.0),
     )
-    assert acts_of_asks("arms", asks) == acts
-    assert acts_of_asks("head", asks) == ()
-    assert acts_of_asks("arms", [Nod(at=1.0), Gesture(layer="arms")]) == (), (
+    assert read_acts_of_asks("arms", asks) == acts
+    assert read_acts_of_asks("head", asks) == ()
+    assert read_acts_of_asks("arms", [Nod(at=1.0), Gesture(layer="arms")]) == (), (
         "what is asked for otherwise is nobody's act"
     )
 
 
 def test_only_arms_are_asked_for_by_limb() -> None:
     assert [
-        ask.limb for ask in asks_from_acts("head", kinds("both gesture", "both fidget", "both transition"))
+        ask.limb
+        for ask in make_asks_from_acts("head", kinds("both gesture", "both fidget", "both transition"))
     ] == [None] * 3
 
 
@@ -432,7 +433,7 @@ def test_a_performance_holds_every_layer_in_order_and_fills_nothing_in() -> None
 def test_the_sample_annotation_becomes_models_of_three_layers() -> None:
     annotation = read_elan(SAMPLE)
     roles = guess_roles(annotation)
-    found = act_sequences(annotation, roles, labels(annotation, roles))
+    found = find_act_sequences(annotation, roles, labels(annotation, roles))
     assert {layer: len(acts) for layer, acts in found.items()} == {"arms": 52, "head": 46, "body": 12}
     assert sum(a.limb == "both" for a in found["arms"]) == 20, (
         "both hands seldom begin and end together, yet are one act"

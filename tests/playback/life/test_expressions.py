@@ -1,4 +1,4 @@
-"""Small events of the face: when they come, and that nothing shows where nothing happens."""
+"""Small events of the face: when they come, and that nothing shows if nothing happens."""
 
 from __future__ import annotations
 

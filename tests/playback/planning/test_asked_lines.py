@@ -8,7 +8,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.requests import Fidget, Gesture, Line, Nod, Performance, Play, Say
-from metagraph.playback.planning.asked_lines import AskedLine, asked_line
+from metagraph.playback.planning.asked_lines import AskedLine, find_asked_line
 from metagraph.playback.planning.understand import lead
 
 
@@ -28,26 +28,26 @@ def lines(project, *asks, **more):
 
 
 def test_without_lines_or_asks_there_is_none(project, action):
-    assert asked_line(project, action) is None
-    assert asked_line(lines(project), action) is None
-    assert asked_line(lines(project, Gesture(tags=("gone",), at=0.1)), action) is None
-    assert asked_line(lines(project, Fidget(tags=("unsure",), at=0.1)), action) is None
-    assert asked_line(lines(project, Gesture(layer="head", at=0.1)), action) is None
+    assert find_asked_line(project, action) is None
+    assert find_asked_line(lines(project), action) is None
+    assert find_asked_line(lines(project, Gesture(tags=("gone",), at=0.1)), action) is None
+    assert find_asked_line(lines(project, Fidget(tags=("unsure",), at=0.1)), action) is None
+    assert find_asked_line(lines(project, Gesture(layer="head", at=0.1)), action) is None
 
 
 def test_a_line_that_asks_for_its_tags_is_said_with_it(project, action):
-    assert asked_line(lines(project, Gesture(tags=("unsure",), at=0.4)), action) == AskedLine("l1", -0.4)
-    found = asked_line(lines(project, Gesture(tags=("slow", "unsure"), stroke=0.9)), action)
+    assert find_asked_line(lines(project, Gesture(tags=("unsure",), at=0.4)), action) == AskedLine("l1", -0.4)
+    found = find_asked_line(lines(project, Gesture(tags=("slow", "unsure"), stroke=0.9)), action)
     assert found.at == pytest.approx(lead(project, action) - 0.9)
-    assert asked_line(lines(project, Gesture()), action) == AskedLine("l1", 0.0), "from its beginning"
+    assert find_asked_line(lines(project, Gesture()), action) == AskedLine("l1", 0.0), "from its beginning"
 
 
 def test_the_line_that_names_it_goes_before_those_that_would_take_any(project, action):
     found = lines(project, Gesture(at=0.2))
     named = Line(text="so", asks=(Play(action=action.name, at=0.3),))
     found = replace(found, lines={**found.lines, "l2": named})
-    assert asked_line(found, action) == AskedLine("l2", -0.3)
-    assert asked_line(replace(found, lines={"l2": Line(asks=(Play(action="other"),))}), action) is None
+    assert find_asked_line(found, action) == AskedLine("l2", -0.3)
+    assert find_asked_line(replace(found, lines={"l2": Line(asks=(Play(action="other"),))}), action) is None
 
 
 def test_a_nod_is_called_or_tagged_so(toy, project):
@@ -56,9 +56,9 @@ def test_a_nod_is_called_or_tagged_so(toy, project):
     project = edits.place_clips(project, list(project.clips)[1:2], "head", "gesture", stance)
     head = project.graphs["head"].of(stance, "gesture")[0]
     nodding = edits.update_actions(project, [head.id], name="Agree_NOD_1")
-    assert asked_line(lines(nodding, Nod(at=0.5)), nodding.action(head.id)) == AskedLine("l1", -0.5)
+    assert find_asked_line(lines(nodding, Nod(at=0.5)), nodding.action(head.id)) == AskedLine("l1", -0.5)
     other = edits.update_actions(project, [head.id], name="tilt")
-    assert asked_line(lines(other, Nod(at=0.5)), other.action(head.id)) is None
+    assert find_asked_line(lines(other, Nod(at=0.5)), other.action(head.id)) is None
 
 
 def test_a_kept_performance_says_what_is_said_meanwhile_and_nothing_else(project, action):
@@ -68,8 +68,8 @@ def test_a_kept_performance_says_what_is_said_meanwhile_and_nothing_else(project
         asks = (say, Play(id="p", action=action.id, at=5.0))
         return replace(lines(project), performances={"p1": Performance(name="take", asks=asks)})
 
-    assert asked_line(kept(Say(id="s", line="l1", at=4.5)), action) == AskedLine("l1", -0.5)
-    assert asked_line(kept(Say(id="s", line="l1", at=3.9)), action) is None, "it is over by then"
-    assert asked_line(kept(Say(id="s", line="l1", at=5.0 + length)), action) is None
-    assert asked_line(kept(Say(id="s", line="gone", at=5.0)), action) is None
-    assert asked_line(kept(Say(id="s", text="well", at=5.0)), action) is None
+    assert find_asked_line(kept(Say(id="s", line="l1", at=4.5)), action) == AskedLine("l1", -0.5)
+    assert find_asked_line(kept(Say(id="s", line="l1", at=3.9)), action) is None, "it is over by then"
+    assert find_asked_line(kept(Say(id="s", line="l1", at=5.0 + length)), action) is None
+    assert find_asked_line(kept(Say(id="s", line="gone", at=5.0)), action) is None
+    assert find_asked_line(kept(Say(id="s", text="well", at=5.0)), action) is None

@@ -81,7 +81,7 @@ def in_ticks(
     ahead: float = 8.0,
     forget: float | None = None,
 ) -> list[Plan]:
-    """Play live: the plan at every tick, asks heard when they are told."""
+    """Play live: the plan at every tick, asks heard when they are reported."""
     waiting = sorted(((ask.told or 0.0), n, ask) for n, ask in enumerate(asks))
     plan, out, now = Plan(project.settings.seed, 0.0), [], 0.0
     for n in range(math.ceil(end / tick) + 1):
@@ -228,7 +228,7 @@ def test_layers_that_an_ask_has_nothing_to_do_with_are_left_as_they_are(sample: 
     for ask, touched in (
         (a.Place(id="p", name="user", point=(0.0, 1.0, 2.0)), set()),
         (a.Blink(id="b"), set()),
-        (a.Say(id="w", text="hello"), set(LAYERS)),  # who talks moves otherwise
+        (a.Say(id="w", text="hello"), set(LAYERS)),  # who talks moves differently
         (a.Behave(id="m", mode="listening"), set(LAYERS)),
         (a.Nod(id="n"), {"head"}),
         (a.Withdraw(id="x", what="g"), {"arms"}),

@@ -65,7 +65,7 @@ def _ask(ident: str, kind: str = "gesture", at: float = 0.0) -> tuple[Any, ...]:
     return ident, kind, at, None, 1, False
 
 
-# What is asked for by the name of what has been played does not take the time that lies between.
+# What is requested by the name of what has been played does not take the time that lies between.
 AGAIN = [
     ([], 14.0),
     ([_ask("a"), _ask("d", "transition"), _ask("a"), _ask("a")], 3.0),

@@ -24,7 +24,7 @@ def meta(
 
 
 def run(*metas: MetaAction) -> tuple[list[tuple[str, float, float]], dict[str, list[str]]]:
-    """What was placed as (key, start, end), and the outcomes told of each request."""
+    """What was placed as (key, start, end), and the outcomes reported about each request."""
     placed, reports = replan(metas, SETTINGS)
     told: dict[str, list[str]] = {}
     for report in reports:

@@ -278,7 +278,7 @@ def test_the_rest_after_a_transition_is_the_new_stances_loop_from_its_beginning(
     assert cue.start + cue.blend_in <= rest.fade_start and rest.fade_start + rest.fade <= cue.end
 
 
-# --- what cannot be done is told
+# --- what cannot be done is reported
 
 
 def test_impossible_requests_are_reported_with_their_reason(project: Project, toy: Any) -> None:

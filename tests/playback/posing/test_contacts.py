@@ -20,10 +20,10 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.posing.contacts import (
-    capsule_pairs,
     contact_depths,
     goals_at,
     inside,
+    list_capsule_pairs,
     nearest_between_lines,
 )
 from tests.posing import contact_rig, pose_at
@@ -108,7 +108,7 @@ def test_arrays_are_told_to_be_inside_exactly_where_one_pose_after_the_other_wou
     assert rig is not None
     pose = plain()
     told = inside(rig, pose)
-    first, second, _ = capsule_pairs(rig)
+    first, second, _ = list_capsule_pairs(rig)
     for n in range(0, len(TIMES), 7):
         one = _one(rig, pose, n)
         assert solve_contacts(rig, one, []) == told[n] or contact_depths(rig, pose)[n].max() < 1e-6

@@ -16,7 +16,7 @@ from metagraph.playback.evaluator import WEIGHT, Evaluator
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.running_plan import plan_performance
-from metagraph.playback.posing.weight import foot_rows_of
+from metagraph.playback.posing.weight import find_foot_rows
 from sample_clips.make.conformance_projects import stepping
 from tests.posing import pose_at, weight_of
 
@@ -124,13 +124,13 @@ def test_a_pose_depends_on_plan_and_time_alone() -> None:
 
 def test_still_feet_need_one_row_and_feet_that_others_move_none() -> None:
     clips = {a.name: a.clip for a in project().graphs["body"].actions.values()}
-    assert len(foot_rows_of(weight_of(project()), project(), clips["far"])) == 1
-    own = foot_rows_of(weight_of(project()), project(), clips["of its own"])
+    assert len(find_foot_rows(weight_of(project()), project(), clips["far"])) == 1
+    own = find_foot_rows(weight_of(project()), project(), clips["of its own"])
     assert len(own) > 20
     assert 0.0 in {row[0] for row in own}
     moved = edits.set_weight(project(), "arms", "legs", 0.2)
     assert weight_of(moved).rig is not None
-    assert foot_rows_of(weight_of(moved), moved, clips["far"]) == ()
+    assert find_foot_rows(weight_of(moved), moved, clips["far"]) == ()
 
 
 def test_feet_stay_planted_whichever_layer_moves_the_legs() -> None:

@@ -16,9 +16,9 @@ from metagraph.playback.posing.foot_slides import (
     FeetSeen,
     FeetWatch,
     FootState,
-    feet_joints,
-    slide_speeds,
-    worst_slide,
+    find_feet_joints,
+    find_worst_slide,
+    measure_slide_speeds,
 )
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests.posing import pose_at
@@ -45,14 +45,16 @@ def drift(speed: float):
 
 def test_feet_that_stand_still_are_held_and_slide_not(sample):
     seen = moved(sample, drift(0.0))
-    assert (seen.states == FootState.HELD).all() and not seen.sliding().any() and worst_slide(seen) is None
+    assert (
+        (seen.states == FootState.HELD).all() and not seen.sliding().any() and find_worst_slide(seen) is None
+    )
 
 
 def test_a_slow_drift_is_told_with_its_speed_and_time(sample):
     seen = moved(sample, drift(0.03))
     assert (seen.states == FootState.HELD).all() and seen.sliding().all()
     assert seen.slides[10:-10] == pytest.approx(0.03, abs=0.004)
-    time, side, speed = worst_slide(seen)
+    time, side, speed = find_worst_slide(seen)
     assert 0 <= time < 3 and side in (0, 1) and speed > SLIDES
 
 
@@ -88,10 +90,13 @@ def test_over_a_performance_nothing_slides_and_what_is_seen_piece_by_piece_is_th
 def test_speeds_are_told_over_a_quarter_of_a_second():
     places = np.zeros((61, 1, 3))
     places[:, 0, 0] = np.arange(61) / 60 * 0.2
-    assert slide_speeds(places, 60.0) == pytest.approx(0.2) and len(slide_speeds(places, 60.0)) == 46
+    assert (
+        measure_slide_speeds(places, 60.0) == pytest.approx(0.2)
+        and len(measure_slide_speeds(places, 60.0)) == 46
+    )
 
 
 def test_who_has_no_feet_is_not_watched():
-    assert feet_joints(Project()) == []
+    assert find_feet_joints(Project()) == []
     seen = FeetWatch(Project(), lambda t: np.zeros((len(t), 0, 3)), 1.0).at(range(5))
-    assert len(seen.times) == 0 and worst_slide(seen) is None
+    assert len(seen.times) == 0 and find_worst_slide(seen) is None

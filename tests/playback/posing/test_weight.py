@@ -29,7 +29,7 @@ from metagraph.playback.posing.follow_through import (
     knot_before,
     knot_time,
 )
-from metagraph.playback.posing.weight import arm_track_rows
+from metagraph.playback.posing.weight import find_arm_track_rows
 from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
@@ -84,7 +84,9 @@ def test_the_hips_go_against_the_arms() -> None:
     ahead = placed(True)[1][:, hips, 2] - placed(False)[1][:, hips, 2]
     cue = max(
         (c for c in found.layers["arms"].cues if c.end < 39),
-        key=lambda c: max(r[2] + r[5] for r in arm_track_rows(weight_of(project), project, c.action.clip)),
+        key=lambda c: max(
+            r[2] + r[5] for r in find_arm_track_rows(weight_of(project), project, c.action.clip)
+        ),
     )
     inside = np.flatnonzero((TIMES - cue.start > 0.3) & (TIMES - cue.end < 0))
     assert ahead[inside].min() < -0.005  # arms ahead, hips back
@@ -181,8 +183,8 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
         project, clips={**project.clips, entry.id: replace(entry, motion=replace(clip, rotations=rotations))}
     )
     assert (
-        np.array(arm_track_rows(weight_of(lifted), lifted, entry.id))[:, 6].max()
-        > np.array(arm_track_rows(weight_of(project), project, entry.id))[:, 6].max()
+        np.array(find_arm_track_rows(weight_of(lifted), lifted, entry.id))[:, 6].max()
+        > np.array(find_arm_track_rows(weight_of(project), project, entry.id))[:, 6].max()
     )
     up = rotation.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(25))
     rotations = np.array(rotations)
@@ -191,8 +193,8 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
         lifted, clips={**lifted.clips, entry.id: replace(entry, motion=replace(clip, rotations=rotations))}
     )
     assert (
-        np.array(arm_track_rows(weight_of(own), own, entry.id))[:, 6].max()
-        < np.array(arm_track_rows(weight_of(lifted), lifted, entry.id))[:, 6].max()
+        np.array(find_arm_track_rows(weight_of(own), own, entry.id))[:, 6].max()
+        < np.array(find_arm_track_rows(weight_of(lifted), lifted, entry.id))[:, 6].max()
     )
 
 

@@ -11,9 +11,9 @@ from metagraph.playback.timing.handles import (
     BLOCKS,
     EDGES,
     block_moved,
-    blocks_of,
+    find_blocks,
     handle_times,
-    handles_of,
+    list_handles,
     move_handle_by,
     slip_action,
 )
@@ -39,10 +39,10 @@ def edges(project, ident):
 
 
 def test_a_gesture_has_four_phases_end_to_end_and_nothing_else_has_any(toy, project, wave):
-    found = blocks_of(project, wave)
+    found = find_blocks(project, wave)
     assert [b.name for b in found] == list(BLOCKS)
     assert [(b.first, b.last) for b in found] == [(0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0)]
-    assert all(blocks_of(project, a) == () for a in project.actions() if a.kind != "gesture")
+    assert all(find_blocks(project, a) == () for a in project.actions() if a.kind != "gesture")
     assert block_moved(project, project.action(toy.id(project, "rest loop")), "hold", 0.1) == {}
 
 
@@ -77,7 +77,7 @@ def test_whatever_blocks_are_dragged_the_phases_stay_in_order_within_the_clip(to
 
 
 def test_handles_say_what_is_the_timings_own_and_how_long_a_blend_is(project, wave):
-    found = {h.name: h for h in handles_of(project, wave)}
+    found = {h.name: h for h in list_handles(project, wave)}
     assert found["in"].words == f"blend in {wave.timing.blend_in:.2f}"
     assert found["start"].words == "start 0.20" and found["start"].own
     assert not found["stroke"].own, "nobody has said where its stroke is"
@@ -87,7 +87,7 @@ def test_handles_say_what_is_the_timings_own_and_how_long_a_blend_is(project, wa
 
 def test_a_loop_has_its_seam_and_ends_alone(toy, project):
     loop = project.action(toy.id(project, "rest loop"))
-    assert {h.name for h in handles_of(project, loop)} == {"start", "end", "in"}
+    assert {h.name for h in list_handles(project, loop)} == {"start", "end", "in"}
 
 
 def test_another_part_of_the_clip_is_as_long_and_all_that_was_set_goes_with_it(project, wave):

@@ -1,4 +1,4 @@
-"""What a clip tells of how its skeleton stands: its ground, its soles and its shoulders."""
+"""What a clip reports how its skeleton stands: its ground, its soles and its shoulders."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import Project
 from metagraph.research.exhibits import generated, searching
 from metagraph.research.exhibits import material as materials
-from metagraph.research.exhibits.authoring import exhibit_hours, figure_1, keep_first_uses, smaller
+from metagraph.research.exhibits.authoring import exhibit_hours, keep_first_uses, make_figure_1, smaller
 from metagraph.research.exhibits.exhibit import (
     EXHIBITS,
     NUMBERS,
@@ -30,7 +30,7 @@ from metagraph.research.exhibits.exhibit import (
     choose_exhibits,
 )
 from metagraph.research.exhibits.material import ExhibitMaterial, actors_rates, make_conversations
-from metagraph.research.exhibits.page import exhibit_as_text, exhibits_as_data, format_exhibits
+from metagraph.research.exhibits.page import encode_exhibits, exhibit_as_text, format_exhibits
 from metagraph.research.exhibits.planning import fewest
 from metagraph.research.exhibits.published import FIGURE_6, FIGURE_11, TABLE_1, TABLE_2
 from metagraph.research.exhibits.searching import Scarcity, exhibit_competing, scarce
@@ -65,7 +65,7 @@ def test_a_row_of_percentages_comes_of_a_few_counts() -> None:
 
 
 def test_the_graph_that_figure_1_imagines_has_as_many_connections_as_listing_them_gives() -> None:
-    project = figure_1()
+    project = make_figure_1()
     found = count_machine_size(project)
     assert found.connections == len(list(list_connections(project, project.graphs["arms"])))
     assert found.states == 9 * (1 + 5 + 5 + 8)
@@ -219,4 +219,4 @@ def test_a_page_needs_nothing_beside_it_and_escapes_what_it_shows() -> None:
         assert f"&lt;{words}&gt;" in told and f"<{words}>" not in told
     assert "http" not in told.replace("http://www.w3.org/2000/svg", "") and "src=" not in told
     assert "missing: <gone>" in exhibit_as_text(EXHIBITS[1], MadeExhibit("x", missing="<gone>"))
-    assert exhibits_as_data([(EXHIBITS[0], shown, 1.0)])[0]["tables"][0]["rows"] == [["<b>"]]
+    assert encode_exhibits([(EXHIBITS[0], shown, 1.0)])[0]["tables"][0]["rows"] == [["<b>"]]

@@ -34,22 +34,25 @@ def test_distances_are_in_centimetres_from_the_mean():
     one = performance()
     mean = mean_landmarks([one])
     moved = replace(one, landmarks=np.repeat(mean[None], len(one), 0) + [0.03, 0.04, 0.0])
-    assert figures.landmark_distances([moved], mean) == pytest.approx(5.0)
+    assert figures.measure_landmark_distances([moved], mean) == pytest.approx(5.0)
 
 
 def test_changes_are_split_by_who_speaks():
     one = performance()
     mean = mean_landmarks([one])
-    own, partner = (figures.distance_changes([one], mean, who) for who in (SELF, PARTNER))
+    own, partner = (figures.measure_distance_changes([one], mean, who) for who in (SELF, PARTNER))
     assert len(own) + len(partner) == len(one) - 1
-    grown = np.diff(figures.landmark_distances([one], mean), axis=0) * 25
+    grown = np.diff(figures.measure_landmark_distances([one], mean), axis=0) * 25
     assert np.allclose(np.concatenate([own, partner]), grown)
 
 
 def test_every_drawing_is_xml_within_its_frame():
     one, other = performance(), performance(seed=2)
     mean = mean_landmarks([one])
-    far = {"true": figures.landmark_distances([one], mean), "<b>": figures.landmark_distances([other], mean)}
+    far = {
+        "true": figures.measure_landmark_distances([one], mean),
+        "<b>": figures.measure_landmark_distances([other], mean),
+    }
     for drawing in (
         figures.draw_over_time(one, mean),
         figures.draw_boxes(far, "cm"),
@@ -67,7 +70,7 @@ def test_a_box_of_each_landmark_and_system_is_drawn():
     one = performance()
     mean = mean_landmarks([one])
     drawing = figures.draw_boxes(
-        {"a": figures.landmark_distances([one], mean), "none": np.zeros((0, 9))}, "cm"
+        {"a": figures.measure_landmark_distances([one], mean), "none": np.zeros((0, 9))}, "cm"
     )
     assert drawing.count("<polygon") == len(LANDMARKS)
     assert "nothing to draw" in figures.draw_boxes({}, "cm")

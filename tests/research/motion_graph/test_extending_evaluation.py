@@ -7,9 +7,9 @@ import pytest
 
 from metagraph.graph.conversation.model import Segment
 from metagraph.research.motion_graph.extending_evaluation import (
+    format_rows_as_text,
     hold_out_takes,
     news_of,
-    rows_as_text,
     score_extending,
     score_paths,
 )
@@ -40,7 +40,7 @@ def test_strokes_are_counted_by_how_much_later_they_come() -> None:
     assert row.jumps == 0.0 and row.kinds == pytest.approx(0.4)
     silent = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
     none = score_paths("none", [(graph.states, silent, said, path)])
-    assert none.met == none.answered == none.chance == 0.0 and "none" in rows_as_text([none])
+    assert none.met == none.answered == none.chance == 0.0 and "none" in format_rows_as_text([none])
 
 
 def test_takes_are_held_out_and_driven_and_the_best_paths_stand_beside() -> None:
@@ -50,7 +50,7 @@ def test_takes_are_held_out_and_driven_and_the_best_paths_stand_beside() -> None
     heard, told, best = rows
     assert heard.met < told.met and told.met > 0.6 and best.met > 0.6 and best.searches == 0
     assert told.searches <= 10.5 and told.work > 0 and told.stresses == heard.stresses > 5
-    assert len(rows_as_text(rows).splitlines()) == 4
+    assert len(format_rows_as_text(rows).splitlines()) == 4
 
 
 def test_fewer_than_two_takes_cannot_be_held_out() -> None:

@@ -13,7 +13,7 @@ import pytest
 
 from metagraph.graph.conversation.model import SOUNDS, Segment
 from metagraph.motion.clip import Clip
-from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
+from metagraph.research.motion_graph.evaluation_table import format_cases_as_csv, format_cases_as_text
 from metagraph.research.motion_graph.search_evaluation import (
     SETTINGS,
     GraphMaking,
@@ -96,14 +96,14 @@ def test_each_take_is_held_out_and_both_searches_find_its_speech_in_the_others(t
 
 def test_rows_are_told_as_a_table_and_cases_as_csv(takes: Takes) -> None:
     found = evaluate_search(*takes, settings=SOME, trials=Trials(("greedy",)))
-    lines = list(csv.DictReader(io.StringIO(cases_as_csv(found.cases))))
+    lines = list(csv.DictReader(io.StringIO(format_cases_as_csv(found.cases))))
     assert (
         len(lines) == 6
         and lines[0]["take"] == "take 0"
         and lines[0]["found"] == "1"
         and float(lines[0]["length"]) == 15
     )
-    text = cases_as_text(found)
+    text = format_cases_as_text(found)
     assert (
         "3 graphs, each without one take" in text
         and "all constraints" in text
@@ -134,7 +134,7 @@ def test_it_can_be_cancelled_and_keeps_what_there_is(takes: Takes) -> None:
         cancelled=lambda: len(seen) >= 3,
     )
     assert not found.whole and len(found.cases) == 3
-    assert "cancelled" in cases_as_text(found)
+    assert "cancelled" in format_cases_as_text(found)
     none = evaluate_search(*takes, cancelled=lambda: True)
     assert not none.whole and none.cases == () and none.rows == []
 
@@ -146,7 +146,7 @@ def test_takes_without_which_there_is_no_graph_find_nothing_and_say_why(takes: T
         [clips[0], *short], [said[0], [], []], settings=SETTINGS[:1], making=GraphMaking(k=4)
     )
     assert found.graphs == () and [c.found for c in found.cases] == [False, False]
-    assert "longer takes" in found.cases[0].why and "0/1" in cases_as_text(found)
+    assert "longer takes" in found.cases[0].why and "0/1" in format_cases_as_text(found)
 
 
 def test_bad_input_is_told(takes: Takes) -> None:

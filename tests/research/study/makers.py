@@ -57,7 +57,7 @@ BY_HAND = {
 
 
 def four() -> Data:
-    """The example of the documentation, whose figures are reckoned by hand."""
+    """The example of the documentation, whose figures are computed by hand."""
     rows = []
     for who, (began, a, b) in BY_HAND.items():
         order = ("meta", "manual") if began == "meta" else ("manual", "meta")

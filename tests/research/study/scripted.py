@@ -65,7 +65,7 @@ def main() -> None:
         while size(log) - start < grown and not over(child):
             time.sleep(0.001)
         time.sleep(more / 1000)
-        os.kill(child, signal.SIGKILL)  # it waits to be told of, so that the number is still its own
+        os.kill(child, signal.SIGKILL)  # it waits to be reported about, so that the number is still its own
         status = os.waitpid(child, 0)[1]
         print("killed" if os.WIFSIGNALED(status) else f"ended {os.WEXITSTATUS(status)}", flush=True)
 

@@ -1,4 +1,5 @@
-"""Planted studies whose truth is known: what is put in comes out, and whatever is done to the data is told.
+"""Planted studies whose truth is known: what is put in comes out, and whatever is done to the data is
+reported.
 
 Sixteen people, ratio 2.3, a second sitting 0.8 of a first, practice -0.20.
 """

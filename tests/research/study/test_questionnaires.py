@@ -10,8 +10,8 @@ from metagraph.research.study.questionnaires import (
     TLX_PAIRS,
     TLX_SCALES,
     TLX_WEIGHTED,
+    compute_tlx_raw,
     sus_score,
-    tlx_raw,
     tlx_weighted,
 )
 
@@ -38,9 +38,9 @@ def test_an_answer_that_is_none_is_named(value: object) -> None:
 
 
 def test_raw_load_is_the_mean_of_six_scales() -> None:
-    assert tlx_raw(dict(zip(TLX_SCALES, (60, 0, 30, 90, 60, 0), strict=True))) == 40
+    assert compute_tlx_raw(dict(zip(TLX_SCALES, (60, 0, 30, 90, 60, 0), strict=True))) == 40
     with pytest.raises(ValueError, match="'effort' is not answered"):
-        tlx_raw(dict.fromkeys(("mental", "physical", "temporal", "performance"), 5))
+        compute_tlx_raw(dict.fromkeys(("mental", "physical", "temporal", "performance"), 5))
 
 
 def test_weighted_load_counts_how_often_a_scale_was_chosen() -> None:

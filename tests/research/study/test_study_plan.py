@@ -1,4 +1,4 @@
-"""Study files are read to the last field, and what is wrong with them is told with its line."""
+"""Study files are read to the last field, and what is wrong with them is given with its line."""
 
 from __future__ import annotations
 

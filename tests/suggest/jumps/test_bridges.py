@@ -1,4 +1,4 @@
-"""Bridges: every stance is led to and led back from, and what was made is told as what it is."""
+"""Bridges: every stance is led to and led back from, and what was made is reported as what it is."""
 
 from __future__ import annotations
 

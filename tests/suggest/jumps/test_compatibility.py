@@ -21,13 +21,13 @@ from metagraph.suggest.jumps.compatibility import (
     Statistics,
     blend,
     compatibility_matrix,
+    find_loop_times,
     fit_clip,
-    loop_times,
     loops_of,
+    measure_transition_costs,
     propose_times,
     stance_frames,
     statistics,
-    transition_costs,
 )  # fmt: skip
 from metagraph.suggest.tracks import RATE
 from tests.suggest.test_traits import chain, moved
@@ -57,7 +57,7 @@ def test_clips_in_which_nothing_moves_have_the_least_threshold() -> None:
     stats = statistics([slide(0.0)], "body", {})
     assert stats.distribution is None and stats.threshold == statistics([], "body").threshold
     assert np.allclose(
-        transition_costs(stats, slide(0.0), stance_frames(stats, [(slide(0.0), 0.0, 1.0)], {}), {}), 0
+        measure_transition_costs(stats, slide(0.0), stance_frames(stats, [(slide(0.0), 0.0, 1.0)], {}), {}), 0
     )
 
 
@@ -67,7 +67,7 @@ def test_clips_of_one_and_two_frames_say_nothing_and_break_nothing() -> None:
     stance = stance_frames(stats, [(slide(1.0, 1), 0.0, 0.0)], {})
     moving = statistics([slide(1.0)], "body", {})
     for frames in (1, 2):
-        cost = transition_costs(moving, slide(1.0, frames), stance, {})
+        cost = measure_transition_costs(moving, slide(1.0, frames), stance, {})
         assert len(cost) == frames and np.isfinite(cost).all()
         found = propose_times(moving, slide(1.0, frames), cost, roles={})
         assert 0 <= found.start <= found.end <= slide(1.0, frames).duration
@@ -78,7 +78,7 @@ def test_a_cost_by_hand() -> None:
     stats = statistics([slide(0.3, 60)], "body", {})
     assert stats.threshold == pytest.approx(0.02, rel=1e-3)
     # Beside a stance 0.1 m above, at rest: 0.1 m and w_v * 0.3 m/s.
-    cost = transition_costs(
+    cost = measure_transition_costs(
         replace(stats, velocity=0.5),
         slide(0.3, 2),
         stance_frames(stats, [(slide(0.0, 1, 0.1), 0.0, 0.0)], {}),
@@ -118,19 +118,21 @@ def test_place_and_facing_do_not_count(toy: Any) -> None:
     stats = statistics([clip], "arms")
     other = moved(clip, 2.0, (3, 0, -1))
     assert np.allclose(
-        transition_costs(stats, other, stance_frames(stats, [(clip, 0.0, clip.duration)])), 0, atol=1e-3
+        measure_transition_costs(stats, other, stance_frames(stats, [(clip, 0.0, clip.duration)])),
+        0,
+        atol=1e-3,
     )
 
 
 def test_another_skeleton_or_no_frames_cannot_be_entered(toy: Any) -> None:
     clip = toy.clip("x")
     stats = statistics([clip], "arms")
-    assert np.isinf(transition_costs(stats, clip, stance_frames(stats, []))).all()
+    assert np.isinf(measure_transition_costs(stats, clip, stance_frames(stats, []))).all()
     odd = Clip("odd", chain(3), 30, np.tile([0, 0, 0, 1.0], (4, 3, 1)), np.zeros((4, 1, 3)))
-    cost = transition_costs(stats, odd, stance_frames(stats, [(clip, 0.0, 1.0)]))
+    cost = measure_transition_costs(stats, odd, stance_frames(stats, [(clip, 0.0, 1.0)]))
     assert np.isinf(cost).all()
     found = propose_times(
-        stats, clip, np.full(len(transition_costs(stats, clip, stance_frames(stats, []))), np.inf)
+        stats, clip, np.full(len(measure_transition_costs(stats, clip, stance_frames(stats, []))), np.inf)
     )
     assert (
         not found.good
@@ -154,7 +156,7 @@ def test_a_gesture_begins_and_ends_with_its_movement(toy: Any) -> None:
                   np.concatenate([still.translations, wave.translations, still.translations]))  # fmt: skip
     stats = statistics([joined], "arms")
     found = propose_times(
-        stats, joined, transition_costs(stats, joined, stance_frames(stats, [(still, 0.0, 1.0)]))
+        stats, joined, measure_transition_costs(stats, joined, stance_frames(stats, [(still, 0.0, 1.0)]))
     )
     assert found.good and 0.6 < found.start < 1.2 and 1.9 < found.end < 2.5
     assert found.earliest_exit is None or 1.5 < found.earliest_exit < found.end
@@ -165,7 +167,7 @@ def test_a_clip_that_ends_elsewhere_cannot_be_left(toy: Any) -> None:
     still, away = toy.clip("still", 1.0, swing=0.0), toy.clip("away", 0.6, 0.0, 1.5, 0.0)
     stats = statistics([away, still], "arms")
     found = propose_times(
-        stats, away, transition_costs(stats, away, stance_frames(stats, [(still, 0.0, 1.0)]))
+        stats, away, measure_transition_costs(stats, away, stance_frames(stats, [(still, 0.0, 1.0)]))
     )
     assert not found.good and "exit" in found.reason and "jump" in found.reason
 
@@ -178,8 +180,8 @@ def test_a_longer_way_is_blended_longer() -> None:
 def test_a_loop_without_a_seam_needs_no_overlap(toy: Any) -> None:
     loop, open_ = toy.clip("loop", 2.0, swing=0.2), toy.clip("open", 2.0, 0.0, 0.25, 0.2)
     stats = statistics([loop, open_], "arms")
-    assert loop_times(stats, loop).blend_in == 0 and loop_times(stats, loop).good
-    assert loop_times(stats, open_).blend_in >= BLEND[0]
+    assert find_loop_times(stats, loop).blend_in == 0 and find_loop_times(stats, loop).good
+    assert find_loop_times(stats, open_).blend_in >= BLEND[0]
 
 
 @pytest.mark.parametrize("layer", LAYERS)
@@ -206,10 +208,10 @@ def test_the_samples_timings_are_good(sample: Project, layer: Any) -> None:
         clip = sample.clips[action.clip].motion
         assert clip is not None
         if action.kind == "stance":
-            found = loop_times(stats, clip, roles)
+            found = find_loop_times(stats, clip, roles)
         else:
-            into = transition_costs(stats, clip, frames[action.stance], roles)
-            out = transition_costs(stats, clip, frames[action.end_stance or action.stance], roles)
+            into = measure_transition_costs(stats, clip, frames[action.stance], roles)
+            out = measure_transition_costs(stats, clip, frames[action.end_stance or action.stance], roles)
             found = propose_times(stats, clip, into, out, action.timing.stroke, roles)
             assert found.end - found.start > 0.4
         assert found.good and 0 <= found.start < found.end <= clip.duration + 1e-9, action.name

@@ -1,4 +1,4 @@
-"""Which actions jump, when they would not, and what is measured anew."""
+"""Which actions jump, when they would not, and what is measured again."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from metagraph.graph import edits
 from metagraph.graph.checks import end_gaps
 from metagraph.suggest.jumps.found import Measured, stance_curves
 from metagraph.suggest.jumps.seen_jumps import SeenJumps
-from metagraph.suggest.stances.stance_distance import distance_of
+from metagraph.suggest.stances.stance_distance import measure_stance_distances
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_the_ends_are_as_far_as_the_problems_say(toy, wide, known):
     ident = toy.id(wide, "wide")
     ends = edits.update_actions(wide, [ident], timing={"end": 1.2, "blend_out": 0.1})
     action = ends.action(ident)
-    found = distance_of(ends, action, seen_of(ends, action) if known else None)
+    found = measure_stance_distances(ends, action, seen_of(ends, action) if known else None)
     gap = next(g for g in end_gaps.find_end_gaps(ends, ends.graphs["arms"], action) if g.edge == "ends")
     at = int(np.argmin(np.abs(found.times - 1.2)))
     assert gap.far and found.shows[at]
@@ -38,7 +38,7 @@ def test_the_ends_are_as_far_as_the_problems_say(toy, wide, known):
 
 def test_words_name_the_stance_that_is_left_and_the_one_that_is_entered(toy, wide):
     action = wide.action(toy.id(wide, "rest to up"))
-    found = distance_of(wide, action, seen_of(wide, action))
+    found = measure_stance_distances(wide, action, seen_of(wide, action))
     assert "cm from 'rest'" in found.words(0.0) and "cm from 'up'" in found.words(99.0)
 
 
@@ -47,5 +47,5 @@ def test_what_has_no_motion_has_no_distance(toy, wide):
 
     action = wide.action(toy.id(wide, "wide"))
     gone = replace(wide, clips={**wide.clips, action.clip: replace(wide.clips[action.clip], motion=None)})
-    found = distance_of(gone, action, None)
+    found = measure_stance_distances(gone, action, None)
     assert len(found.times) == 0 and found.words(0.5) == ""

@@ -36,7 +36,7 @@ def test_a_frame_shown_again_and_again_is_repeated_and_at_rest() -> None:
     assert looks.repeated == pytest.approx(80 / 100)
     assert looks.distinct == pytest.approx(20 / 100)
     assert looks.frozen == pytest.approx(80 / 30) and looks.source == 0
-    assert looks.stands_still and "stands still for 2.7 s" in looks.rest_words()
+    assert looks.stands_still and "stands still for up to 2.7 s" in looks.rest_words()
 
 
 def test_a_jump_to_a_pose_farther_off_is_no_rest() -> None:

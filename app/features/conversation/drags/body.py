@@ -1,4 +1,4 @@
-"""The drag of a segment in time."""
+"""Drag a segment in time."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from metagraph.graph.conversation import edits as conversation_edits
 
 
 class BodyDrag(SegmentDrag):
-    """Drags a segment in time; whichever of its ends is nearer to a word's catches it."""
+    """Drags a segment in time. The nearer of its ends snaps to a word."""
 
     text = tr_noop("Move segment")
     cursor = Qt.CursorShape.ClosedHandCursor

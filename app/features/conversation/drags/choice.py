@@ -12,7 +12,7 @@ from app.features.conversation.segment_hits import SegmentHit
 from app.widgets.gesture import PointerDrag
 
 
-def gesture_for(view: SegmentHost, hit: SegmentHit) -> PointerDrag:
+def begin_segment_gesture(view: SegmentHost, hit: SegmentHit) -> PointerDrag:
     """Return what a press on something begins."""
     if hit.part in ("start", "end"):
         return EdgeDrag(view, hit)

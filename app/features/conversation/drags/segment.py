@@ -6,7 +6,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QMouseEvent
 
 from app.features.conversation.drags.host import SegmentHost
-from app.features.conversation.segment_hits import SegmentHit, snap_time, word_edges
+from app.features.conversation.segment_hits import SegmentHit, find_word_edges, snap_time
 from app.project.document import Edit
 from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
@@ -53,4 +53,4 @@ class SegmentDrag(PressDrag):
         """Return a time, caught by where a word begins or ends."""
         of = self.view.editing.conversation
         words = of.sides[self.hit.side].words if of is not None else ()
-        return snap_time(seconds, word_edges(words, seconds), self.view.scale(), not free)
+        return snap_time(seconds, find_word_edges(words, seconds), self.view.scale(), not free)

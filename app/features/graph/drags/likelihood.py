@@ -1,11 +1,11 @@
-"""The drag of a likelihood's bar."""
+"""Drag a likelihood bar."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QPointF
 
 from app.features.graph.drags.host import GraphHost
-from app.features.graph.graph_layout import likelihood_at
+from app.features.graph.graph_layout import read_likelihood_at
 from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
 from metagraph.graph import edits
@@ -23,7 +23,7 @@ class LikelihoodDrag(PressDrag):
 
     def update(self, at: QPointF, free: bool = False) -> None:
         if self.row is not None:
-            value = likelihood_at(self.row, at.x())
+            value = read_likelihood_at(self.row, at.x())
             self.host.document.edit(
                 tr("Change likelihood"),
                 lambda p: edits.update_actions(p, self.actions, likelihood=value),

@@ -1,4 +1,4 @@
-"""The drag of actions by their rows."""
+"""Drag actions by their rows."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from app.widgets.mime import drag_picture, make_mime
 
 
 class RowDrag(ActionDrag):
-    """Drags actions onto another node or stance, as a real drag so that everything that takes drops can take
-    them.
+    """Drags actions onto another node or stance. It is a system drag, so that every drop target
+    accepts them.
     """
 
     def update(self, at: QPointF, free: bool = False) -> None:
@@ -40,4 +40,4 @@ class RowDrag(ActionDrag):
         return found.name if found is not None else ""
 
     def finish(self, at: QPointF) -> None:
-        """It was a click."""
+        """Treat the drag as a click."""

@@ -1,4 +1,4 @@
-"""The drag of a kept hand."""
+"""Drag a pinned hand."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap
 
 
 class KeptDrag(RowsDrag):
-    """A hand is kept from earlier or until later, or at another time, once it is let go: the clip is made
-    anew then. The character shows the moment meanwhile.
+    """Changes the start, end or time of a pinned hand. The clip is made again when the mouse is released;
+    until then the character shows the moment.
     """
 
     def __init__(self, host: Host, facts: Facts, name: str, playhead: float | None) -> None:

@@ -22,7 +22,7 @@ class RowsDrag(PressDrag):
         self.over()
 
     def over(self) -> None:
-        """Tell no more."""
+        """Report no more."""
         host = self.host
         host.held, host.snapped, host.snaps, host.stretched = "", None, (), None
         host.update()

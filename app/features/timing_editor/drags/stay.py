@@ -1,4 +1,4 @@
-"""The drag of how long a clip is held."""
+"""Drag the length of a hold."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from metagraph.motion.retime import LONGEST, SHORTEST
 
 
 class StayDrag(RowsDrag):
-    """A hold of a clip becomes longer or shorter, once it is let go: the clip is made anew then."""
+    """Makes a hold longer or shorter. The clip is made again when the mouse is released."""
 
     def __init__(self, host: Host, facts: Facts, stay: Stay) -> None:
         super().__init__(host, facts)

@@ -22,7 +22,7 @@ from metagraph.research.study.logs.withdrawal import read_deleted
 from metagraph.research.study.machines.klm import USUAL, OperatorTimes, predict_seconds
 from metagraph.research.study.machines.normal_machine import NormalMachine, normal
 from metagraph.research.study.plan.freeze import describe_study_differences, find_changed_names, list_people
-from metagraph.research.study.questionnaires import BUILT_IN, sus_score, tlx_raw, tlx_weighted
+from metagraph.research.study.questionnaires import BUILT_IN, compute_tlx_raw, sus_score, tlx_weighted
 from metagraph.research.study.scores.jumps import with_jumps
 from metagraph.research.study.scores.machines import TOLERANCE, Score, score
 from metagraph.research.study.scores.tasks import ItemAnswer
@@ -32,7 +32,7 @@ from metagraph.research.study.study_plan import Study, read_study
 Progress = Callable[[int, int], None]
 SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
     "sus": ("SUS", sus_score),
-    "tlx": ("NASA-TLX, raw", tlx_raw),
+    "tlx": ("NASA-TLX, raw", compute_tlx_raw),
     "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
 }
 AFTER = 1000  # what was done in an engine comes after a sitting's phases
@@ -42,8 +42,8 @@ TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
 @dataclass(frozen=True)
 class AnalysisRow:
     """A task somebody did. sitting: 1 for the condition they began with, 2 for the next. clips: of the task,
-    0 where nobody knows. predicted: seconds by the keystroke-level model. score: None without a reference or
-    a project. gaps: of the log, longer ones. minutes: the task's limit. uses: seconds by what they went into.
+    0 if nobody knows. predicted: seconds by the keystroke-level model. score: None without a reference or a
+    project. gaps: of the log, longer ones. minutes: the task's limit. uses: seconds by what they went into.
     """
 
     run: TaskRun
@@ -86,9 +86,8 @@ class StudyRating:
 class Data:
     """title, conditions and tasks (id -> title): of the plan. participants: all that take part. rows: in the
     order they were done, by participant. missing: what is not there or was left out, in words. unit: what the
-    plan lets be compared, None where nobody knows. people: participant -> how far they came and what they
-    were to begin with. sites: participant -> where, of several. smallest: the
-    smallest ratio that matters.
+    plan lets be compared, None if nobody knows. people: participant -> how far they came and what they were
+    to begin with. sites: participant -> where, of several. smallest: the smallest ratio that matters.
     """
 
     title: str
@@ -132,7 +131,7 @@ def prediction(run: TaskRun, times: OperatorTimes = USUAL) -> float:
 
 def collect_study(folder: str | Path, jumps: bool = True, progress: Progress | None = None) -> Data:
     """Read a study's folder, or study file, and what lies beside it. jumps: judge them, which needs the
-    references' clips. Raises FileError where the study file cannot be read; whatever else is wrong is told in
+    references' clips. Raises FileError if the study file cannot be read; whatever else is wrong is given in
     `missing`.
     """
     study = read_study(folder)
@@ -205,7 +204,7 @@ def _orders(study: Study) -> dict[str, tuple[tuple[str, tuple[str, ...]], ...]]:
 
 def _unit(study: Study) -> Literal["task", "clip"] | None:
     """Return what can be compared: tasks, unless the plan gives nobody the same one in two conditions. None
-    where it does not say.
+    if it does not say.
     """
     orders = _orders(study)
     for blocks in orders.values():
@@ -335,7 +334,7 @@ class _References:
         return self.known[task]
 
     def scored(self, folder: Path, run: TaskRun, who: str) -> Score | None:
-        """Return how right a project is, None where that cannot be told."""
+        """Return how right a project is, None if that cannot be told."""
         right = self.of(run.task)
         if right is None:
             return None

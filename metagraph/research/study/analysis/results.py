@@ -165,17 +165,17 @@ def _site(done: Sequence[AnalysisRow], data: Data, site: str) -> Estimate | None
 
 
 def learning(rows: Sequence[AnalysisRow]) -> Curve | None:
-    """Return how people got quicker from clip to clip, within one condition; None where nobody had three
-    clips.
+    """Return how people got quicker from clip to clip, within one condition; None if nobody had
+    three clips.
     """
     by: dict[str, list[float]] = {}
     for r in sorted(rows, key=lambda r: r.run.index):
         by.setdefault(r.run.participant, []).extend(s for s in r.run.per_clip.values() if s > 0)
-    lines = [line for seconds in by.values() if (line := stats.power_law(seconds)) is not None]
+    lines = [line for seconds in by.values() if (line := stats.fit_power_law(seconds)) is not None]
     if not lines:
         return None
     slope = lines[0][0] if len(lines) == 1 else stats.mean([line.value for line, _ in lines])
-    first = stats.geometric_mean([at for _, at in lines]).value
+    first = stats.compute_geometric_mean([at for _, at in lines]).value
     longest = max(len(s) for s in by.values())
     means = tuple(exp(float(np.mean([log(s[n]) for s in by.values() if n < len(s)]))) for n in range(longest))
     return Curve(slope, first, means)
@@ -204,7 +204,9 @@ def _predicted(rows: Sequence[AnalysisRow]) -> Predicted | None:
         [exp(np.mean([log(get(r)) for r in mine])) for mine in people.values()] for get in (_observed, _model)
     )
     return Predicted(
-        stats.geometric_mean(observed), stats.geometric_mean(model), stats.ratio(observed, model)
+        stats.compute_geometric_mean(observed),
+        stats.compute_geometric_mean(model),
+        stats.ratio(observed, model),
     )
 
 
@@ -273,7 +275,7 @@ def _measure(
         return StudyMeasure(name, means, None, None)
     a, b = ([each[c][who] for who in both] for c in (ABOVE, BELOW))
     difference = stats.mean([x - y for x, y in zip(a, b, strict=True)])
-    return StudyMeasure(name, means, difference, stats.paired_t(a, b), stats.effect_size(a, b))
+    return StudyMeasure(name, means, difference, stats.paired_t(a, b), stats.compute_effect_size(a, b))
 
 
 def _within(found: Estimate, least: float, most: float) -> Estimate:

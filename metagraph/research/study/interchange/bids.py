@@ -1,10 +1,10 @@
 """A study as other tools read it: BIDS, the Brain Imaging Data Structure, whose part for behaviour alone is
 what a timing study needs.
 
-`participants.tsv`, and for each task of each participant
-`sub-P01/beh/sub-P01_task-small_acq-meta_events.tsv` and `_beh.tsv`, with JSON that says what the columns are;
-`phenotype/` with the questionnaires, `derivatives/metagraph/` with what was reckoned.
-Times in seconds from the task's begin, by the clock of the program, pauses included.
+`participants.tsv`, and for each task of each participant `sub-P01/beh/sub-P01_task-small_acq-meta_events.tsv`
+and `_beh.tsv`, with JSON that says what the columns are; `phenotype/` with the questionnaires,
+`derivatives/metagraph/` with what was computed. Times in seconds from the task's begin, by the clock of the
+program, pauses included.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ TASK_COLUMNS: Mapping[str, str] = {
 
 
 def write_bids(study: Study, results: Results, out: Path) -> list[Path]:
-    """Write a study into a folder as a BIDS dataset, with what was reckoned from it as a derivative; return
+    """Write a study into a folder as a BIDS dataset, with what was computed from it as a derivative; return
     what was written.
 
     Raises FileError, also where two pseudonyms or tasks would be called alike: BIDS allows letters and digits
@@ -207,7 +207,7 @@ def _summary(study: Study, data: Data, who: str, task: str, condition: str, stem
 
 
 def _derived(study: Study, results: Results) -> dict[str, str]:
-    """Return what was reckoned, as a dataset of its own."""
+    """Return what was computed, as a dataset of its own."""
     data = results.data
     where = "derivatives/metagraph"
     about = _description(f"{study.plan.title}: results", "derivative")

@@ -11,7 +11,7 @@ STEP = 2.0  # seconds the time of day may be set by without a word
 RATE = 0.002  # of a run, by which the two may go apart
 
 
-def clock_problems(events: Sequence[Event]) -> list[str]:
+def find_clock_problems(events: Sequence[Event]) -> list[str]:
     """Return in words where the clocks go apart: all along a run, as they do when one of them was tampered
     with, or at one event, as they do when a computer sleeps.
     """

@@ -27,8 +27,7 @@ def engine_logs(study: Study, participant: str) -> list[Path]:
 
 def import_engine(study: Study, participant: str, path: Path) -> tuple[StudyLog, list[str]]:
     """Copy an engine's log to a participant's data; return it, and what is odd about it in words. Raises
-    FileError where it is none, is another's, or one of that engine is there already; ValueError for a
-    stranger.
+    FileError if it is none, is another's, or one of that engine is there already; ValueError for a stranger.
     """
     study.plan.known(participant)
     log = read_log(path)

@@ -1,5 +1,5 @@
-"""Gaps in a log: times in which nothing was told. What of them is absence and what is watching nobody
-knows, so how much there was is told, and what another limit would make of it.
+"""Gaps in a log: times in which nothing was reported. What of them is absence and what is watching nobody
+knows, so how much there was is reported, and what another limit would make of it.
 """
 
 from __future__ import annotations

@@ -33,8 +33,8 @@ LEAST = 0.6  # of Pupil's confidence
 @dataclass(frozen=True)
 class GazeRecording:
     """Samples of a recording: seconds `[n]` (since 1970 where epoch, else by the recorder's own clock),
-    places on the screen `[n, 2]`, pixels or, where scaled, shares of its width and height; NaN where
-    nothing was seen.
+    places on the screen `[n, 2]`, pixels or, where scaled, shares of its width and height; NaN if nothing was
+    seen.
     """
 
     seconds: Array
@@ -132,7 +132,7 @@ def _pupil_cloud(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) 
 
 def offset(log: StudyLog, gaze: GazeRecording, clap: float | None) -> float:
     """Return the seconds to add to a recording's times to have those since 1970. clap: when the recording
-    shows the sitting's first clap, in its own seconds; None where its times are those since 1970. Raises
+    shows the sitting's first clap, in its own seconds; None if its times are those since 1970. Raises
     ValueError.
     """
     if clap is None:
@@ -147,7 +147,7 @@ def offset(log: StudyLog, gaze: GazeRecording, clap: float | None) -> float:
 
 def dwelt(log: StudyLog, gaze: GazeRecording, clap: float | None = None) -> Table:
     """Return how long each panel, and each node in it, was looked at in each task: seconds, share of what was
-    measured, visits. Raises ValueError where the times cannot be brought together.
+    measured, visits. Raises ValueError if the times cannot be brought together.
     """
     shift = offset(log, gaze, clap)
     size = _screen(log)

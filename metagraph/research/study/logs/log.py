@@ -26,7 +26,7 @@ from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.research.study.logs.clocks import clock_problems
+from metagraph.research.study.logs.clocks import find_clock_problems
 from metagraph.research.study.scores.tasks import Event, ItemAnswer, TaskRun, last_answers, moment, task_runs
 
 __all__ = [
@@ -103,7 +103,7 @@ class StudyLog:
 
     @property
     def frozen(self) -> dict[str, str] | None:
-        """Return what was worked with, name -> SHA-256, as it was told first; None where it was not."""
+        """Return what was worked with, name -> SHA-256, as it was reported first; None if it was not."""
         found = next((e.get("digests") for e in self.events if e["type"] == "frozen"), None)
         return {str(k): str(v) for k, v in found.items()} if isinstance(found, dict) else None
 
@@ -166,7 +166,7 @@ def read_log(path: str | Path) -> StudyLog:
             problems.append(f"line {number}: time goes backwards")
         expected = event["n"] + 1
         events.append(event)
-    problems += clock_problems(events)
+    problems += find_clock_problems(events)
     return StudyLog(path, tuple(events), bool(tail), tuple(problems), expected)
 
 
@@ -241,7 +241,7 @@ class Writer:
         self.before = read_log(self.path) if self.path.exists() else StudyLog(self.path)
         self.n = self.before.following
         self._waiting: list[bytes] = []  # lines that could not be written yet
-        self.listeners: list[Callable[[Event], None]] = []  # told of each event that is in the log
+        self.listeners: list[Callable[[Event], None]] = []  # reported about each event that is in the log
         self.closed = False
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)

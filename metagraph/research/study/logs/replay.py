@@ -97,7 +97,7 @@ def first_project(study: Study, part: SittingPart) -> Project:
 @dataclass
 class Again:
     """A project as it was, event by event. folder: of the sitting, which paths are relative to. failed:
-    events whose change did not fit, from where on the work may look otherwise.
+    events whose change did not fit, from where on the work may look differently.
     """
 
     first: Project

@@ -49,7 +49,7 @@ def note_withdrawal(
     study: Keeping, participant: str, why: str = "", now: Callable[[], datetime] = lambda: datetime.now(UTC)
 ) -> bool:
     """Note in a participant's log that they withdrew, so that no report or export uses it; return whether it
-    was not noted yet. why: in words, of the person who notes it. Raises FileError where there is no log,
+    was not noted yet. why: in words, of the person who notes it. Raises FileError if there is no log,
     ValueError for a stranger.
     """
     study.known(participant)
@@ -68,8 +68,8 @@ def delete_data(
     study: Keeping, participant: str, now: Callable[[], datetime] = lambda: datetime.now(UTC)
 ) -> dict[str, object]:
     """Delete all that is kept of a participant beside the study file, and note that it was done: who, when,
-    how many files. Return the note. Raises FileError where nothing is kept, or the disk refuses; ValueError
-    for a stranger.
+    how many files. Return the note. Raises FileError if nothing is kept, or the disk refuses; ValueError for
+    a stranger.
     """
     study.known(participant)
     folder = study.data(participant)

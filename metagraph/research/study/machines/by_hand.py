@@ -157,8 +157,8 @@ def list_ways(named: bool = True) -> list[Way]:
 
 
 def batches(library: dict[str, str], wanted: Sequence[str]) -> list[tuple[list[str], str]]:
-    """Return batches of clips with the words that show just them of a library, which they leave; no words
-    where nothing else is left. library: clip -> name.
+    """Return batches of clips with the words that show just them of a library, which they leave; no words if
+    nothing else is left. library: clip -> name.
     """
     out: list[tuple[list[str], str]] = []
     left = dict.fromkeys(wanted)

@@ -26,7 +26,7 @@ FILE_NAME = 10  # letters typed for a table's file
 
 
 class OperatorCounts:
-    """Counts operators; a hand goes to the other device where that is needed."""
+    """Counts operators; a hand goes to the other device if that is needed."""
 
     def __init__(self) -> None:
         self.counts: Counter[str] = Counter()
@@ -141,7 +141,7 @@ class CountedHand:
 
     def link(self, source: str, target: str, many: bool) -> None:
         if not many and self.nodes:
-            self.made.click()  # where nothing is: what is selected would get links as well
+            self.made.click()  # if nothing is: what is selected would get links as well
             self.nodes = ()
         before = set(self.project.manual[self.on].links)
         a, b = self.state.get(source, source), self.state[target]

@@ -60,7 +60,7 @@ def _most(sets: Sequence[tuple[int, int]], left: int) -> int:
 
 
 class Finder:
-    """What parts of names select. names: of all states there are, of which sets are told as bits."""
+    """What parts of names select. names: of all states there are, of which sets are reported as bits."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = tuple(n.lower() for n in names)
@@ -71,7 +71,7 @@ class Finder:
         return _parts(self.names)
 
     def one(self, want: int) -> Words | None:
-        """Return one part of names, or two that both must be there, that select a set; None where none do."""
+        """Return one part of names, or two that both must be there, that select a set; None if none do."""
         if want in self.parts:
             return Words(self.parts[want], 1)
         above = sorted((m for m in self.parts if m & want == want), key=lambda m: len(self.parts[m]))[:TRIED]
@@ -85,7 +85,7 @@ class Finder:
 
     def best(self, want: int, joined: bool = True) -> Words | None:
         """Return the cheapest words found that select a set: parts, parts but others, or several of these
-        with | between them. joined: | may be typed. None where nothing was found.
+        with | between them. joined: | may be typed. None if nothing was found.
 
         Single parts and pairs are tried all, up to `TRIED` of a kind; several are joined greedily, the part
         that gives most for a key first, so that more keys than needed may be typed, but never a wrong set.

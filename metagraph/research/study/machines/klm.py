@@ -19,7 +19,7 @@ class OperatorTimes:
     released; H a hand to the other device; M a mental preparation; S a scroll or zoom with the wheel to where
     something is, which takes about as long as pointing at it (Hinckley, Cutrell, Bathiche and Muss 2002,
     "Quantitative Analysis of Scrolling Techniques": Fitts' law holds for both). A wait for the system (R) and
-    looking at motion (L) are told in seconds by whoever measures them.
+    looking at motion (L) are given in seconds by whoever measures them.
     """
 
     K: float = 0.28

@@ -17,7 +17,7 @@ from metagraph.graph.expand import find_end_stance
 from metagraph.graph.expand import list_connections as expanded
 from metagraph.graph.manual.machine import Link, Manual, State
 from metagraph.graph.manual.meta import as_meta
-from metagraph.graph.manual.timing import exit_moment, state_span
+from metagraph.graph.manual.timing import exit_moment, find_state_span
 from metagraph.graph.model import LAYERS, ClipEntry, Kind, Layer, Limb, MetaGraph, Project
 
 AT_ITS_END = 1e-3  # seconds: as near to its end a state is left at its end
@@ -27,10 +27,10 @@ Pair = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class NormalState:
-    """A use of a clip. clip: its file's name, with the take where it is not the first. kind: None where
-    nothing tells. stance, ends: the stances it begins and ends in, as the machine calls them; None where
-    nothing tells. start, end: seconds of the clip. limb, joints: what it moves; joint_weights: how far those
-    that it moves in part, by name.
+    """A use of a clip. clip: its file's name, with the take where it is not the first. kind: None if nothing
+    tells. stance, ends: the stances it begins and ends in, as the machine calls them; None if nothing tells.
+    start, end: seconds of the clip. limb, joints: what it moves; joint_weights: how far those that it moves
+    in part, by name.
     """
 
     key: str
@@ -155,7 +155,7 @@ def _of_graph(project: Project, graph: MetaGraph, names: Mapping[str, str]) -> N
 
 def _of_manual(project: Project, manual: Manual, meant: MetaGraph, names: Mapping[str, str]) -> NormalMachine:
     keys = _keys({s.id: s.clip for s in manual.states.values()}, names)
-    spans = {s.id: state_span(project, s) for s in manual.states.values()}
+    spans = {s.id: find_state_span(project, s) for s in manual.states.values()}
     roles = _roles(manual, meant)
     states = {}
     for s in manual.states.values():
@@ -189,7 +189,7 @@ def _leave(project: Project, state: State, link: Link) -> float | None:
     """Return when a link leaves its source, as a meta-graph counts: where its blend would end with the
     source, at the source's end.
     """
-    at, end = exit_moment(project, state, link), state_span(project, state)[1]
+    at, end = exit_moment(project, state, link), find_state_span(project, state)[1]
     return end if at is not None and at + link.blend >= end - AT_ITS_END else at
 
 
@@ -198,7 +198,7 @@ Role = tuple[Kind | None, str | None, str | None]
 
 def _roles(manual: Manual, meant: MetaGraph) -> dict[str, Role]:
     """Return state -> (kind, stance, end stance) in the meta-graph that a machine amounts to, which has them
-    in the same order but for those it leaves out.
+    in the same order except for those it leaves out.
     """
     out: dict[str, Role] = {}
     actions = iter(meant.actions.values())

@@ -100,8 +100,8 @@ class KeptEvents:
 
 
 def keep_sheet(study: Perceived, sheet: Sheet) -> KeptEvents:
-    """Add what is new of a sheet to its person's log; it is on the disk afterwards. Raises SheetError where
-    it is another study's, a stranger's, or of somebody whose code was begun elsewhere; FileError.
+    """Add what is new of a sheet to its person's log; it is on the disk afterwards. Raises SheetError if it
+    is another study's, a stranger's, or of somebody whose code was begun elsewhere; FileError.
     """
     if sheet.design != study.key.design:
         raise SheetError("these answers are of another study, or of one that was made anew since")

@@ -2,7 +2,7 @@
 
 The test sums what is at most as likely as what was seen. Intervals: Clopper and Pearson (1934), "The use of
 confidence or fiducial limits illustrated in the case of the binomial", Biometrika 26. Fisher's exact test of
-two shares likewise.
+two shares in the same way.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from statistics import NormalDist
 import numpy as np
 
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import incomplete_beta
+from metagraph.research.study.statistics.student_t import compute_incomplete_beta
 
 MOST = 100_000  # answers beyond which no study is planned
 STEADY = 100  # more answers with which the power must hold, since it goes up and down like a saw
@@ -27,7 +27,7 @@ def probability_at_most(k: int, n: int, share: float) -> float:
         return 0.0
     if k >= n:
         return 1.0
-    return incomplete_beta(n - k, k + 1, 1 - share)
+    return compute_incomplete_beta(n - k, k + 1, 1 - share)
 
 
 def two_sided_p(k: int, n: int, share: float = 0.5) -> float | None:
@@ -40,7 +40,7 @@ def two_sided_p(k: int, n: int, share: float = 0.5) -> float | None:
     return float(min(1.0, np.exp(logs[logs <= edge]).sum()))
 
 
-def exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
+def estimate_exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
     """Return the share k / n with its exact interval. Raises ValueError for nothing."""
     _checked(k, n)
     if not n:
@@ -52,7 +52,7 @@ def exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
 
 
 def fisher(a: int, n: int, b: int, m: int) -> float | None:
-    """Return the p value of a of n being the same share as b of m; None where either has none."""
+    """Return the p value of a of n being the same share as b of m; None if either has none."""
     _checked(a, n)
     _checked(b, m)
     if not n or not m:

@@ -20,7 +20,7 @@ from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
 from metagraph.research.study.statistics.student_t import t_quantile, t_two_sided
 
 Array = NDArray[np.float64]
-NOTHING = 0.02  # a deviation of log odds below which a group is told as having none
+NOTHING = 0.02  # a deviation of log odds below which a group is reported as having none
 FARTHEST = 12.0  # log odds beyond which a share is 0 or 1, and no model has an end
 
 
@@ -51,8 +51,8 @@ def fit_crossed(
     level: float = LEVEL,
 ) -> Crossed | None:
     """Return the model of `chosen` `[n]` of `tries` `[n]` (1 each unless told) by effects (name -> `[n]`, the
-    constant first). None where all or none were chosen, where effects say the same, or where the likelihood
-    has no end.
+    constant first). None if all or none were chosen, where effects say the same, or where the likelihood has
+    no end.
     """
     y = np.asarray(chosen, np.float64)
     m = np.ones(len(y)) if tries is None else np.asarray(tries, np.float64)
@@ -153,7 +153,7 @@ class _Model:
 
     def best(self) -> tuple[Array, float, list[int]] | None:
         """Return where it is lowest, how low, and which of its places are free: a deviation that is none is
-        not. None where it has no end.
+        not. None if it has no end.
         """
         size = self.x.shape[1]
         there = [k for k, n in enumerate(self.sizes) if 1 < n < len(self.y) or (n > 1 and self.m.max() > 1)]
@@ -177,7 +177,7 @@ class _Model:
         return np.asarray(np.log((self.y + 0.5) / (self.m - self.y + 0.5)), np.float64)
 
     def cover(self, at: Array, free: Sequence[int]) -> Array | None:
-        """Return covariances of the effects; None where the likelihood is flat."""
+        """Return covariances of the effects; None if the likelihood is flat."""
         _, curved = _slopes(self.deviance, at, free)
         try:
             out = np.asarray(2 * np.linalg.inv(curved), np.float64)

@@ -3,7 +3,7 @@
 Each person's pairs are a stretch of all pairs in a ring, comparisons taking turns; two sequences in a row
 show the same stretch mirrored. After all sequences each pair was shown as often as every other one, as often
 on each side. Which sequence a person gets is drawn in permuted blocks (`allocation.numbers`), the order
-within it for each person anew.
+within it for each person again.
 """
 
 from __future__ import annotations
@@ -67,13 +67,13 @@ class Key(Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class Design:
-    """A key, and what the page is told: `public`, whose sessions are sealed there, each with its code."""
+    """A key, and what the page is given: `public`, whose sessions are sealed there, each with its code."""
 
     key: Key
     public: dict[str, Any]
 
 
-def stimulus_name(draw: Draw, condition: str, item: str) -> str:
+def name_stimulus(draw: Draw, condition: str, item: str) -> str:
     """Return what a video is called: nobody without the secret can tell what of."""
     return f"{draw('video', condition, item):064x}"[:NAME_LENGTH]
 
@@ -83,7 +83,7 @@ def design(plan: PerceivePlan, secret: str) -> Design:
     draw = drawer(secret)
     used = list(dict.fromkeys(c for pair in plan.pairs for c in pair)) if plan.rating is None else []
     used = used or list(plan.conditions)
-    stimuli = {stimulus_name(draw, c, i.id): (c, i.id) for c in used for i in plan.items}
+    stimuli = {name_stimulus(draw, c, i.id): (c, i.id) for c in used for i in plan.items}
     taken = draw_order_numbers(secret, count_sequences(plan), 1)  # all are drawn before anybody comes
     sessions = {who: _session(plan, draw, who, next(taken)) for who in plan.ids}
     public = {
@@ -135,8 +135,8 @@ def _session(plan: PerceivePlan, draw: Draw, who: str, number: int) -> RatingSes
     trials: list[Trial] = []
 
     def add(kind: Kind, item: str, a: str, b: str = "", told: str | int | None = None) -> None:
-        left = stimulus_name(draw, a, item)
-        right = stimulus_name(draw, b, item) if b else ""
+        left = name_stimulus(draw, a, item)
+        right = name_stimulus(draw, b, item) if b else ""
         name = f"{draw('trial', who, len(trials)):064x}"[:NAME_LENGTH]
         trials.append(Trial(name, kind, left, item, a, right, b, told))
 
@@ -213,7 +213,7 @@ def _ratings(plan: PerceivePlan, draw: Draw, number: int) -> list[tuple[str, str
 
 
 def _apart(shown: Sequence[tuple[str, str, str]]) -> list[tuple[str, str, str]]:
-    """Return the same in nearly the same order, an item never twice in a row where that can be."""
+    """Return the same in nearly the same order, an item never twice in a row if that can be."""
     left = list(shown)
     out: list[tuple[str, str, str]] = []
     while left:

@@ -30,10 +30,10 @@ Verdict = Literal["preferred", "not preferred", "no difference that matters", "n
 class ComparedPair:
     """A pair of conditions. share: of answers for the first, exact interval. p: the exact binomial's. people:
     of those who chose one more often than the other, the share who chose the first; people_p: its sign test.
-    model: None where there is none. together: the p value that is judged by, corrected for all that was asked
-    (Holm); exact: the binomial's, likewise. by_item: item -> share. halves: the shares of the first half of
-    people's sessions and of the second; halves_p: of both being the same (Fisher). unfiltered: with nobody
-    excluded.
+    model: None if there is none. together: the p value that is judged by, corrected for all that was asked
+    (Holm); exact: the binomial's, in the same way. by_item: item -> share. halves: the shares of the first
+    half of people's sessions and of the second; halves_p: of both being the same (Fisher). unfiltered: with
+    nobody excluded.
     """
 
     pair: tuple[str, str]
@@ -52,7 +52,7 @@ class ComparedPair:
 
     @property
     def best(self) -> Estimate | None:
-        """Return the share that is told first: the model's where there is one."""
+        """Return the share that is reported first: the model's where there is one."""
         return self.model.share if self.model is not None else self.share
 
     @property
@@ -63,7 +63,7 @@ class ComparedPair:
 
 @dataclass(frozen=True)
 class RatedPair:
-    """A question and a pair of conditions. difference: first less second, points. by: what it was reckoned
+    """A question and a pair of conditions. difference: first less second, points. by: what it was computed
     with, in words. p: two-sided; together: corrected (Holm).
     """
 
@@ -119,13 +119,15 @@ def analyse_answers(answers: Answers) -> PerceiveResults:
 def _share(values: Sequence[bool]) -> tuple[Estimate, float | None] | None:
     if not values:
         return None
-    return binomial.exact_share(sum(values), len(values)), binomial.two_sided_p(sum(values), len(values))
+    return binomial.estimate_exact_share(sum(values), len(values)), binomial.two_sided_p(
+        sum(values), len(values)
+    )
 
 
 def _compared(answers: Answers, pair: tuple[str, str]) -> ComparedPair:
     rows = [c for c in answers.choices if c.pair == pair]
     every = [c.first for c in answers.all_choices if c.pair == pair]
-    unfiltered = binomial.exact_share(sum(every), len(every)) if every else None
+    unfiltered = binomial.estimate_exact_share(sum(every), len(every)) if every else None
     if not rows:
         return ComparedPair(pair, None, unfiltered=unfiltered)
     k, n = sum(c.first for c in rows), len(rows)
@@ -137,13 +139,13 @@ def _compared(answers: Answers, pair: tuple[str, str]) -> ComparedPair:
     people = _share(more)
     early, late = _halves(rows)
     by_item = {
-        i.id: binomial.exact_share(sum(mine), len(mine))
+        i.id: binomial.estimate_exact_share(sum(mine), len(mine))
         for i in answers.study.plan.items
         if (mine := [c.first for c in rows if c.item == i.id])
     }
     return ComparedPair(
         pair,
-        binomial.exact_share(k, n),
+        binomial.estimate_exact_share(k, n),
         binomial.two_sided_p(k, n),
         people[0] if people is not None else None,
         people[1] if people is not None else None,
@@ -151,7 +153,10 @@ def _compared(answers: Answers, pair: tuple[str, str]) -> ComparedPair:
         by_item=by_item,
         halves=None
         if not early or not late
-        else (binomial.exact_share(sum(early), len(early)), binomial.exact_share(sum(late), len(late))),
+        else (
+            binomial.estimate_exact_share(sum(early), len(early)),
+            binomial.estimate_exact_share(sum(late), len(late)),
+        ),
         halves_p=binomial.fisher(sum(early), len(early), sum(late), len(late)),
         unfiltered=unfiltered,
     )

@@ -98,8 +98,8 @@ class _Read:
 
 
 def collect_answers(study: Perceived) -> Answers:
-    """Return everybody's answers. A log that cannot be read leaves its person out and is told. Raises
-    FileError where the study itself is damaged.
+    """Return everybody's answers. A log that cannot be read leaves its person out and is reported. Raises
+    FileError if the study itself is damaged.
     """
     gone = read_deleted(study)
     people, odd = [], study.differences()

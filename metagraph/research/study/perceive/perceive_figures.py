@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from metagraph.common.svg import svg_dot, svg_drawing, svg_line, svg_text
+from metagraph.common.svg import draw_svg_dot, svg_drawing, svg_line, svg_text
 from metagraph.research.study.perceive.perceive_analysis import PerceiveResults
 from metagraph.research.study.reports import plots
 from metagraph.research.study.reports.plots_flow import flow
@@ -78,7 +78,7 @@ def draw_shares(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
         if e.low is not None and e.high is not None:
             bar = svg_line(x(e.low), at, x(e.high), at, "wide")
             words += f"  [{e.low:.0%}, {e.high:.0%}]"
-        parts.append(f"<g class='manual'>{bar}{svg_dot(x(e.value), at, 5)}</g>")
+        parts.append(f"<g class='manual'>{bar}{draw_svg_dot(x(e.value), at, 5)}</g>")
         parts.append(svg_text(right + 12, at + 4, words, "label", "start"))
     return svg_drawing(bottom + 48, parts, title)
 

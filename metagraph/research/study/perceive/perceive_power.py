@@ -88,12 +88,12 @@ def simulate_power(
         else:
             p, up = found.p["preference"], found.effects["preference"].value > 0
         hits += p < alpha and (up == (expected.share > 0.5) or expected.share == 0.5)
-    return binomial.exact_share(hits, studies)
+    return binomial.estimate_exact_share(hits, studies)
 
 
 def estimate_people(expected: Expected, items: int, each: int, chance: float, alpha: float) -> int | None:
     """Return about how many people are needed, to begin simulating from: the exact count of answers, more by
-    what people and items add to the variance of their mean. None where items alone are too few.
+    what people and items add to the variance of their mean. None if items alone are too few.
     """
     answers = binomial.count_needed_answers(expected.share, chance, alpha)
     if answers is None:

@@ -19,8 +19,8 @@ NAME = 32  # hexadecimal digits that name a session
 
 
 def seal_sessions(sessions: Mapping[str, Any], salt: str) -> dict[str, Any]:
-    """Return what the page is told of the sessions, given by code: salt, rounds, and name -> sealed session.
-    Their order tells nothing either.
+    """Return what the page is given about the sessions, given by code: salt, rounds, and name -> sealed
+    session. Their order tells nothing either.
     """
     with ThreadPoolExecutor() as pool:  # deriving lets other threads run
         derived = pool.map(lambda code: derive(code, salt), sessions)

@@ -19,8 +19,8 @@ MOST_POSTED = 512 << 10  # bytes of one request
 
 
 def serve_page(study: Perceived, port: int = 0, address: str = "127.0.0.1") -> Served:
-    """Serve a study's page until closed. address: of the interface that is listened on. Raises OSError where
-    the port is taken or there is no such address.
+    """Serve a study's page until closed. address: of the interface that is listened on. Raises OSError if the
+    port is taken or there is no such address.
     """
 
     class Handler(_Answering):
@@ -81,7 +81,7 @@ class _Answering(Quiet):
 
 
 def page_of(study: Perceived) -> Path:
-    """Return the page. Raises FileError where it is not there, or a video is not."""
+    """Return the page. Raises FileError if it is not there, or a video is not."""
     page = study.show / "index.html"
     missing = [n for n in study.key.stimuli if not study.video(n).is_file()]
     if not page.is_file() or missing:

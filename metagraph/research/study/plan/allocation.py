@@ -66,9 +66,9 @@ def drawer(secret: str) -> Callable[..., int]:
 
 
 def draw_order_numbers(secret: str, orders: int, most: int = 2) -> Iterator[int]:
-    """Yield the numbers of orders as they are drawn: 0, 1, 2 ... shuffled within blocks of one or two
-    rounds of all orders, how many that is drawn, too, so that the last of a block cannot be foreseen.
-    most: rounds of a block; 1 where nobody sees who comes next anyway.
+    """Yield the numbers of orders as they are drawn: 0, 1, 2 ... shuffled within blocks of one or two rounds
+    of all orders, how many that is drawn, too, so that the last of a block cannot be foreseen. most: rounds
+    of a block; 1 if nobody sees who comes next anyway.
     """
     draw = drawer(secret)
     start = block = 0

@@ -93,7 +93,7 @@ def find_changed_names(before: Mapping[str, str], after: Mapping[str, str]) -> l
 
 
 def freeze_files(study: Study, force: bool = False) -> Path:
-    """Write what the study is made of beside it; return the file. Raises FileError where it is frozen already
+    """Write what the study is made of beside it; return the file. Raises FileError if it is frozen already
     and something has changed since, unless forced.
     """
     digests = study_manifest(study)
@@ -130,7 +130,7 @@ def freeze_files(study: Study, force: bool = False) -> Path:
 
 
 def frozen(study: Study) -> dict[str, str] | None:
-    """Return what was frozen, None where nothing was. Raises FileError."""
+    """Return what was frozen, None if nothing was. Raises FileError."""
     path = study.folder / LOCK
     if not path.is_file():
         return None
@@ -150,7 +150,7 @@ def describe_study_differences(
     study: Study, logs: Mapping[str, Mapping[str, str] | None], clips: bool = True
 ) -> list[str]:
     """Return in words what people worked with that is not what lies there now. logs: participant -> what the
-    log says it was, None where it says nothing. clips: read them, too.
+    log says it was, None if it says nothing. clips: read them, too.
     """
     now = study_manifest(study)
     out: list[str] = []

@@ -18,7 +18,7 @@ import numpy as np
 
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.small_samples import MOST_PEOPLE, Estimate, Test
-from metagraph.research.study.statistics.student_t import t_cdf, t_quantile
+from metagraph.research.study.statistics.student_t import compute_t_cdf, t_quantile
 
 Verdict = Literal["larger", "equivalent", "smaller", "not told"]
 
@@ -26,7 +26,7 @@ Verdict = Literal["larger", "equivalent", "smaller", "not told"]
 @dataclass(frozen=True)
 class Assumed:
     """What is assumed of people: the ratio of times, and the standard deviation of the logs of their ratios.
-    source: where that comes from, in words. worst: the deviation that is reckoned with to be careful: of a
+    source: where that comes from, in words. worst: the deviation that is computed with to be careful: of a
     pilot, the upper end of its one-sided 80 % interval.
     """
 
@@ -44,8 +44,8 @@ class Assumed:
 
 @dataclass(frozen=True)
 class SampleSize:
-    """People needed for each aim; None where more than MOST_PEOPLE are. show: the assumed ratio. smallest:
-    the smallest that matters. precise: an interval no wider than `within` times either way, with that chance.
+    """People needed for each aim; None if more than MOST_PEOPLE are. show: the assumed ratio. smallest: the
+    smallest that matters. precise: an interval no wider than `within` times either way, with that chance.
     equivalent: to show that a ratio of 1 is within what matters.
     """
 
@@ -61,7 +61,7 @@ def assume_without_pilot(ratio: float, spread: float) -> Assumed:
 
 
 def from_pilot(ratios: Sequence[float], source: str = "a pilot") -> Assumed:
-    """Return what a pilot's people's ratios say; small pilots flatter, so that the deviation to reckon with
+    """Return what a pilot's people's ratios say; small pilots flatter, so that the deviation to compute with
     is the upper end of a one-sided 80 % interval (Browne 1995). Raises ValueError for fewer than 3.
     """
     if len(ratios) < 3:
@@ -71,7 +71,7 @@ def from_pilot(ratios: Sequence[float], source: str = "a pilot") -> Assumed:
     if spread <= 0:
         raise ValueError("the people of the pilot do not differ at all; assume a deviation")
     n = len(logs)
-    worst = spread * sqrt((n - 1) / chi_squared_quantile(0.2, n - 1))
+    worst = spread * sqrt((n - 1) / compute_chi_squared_quantile(0.2, n - 1))
     return Assumed(exp(sum(logs) / n), spread, f"{source} of {n}", worst)
 
 
@@ -115,7 +115,7 @@ def _fewest(enough: Callable[[int], bool]) -> int | None:
     return high
 
 
-def half_width(n: int, spread: float, alpha: float = 0.05) -> float:
+def compute_half_width(n: int, spread: float, alpha: float = 0.05) -> float:
     """Return the half width of the interval of a mean of n logs, where their deviation is as assumed."""
     return t_quantile(1 - alpha / 2, n - 1) * spread / sqrt(n)
 
@@ -127,7 +127,7 @@ def precision_chance(n: int, spread: float, half: float, alpha: float = 0.05) ->
     if n < 2:
         return 0.0
     edge = half * sqrt(n) / t_quantile(1 - alpha / 2, n - 1) / spread
-    return chi_squared_cdf((n - 1) * edge * edge, n - 1)
+    return compute_chi_squared_cdf((n - 1) * edge * edge, n - 1)
 
 
 # --- equivalence
@@ -198,7 +198,7 @@ def equivalence(logs: Sequence[float], smallest: float, alpha: float = 0.05) -> 
     error = (found.high - found.low) / 2 / t_quantile(1 - alpha, n - 1)
     above, below = found.value + bound, bound - found.value  # how far inside of either end
     t = min(above, below) / error if error > 0 else (inf if min(above, below) > 0 else -inf)
-    p = 1 - t_cdf(t, n - 1) if isfinite(t) else float(t < 0)
+    p = 1 - compute_t_cdf(t, n - 1) if isfinite(t) else float(t < 0)
     verdict: Verdict = "not told"
     if -bound < found.low and found.high < bound:
         verdict = "equivalent"
@@ -212,7 +212,7 @@ def equivalence(logs: Sequence[float], smallest: float, alpha: float = 0.05) -> 
 # --- chi squared
 
 
-def chi_squared_cdf(x: float, df: float) -> float:
+def compute_chi_squared_cdf(x: float, df: float) -> float:
     """Return the share of the chi-squared distribution up to x: the lower incomplete gamma function, by its
     series or its continued fraction (DLMF 8.11.4, 8.9.2).
     """
@@ -241,10 +241,10 @@ def chi_squared_cdf(x: float, df: float) -> float:
     return max(0.0, 1 - front * h)
 
 
-def chi_squared_quantile(share: float, df: float) -> float:
+def compute_chi_squared_quantile(share: float, df: float) -> float:
     """Return the value a share of the chi-squared distribution does not exceed; by bisection."""
     low, high = 0.0, df + 10 * sqrt(2 * df) + 20
     for _ in range(200):
         middle = (low + high) / 2
-        low, high = (middle, high) if chi_squared_cdf(middle, df) < share else (low, middle)
+        low, high = (middle, high) if compute_chi_squared_cdf(middle, df) < share else (low, middle)
     return (low + high) / 2

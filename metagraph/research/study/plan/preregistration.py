@@ -45,8 +45,8 @@ class Aims:
 
 def preregister(study: Study, aims: Aims, secret: str | None, force: bool = False) -> list[Path]:
     """Write both forms and a record of them with their digests into a folder beside the study; return the
-    files. secret: the digest of the allocation's secret. Raises FileError where they are there and would
-    change, unless forced.
+    files. secret: the digest of the allocation's secret. Raises FileError if they are there and would change,
+    unless forced.
     """
     folder = study.folder / FOLDER
     digests = study_manifest(study)
@@ -91,7 +91,7 @@ def _record(path: Path) -> Mapping[str, object]:
 
 
 def unlike(study: Study) -> list[str]:
-    """Return in words what is not as it was preregistered; nothing where nothing was."""
+    """Return in words what is not as it was preregistered; nothing if nothing was."""
     folder = study.folder / FOLDER
     if not (folder / RECORD).is_file():
         return []

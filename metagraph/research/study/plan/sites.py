@@ -1,4 +1,4 @@
-"""Several sites' copies of a study taken together: people told apart by their site, which the mixed model
+"""Several sites' copies of a study taken together: people distinguished by their site, which the mixed model
 takes as a random effect.
 """
 
@@ -19,8 +19,8 @@ OWN = frozenset({"order", "consent", "thanks", "instructions"})  # may be each s
 def merge_site_data(
     folders: Sequence[str | Path], jumps: bool = True, progress: Progress | None = None
 ) -> Data:
-    """Return the data of all folders as one. Raises FileError where one cannot be read, has not the same
-    tasks and conditions, or is called as another is; what else differs is told in `missing`.
+    """Return the data of all folders as one. Raises FileError if one cannot be read, has not the same tasks
+    and conditions, or is called as another is; what else differs is reported in `missing`.
     """
     studies = [read_study(f) for f in folders]
     names = [s.plan.site or s.folder.name for s in studies]

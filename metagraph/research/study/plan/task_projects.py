@@ -22,7 +22,7 @@ def make_task_project(
     study: Study, clips: str | tuple[str, ...], name: str, reference: Path | None = None
 ) -> Project:
     """Return a project of clips, none of them placed; its paths are absolute. Base pose and character are the
-    reference's, whose clips are told apart by their files' names. Raises FileError when a clip cannot be
+    reference's, whose clips are distinguished by their files' names. Raises FileError when a clip cannot be
     read: everybody works on the same ones.
     """
     imported = import_files(Project(name), None, study.clips(clips))

@@ -100,7 +100,9 @@ def apa(time: ConditionComparison) -> str:
         said = said.replace("took longer", "took less time", 1)
     parts = []
     if time.test.p is not None and time.test.statistic is not None and time.test.df is not None:
-        parts.append(f"<i>t</i>({time.test.df:.4g}) = {time.test.statistic:.2f}, {apa_chance(time.test.p)}")
+        parts.append(
+            f"<i>t</i>({time.test.df:.4g}) = {time.test.statistic:.2f}, {format_apa_chance(time.test.p)}"
+        )
     parts.append(f"ratio = {time.ratio.value:.2f}{_apa_range(time.ratio, format_two_digits)}")
     if time.effect is not None:
         parts.append(
@@ -109,7 +111,7 @@ def apa(time: ConditionComparison) -> str:
     return f"{said}{', '.join(parts)}, <i>N</i> = {time.ratio.n}."
 
 
-def apa_chance(p: float) -> str:
+def format_apa_chance(p: float) -> str:
     """Return a p value without the nought before the point."""
     return "<i>p</i> &lt; .001" if p < 0.001 else f"<i>p</i> = {f'{p:.3f}'.removeprefix('0')}"
 

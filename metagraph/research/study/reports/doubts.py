@@ -19,7 +19,7 @@ LEFT = {
 
 
 def flow_figure(results: Results) -> str | None:
-    """Return who took part as a drawing; None where the data do not tell."""
+    """Return who took part as a drawing; None if the data do not tell."""
     data = results.data
     if not data.people:
         return None

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from metagraph.common.svg import format_px, svg_dot, svg_drawing, svg_line, svg_text
+from metagraph.common.svg import draw_svg_dot, format_px, svg_drawing, svg_line, svg_text
 from metagraph.common.xml_text import escape
 from metagraph.research.study.reports.plot_axes import (
     COUNTS,
@@ -54,7 +54,7 @@ def plot_paired(
         words = escape(f"{name}: {seconds(a)} and {seconds(b)}, {b / a:.2f} times")
         parts.append(
             f"<g class='person'><title>{words}</title>{svg_line(xs[0], y(a), xs[1], y(b))}"
-            f"{svg_dot(xs[0], y(a), 3)}{svg_dot(xs[1], y(b), 3)}</g>"
+            f"{draw_svg_dot(xs[0], y(a), 3)}{draw_svg_dot(xs[1], y(b), 3)}</g>"
         )
     for x, mean, kind, name, side in zip((xs[0] - 26, xs[1] + 26), means, css, names, (-1, 1), strict=True):
         parts.append(f"<g class='{kind}'>{_vertical(x, mean, y)}</g>")
@@ -97,7 +97,7 @@ def ratios(
                 )
             parts.append("</g>")
             words += f"  [{e.low:.2f}, {e.high:.2f}]" if isfinite(e.high) else f"  [{e.low:.2f}, …"
-        parts.append(f"<g class='manual'>{svg_dot(x(e.value), at, 6 if n == 0 else 4)}</g>")
+        parts.append(f"<g class='manual'>{draw_svg_dot(x(e.value), at, 6 if n == 0 else 4)}</g>")
         parts.append(svg_text(right + 12, at + 4, words, "label", "start"))
     return svg_drawing(bottom + 48, parts, "Ratios of times with their intervals")
 
@@ -126,7 +126,7 @@ def plot_learning(found: Mapping[str, tuple[Sequence[float], float, float]], nam
     )
     parts.append(_title_up((top + bottom) / 2, "time a clip (logarithmic)"))
     for condition, (values, first, slope) in found.items():
-        dots = "".join(svg_dot(x(n), y(s), 3.5) for n, s in enumerate(values, 1))
+        dots = "".join(draw_svg_dot(x(n), y(s), 3.5) for n, s in enumerate(values, 1))
         end = first * len(values) ** slope
         parts.append(
             f"<g class='{condition}'>{svg_line(x(1), y(first), x(len(values)), y(end), 'wide')}{dots}</g>"
@@ -211,7 +211,7 @@ def plot_means(
                 if e.low is not None and e.high is not None
                 else ""
             )
-            parts.append(f"<g class='{condition}'>{bar}{svg_dot(x(e.value), y, 4.5)}</g>")
+            parts.append(f"<g class='{condition}'>{bar}{draw_svg_dot(x(e.value), y, 4.5)}</g>")
             parts.append(svg_text(right + 14, y + 4, f"{e.value:.1f}", f"label {condition}", "start"))
     return svg_drawing(height, parts, "Means with their intervals")
 
@@ -235,4 +235,4 @@ def _vertical(x: float, mean: Estimate, y: Place) -> str:
         if mean.low is not None and mean.high is not None
         else ""
     )
-    return f"{bar}{svg_dot(x, y(mean.value), 6)}"
+    return f"{bar}{draw_svg_dot(x, y(mean.value), 6)}"

@@ -215,7 +215,7 @@ def questionnaires(data: Data) -> Table:
 
 
 def estimates(results: Results) -> Table:
-    """The ratio as it is reported, by task, and reckoned otherwise."""
+    """The ratio as it is reported, by task, and computed otherwise."""
     rows: list[tuple[Any, ...]] = []
 
     def add(sort: str, name: str, e: Estimate, title: str | None = None) -> None:

@@ -54,7 +54,7 @@ class Score:
     """right, missing, extra: connections. wrong: of these, those that lead to another target instead.
     essential, essential_right: the connections between a stance's rest and its actions that the reference
     has, and of them those that were found. states: that the reference has; placed: of these, those with the
-    right layer, kind, stance and limb. jumps: connections that jump, None where it was not judged.
+    right layer, kind, stance and limb. jumps: connections that jump, None if it was not judged.
     """
 
     right: int = 0
@@ -70,17 +70,17 @@ class Score:
 
     @property
     def precision(self) -> float | None:
-        """Of the connections that were made, the share that is right; None where none was made."""
+        """Of the connections that were made, the share that is right; None if none was made."""
         return self.right / (self.right + self.extra) if self.right + self.extra else None
 
     @property
     def recall(self) -> float | None:
-        """Of the connections that are wanted, the share that was made; None where none is wanted."""
+        """Of the connections that are wanted, the share that was made; None if none is wanted."""
         return self.right / (self.right + self.missing) if self.right + self.missing else None
 
     @property
     def f1(self) -> float | None:
-        """The harmonic mean of both; 0 where all is wrong, None where nothing is wanted and nothing made."""
+        """The harmonic mean of both; 0 where all is wrong, None if nothing is wanted and nothing made."""
         total = 2 * self.right + self.missing + self.extra
         return 2 * self.right / total if total else None
 
@@ -137,7 +137,7 @@ def score(
 def are_equivalent(
     a: Mapping[Layer, NormalMachine], b: Mapping[Layer, NormalMachine], tolerance: float = TOLERANCE
 ) -> bool:
-    """Return whether two machines are the same but for the names and the order of what is in them."""
+    """Return whether two machines are the same except for the names and the order of what is in them."""
     return not score(a, b, tolerance).mistakes
 
 
@@ -227,7 +227,7 @@ def _told_by_links(
     got: NormalMachine, want: NormalMachine, less: Collection[Pair], more: Collection[Pair]
 ) -> frozenset[str]:
     """Return the states whose place follows from links drawn by hand and is unclear only since some to or
-    from rest were forgotten: that is one mistake, and is told of the links.
+    from rest were forgotten: that is one mistake, and is reported for the links.
     """
 
     def at_rest(pairs: Iterable[Pair], machine: NormalMachine) -> set[str]:
@@ -252,8 +252,8 @@ def _placing(
     attempt: Mapping[Layer, NormalMachine],
     layer: Layer,
 ) -> list[Mistake]:
-    """Return what is wrong about where a clip is placed; nothing where links drawn by hand do not tell, as
-    that is told of the links.
+    """Return what is wrong about where a clip is placed; nothing if links drawn by hand do not tell, as that
+    is reported for the links.
     """
     key = want.key
     if got is None:
@@ -290,7 +290,7 @@ def _kind(state: NormalState) -> str:
 
 
 def _moves_alike(got: NormalState, want: NormalState) -> bool:
-    """Whether both move the same joints, each as far but for a notch of what sets it."""
+    """Whether both move the same joints, each as far except for a notch of what sets it."""
     if got.limb != want.limb or got.joints != want.joints:
         return False
     has, should = dict(got.joint_weights), dict(want.joint_weights)
@@ -313,8 +313,8 @@ def _timing(
     got: NormalMachine, want: NormalMachine, both: Collection[Pair], tolerance: float
 ) -> list[Mistake]:
     """Return the times that are off. Loops are left whenever something is asked, so when is not compared; the
-    blend between two is told once, of the clip that has it: of what is going back to rest its own, else that
-    of what comes.
+    blend between two is reported once, of the clip that has it: of what is going back to rest its own, else
+    that of what comes.
     """
     out: dict[tuple[str, str], list[tuple[float | None, float | None]]] = {}
     for key in want.states.keys() & got.states.keys():

@@ -70,7 +70,7 @@ def uses(events: Sequence[Event]) -> dict[int, dict[str, float]]:
 
 
 def _use(event: Event) -> str | None:
-    """Return what the time before an event went into; None where it says nothing about that."""
+    """Return what the time before an event went into; None if it says nothing about that."""
     kind = event["type"]
     if kind == "edit":
         return _EDITS.get(str(event.get("what")), "settings, names")

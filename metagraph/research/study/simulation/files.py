@@ -241,7 +241,7 @@ class _Sitting:
         )
 
     def _clip(self, clip: str, seconds: float, condition: str) -> None:
-        """Tell of the work on one clip, which ends with an edit of it."""
+        """Report the work on one clip, which ends with an edit of it."""
         parts = max(3, int(np.ceil(seconds / STEP)))
         shares = self.rng.dirichlet(np.full(parts, 60.0)) * seconds
         for n, share in enumerate(shares.tolist()):

@@ -67,9 +67,9 @@ class ConditionComparison:
 def compare_conditions(
     rows: Sequence[AnalysisRow], unit: Unit | None = None, pair: tuple[str, str] = PAIR
 ) -> ConditionComparison | None:
-    """Return the comparison of two conditions; None where one of them was never done. unit: as the study is
-    planned; None as most people did: one person with other tasks in each condition does not change it for
-    the others.
+    """Return the comparison of two conditions; None if one of them was never done. unit: as the study is
+    planned; None as most people did: one person with other tasks in each condition does not change it for the
+    others.
     """
     by: dict[str, dict[str, dict[str, AnalysisRow]]] = {}  # participant -> condition -> task
     for r in rows:
@@ -89,7 +89,7 @@ def compare_conditions(
     a, b = [p.above for p in people], [p.below for p in people]
     log_a, log_b = stats.logs(a), stats.logs(b)
     ratio = stats.ratio(a, b)
-    effect = stats.effect_size(log_a, log_b)
+    effect = stats.compute_effect_size(log_a, log_b)
     raw = effect.value / stats.correction(len(people) - 1) if effect is not None else None
     began = {first: [(p.above, p.below) for p in people if p.above_first is first] for first in (True, False)}
     cautions = stats.ratio_cautions(ratio, raw)
@@ -121,7 +121,7 @@ def compare_conditions(
         unit,
         True,
         pair,
-        {above: stats.geometric_mean(a), below: stats.geometric_mean(b)},
+        {above: stats.compute_geometric_mean(a), below: stats.compute_geometric_mean(b)},
         ratio,
         stats.paired_t(log_a, log_b),
         tuple(people),
@@ -192,7 +192,7 @@ def _unpaired(
     left_out = sorted(p for c in groups for p in groups[c].keys() - used[c].keys())
     if left_out:
         words.append(f"{_names(left_out)} did no task that the others did, too, and does not count here.")
-    means = {c: stats.geometric_mean(values) for c, values in took.items()}
+    means = {c: stats.compute_geometric_mean(values) for c, values in took.items()}
     return ConditionComparison(
         unit, False, pair, means, ratio, test, cautions=tuple(words), left_out=tuple(dict.fromkeys(left_out))
     )

@@ -20,7 +20,7 @@ from metagraph.research.study.statistics.student_t import t_quantile
 Array = NDArray[np.float64]
 EXACTLY = 1e-12  # of all variance, what is left below which rows fit exactly, and nothing can be estimated
 FEW_ROWS = 40  # that share groups, beyond which sums by group are less work than the rows' covariances
-NOTHING = 1e-4  # a deviation beside that of the rest below which a group is told as having none
+NOTHING = 1e-4  # a deviation beside that of the rest below which a group is reported as having none
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,9 @@ def fit_mixed(
     level: float = LEVEL,
 ) -> Mixed | None:
     """Return the model of y `[n]` by effects (name -> `[n]`, the constant among them) and groups (name ->
-    whose each row is, `[n]`). None where there are no more rows than effects, or
-    where these and the groups say all. Effects that others already say
-    are left out, the later one of them; so are groups that have a row each.
+    whose each row is, `[n]`). None if there are no more rows than effects, or where these and the groups say
+    all. Effects that others already say are left out, the later one of them; so are groups that have a row
+    each.
     """
     values = np.asarray(y, np.float64)
     kept, left_out = _independent({k: np.asarray(v, np.float64) for k, v in effects.items()}, len(values))
@@ -131,7 +131,7 @@ class _Tall:
 
 class _Model:
     """The likelihood of deviations of groups, as ratios to that of the rest. Rows that share no group are
-    reckoned apart, those of as many rows at once.
+    computed apart, those of as many rows at once.
     """
 
     def __init__(self, y: Array, x: Array, codes: Sequence[NDArray[np.intp]], restricted: bool) -> None:

@@ -1,7 +1,7 @@
 """Estimates that one odd value does not carry away, and ones that know that a time was cut short.
 
 Hodges and Lehmann (1963), "Estimates of location based on rank tests". Censored values: the likelihood of
-Tobin (1958), its interval by the profile, as wide as Student's where nothing is censored.
+Tobin (1958), its interval by the profile, as wide as Student's if nothing is censored.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FAR = 3.5  # such deviations beyond which a value is odd (Iglewicz and Hoaglin 1
 WIDEST = 1000.0  # times the reach of the values beyond which an end of an interval is not known
 
 
-def hodges_lehmann(values: Sequence[float], level: float = LEVEL) -> Estimate:
+def compute_hodges_lehmann(values: Sequence[float], level: float = LEVEL) -> Estimate:
     """Return the median of all means of two values, each with itself, too, and the interval of Wilcoxon's
     signed ranks: exact up to EXACT values. No interval where so few cannot have one of that level. Raises
     ValueError without values.
@@ -62,7 +62,7 @@ def leave_one_out(values: Sequence[float], level: float = LEVEL) -> list[Estimat
     return [mean([v for k, v in enumerate(values) if k != n], level) for n in range(len(values))]
 
 
-def odd_ones(values: Sequence[float]) -> list[int]:
+def find_odd_ones(values: Sequence[float]) -> list[int]:
     """Return the places of values more than FAR robust deviations from the median; none of fewer than 5, or
     where more than half are alike.
     """
@@ -79,9 +79,9 @@ def odd_ones(values: Sequence[float]) -> list[int]:
 def censored_mean(
     exact: Sequence[float], above: Sequence[float] = (), below: Sequence[float] = (), level: float = LEVEL
 ) -> Estimate | None:
-    """Return the mean of normal values, some known only to lie above, or below, a bound. Its interval is
-    that of the profile likelihood, scaled so that it is Student's where none is censored; an end that the
-    values do not bound is infinite. None with fewer than 2 known ones, or where those are all alike.
+    """Return the mean of normal values, some known only to lie above, or below, a bound. Its interval is that
+    of the profile likelihood, scaled so that it is Student's where none is censored; an end that the values
+    do not bound is infinite. None with fewer than 2 known ones, or where those are all the same.
     """
     x, lows, highs = (np.asarray(v, np.float64) for v in (exact, above, below))
     n = len(x) + len(lows) + len(highs)
@@ -146,8 +146,8 @@ def _lowest(f: Callable[[float], float], low: float, high: float) -> tuple[float
 
 
 def _crossing(f: Callable[[float], float], start: float, step: float, edge: float) -> float:
-    """Return where a function that rises from `start` in the direction of step reaches an edge; infinite
-    where that is beyond WIDEST steps.
+    """Return where a function that rises from `start` in the direction of step reaches an edge; infinite if
+    that is beyond WIDEST steps.
     """
     near, far = start, start + step
     while f(far) < edge:

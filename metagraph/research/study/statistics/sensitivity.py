@@ -1,6 +1,6 @@
-"""The ratio of times reckoned otherwise: what hangs on one person, on a limit, on a choice of the analysis.
+"""The ratio of times computed otherwise: what hangs on one person, on a limit, on a choice of the analysis.
 
-Nobody is left out of the figure that is reported for being odd; what it would be without them is told
+Nobody is left out of the figure that is reported for being odd; what it would be without them is reported
 beside it.
 """
 
@@ -18,7 +18,12 @@ from metagraph.research.study.scores.tasks import AWAY
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.comparison import ConditionComparison, compare_conditions
 from metagraph.research.study.statistics.mixed import Mixed, fit_mixed
-from metagraph.research.study.statistics.robust import censored_mean, hodges_lehmann, leave_one_out, odd_ones
+from metagraph.research.study.statistics.robust import (
+    censored_mean,
+    compute_hodges_lehmann,
+    find_odd_ones,
+    leave_one_out,
+)
 from metagraph.research.study.statistics.small_samples import Estimate
 
 SLACK = 30.0  # seconds by which a task may be longer than its limit: saving, a question that was open
@@ -35,7 +40,7 @@ class Otherwise:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """ways: the ratio reckoned otherwise. mixed: the model of tasks, on logs. odd: what is unlike the rest,
+    """ways: the ratio computed otherwise. mixed: the model of tasks, on logs. odd: what is unlike the rest,
     in words. correct: condition -> tasks without a mistake, and tasks whose mistakes were counted.
     """
 
@@ -111,13 +116,13 @@ def _odd(rows: Sequence[AnalysisRow], found: ConditionComparison) -> list[str]:
             out += [
                 f"{_who(mine[n])} took {mine[n].run.seconds / 60:.1f} minutes, far from what the others took "
                 f"(median {float(np.median([r.run.seconds for r in mine])) / 60:.1f})."
-                for n in odd_ones(logs)
+                for n in find_odd_ones(logs)
             ]
     people = found.people
     out += [
         f"{people[n].participant}'s ratio, {people[n].ratio:.2f}, is far from the others' "
         f"(median {float(np.median([p.ratio for p in people])):.2f})."
-        for n in odd_ones(found.logs)
+        for n in find_odd_ones(found.logs)
     ]
     return out
 
@@ -131,7 +136,7 @@ def _robust(found: ConditionComparison) -> list[Otherwise]:
     out = []
     if len(logs) >= 2:
         how = "The middle of all means of two people's ratios (Hodges and Lehmann), by signed ranks."
-        out.append(Otherwise("by ranks", hodges_lehmann(logs).exp(), how))
+        out.append(Otherwise("by ranks", compute_hodges_lehmann(logs).exp(), how))
     without = leave_one_out(logs)
     ends = sorted(range(len(without)), key=lambda n: without[n].value)
     for n in (ends[0], ends[-1]) if ends else ():
@@ -139,7 +144,7 @@ def _robust(found: ConditionComparison) -> list[Otherwise]:
         least = n == ends[0]
         how = f"Of all people the one without whom the ratio is {'smallest' if least else 'largest'}."
         out.append(Otherwise(f"without {name}", without[n].exp(), how))
-    odd = set(odd_ones(logs))
+    odd = set(find_odd_ones(logs))
     rest = [v for n, v in enumerate(logs) if n not in odd]
     if odd and len(rest) > 1:
         how = "Without everybody whose ratio is far from the others'."
@@ -200,7 +205,7 @@ def mixed_model(
 ) -> Mixed | None:
     """Return a model of log seconds of each task by condition, sitting, practice (the mean log of the clips'
     numbers within the condition) and task; people, and people within a condition, deviate, and so do sites
-    where there are several. None where the rows do not allow it.
+    where there are several. None if the rows do not allow it.
     """
     there = [r for r in rows if r.run.participant not in found.left_out and r.run.seconds > 0]
     people = {r.run.participant for r in there}
@@ -229,7 +234,7 @@ def mixed_model(
 
 def _practised(rows: Sequence[AnalysisRow]) -> list[float] | None:
     """Return for each row the mean log of its clips' numbers, those of tasks before in the condition counted
-    on; None where nobody knows how many clips there were.
+    on; None if nobody knows how many clips there were.
     """
     if any(r.clips < 1 for r in rows):
         return None

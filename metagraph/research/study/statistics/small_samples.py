@@ -14,7 +14,7 @@ from math import exp, inf, isfinite, lgamma, log, sqrt
 
 import numpy as np
 
-from metagraph.research.study.statistics.student_t import t_noncentral, t_quantile, t_two_sided
+from metagraph.research.study.statistics.student_t import compute_t_noncentral, t_quantile, t_two_sided
 
 LEVEL = 0.95
 FEWEST_RANKED = 6  # pairs below which signed ranks give no interval of 95 %: 2 / 2^5 = 0.0625
@@ -23,7 +23,7 @@ MOST_PEOPLE = 10_000  # beyond which no study is planned
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A value with its interval; low and high are None where n is too small for one."""
+    """A value with its interval; low and high are None if n is too small for one."""
 
     value: float
     low: float | None
@@ -54,7 +54,7 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class Test:
-    """A two-sided test. df: degrees of freedom. p: None where it cannot be told. n: pairs, or people of both
+    """A two-sided test. df: degrees of freedom. p: None if it cannot be told. n: pairs, or people of both
     groups.
     """
 
@@ -75,7 +75,7 @@ def mean(values: Sequence[float], level: float = LEVEL) -> Estimate:
     return Estimate(m, m - half, m + half, len(x))
 
 
-def geometric_mean(values: Sequence[float], level: float = LEVEL) -> Estimate:
+def compute_geometric_mean(values: Sequence[float], level: float = LEVEL) -> Estimate:
     """Return the geometric mean with the interval of its logs. Raises ValueError for what is not > 0."""
     return mean(logs(values), level).exp()
 
@@ -121,10 +121,10 @@ def welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple
 # --- sizes of effects, and of studies
 
 
-def effect_size(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> Estimate | None:
+def compute_effect_size(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> Estimate | None:
     """Return Cohen's d_z of pairs, the mean difference beside the differences' deviation, with Hedges'
     correction for small samples (Hedges 1981, its exact form), and the interval of what it estimates, from
-    the noncentral t distribution; None where the differences do not vary.
+    the noncentral t distribution; None if the differences do not vary.
     """
     d = np.array(_paired(a, b))
     n = len(d)
@@ -142,13 +142,13 @@ def correction(df: float) -> float:
     return exp(lgamma(df / 2) - lgamma((df - 1) / 2)) / sqrt(df / 2)
 
 
-def paired_power(n: int, effect: float, alpha: float = 0.05) -> float:
+def compute_paired_power(n: int, effect: float, alpha: float = 0.05) -> float:
     """Return how likely a paired t test of n pairs finds an effect d_z."""
     if n < 2:
         return 0.0
     edge = t_quantile(1 - alpha / 2, n - 1)
     shift = abs(effect) * sqrt(n)
-    return 1 - t_noncentral(edge, n - 1, shift) + t_noncentral(-edge, n - 1, shift)
+    return 1 - compute_t_noncentral(edge, n - 1, shift) + compute_t_noncentral(-edge, n - 1, shift)
 
 
 def count_pairs_needed(effect: float, wanted: float = 0.8, alpha: float = 0.05) -> int | None:
@@ -158,13 +158,13 @@ def count_pairs_needed(effect: float, wanted: float = 0.8, alpha: float = 0.05) 
     if not isfinite(effect) or effect == 0:
         return None if effect == 0 else 2
     low, high = 1, 2
-    while paired_power(high, effect, alpha) < wanted:
+    while compute_paired_power(high, effect, alpha) < wanted:
         low, high = high, 2 * high
         if low >= MOST_PEOPLE:
             return None
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (low, middle) if paired_power(middle, effect, alpha) >= wanted else (middle, high)
+        low, high = (low, middle) if compute_paired_power(middle, effect, alpha) >= wanted else (middle, high)
     return high
 
 
@@ -184,7 +184,7 @@ def holm(chances: Sequence[float | None]) -> list[float | None]:
 # --- learning, and order
 
 
-def power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estimate, float] | None:
+def fit_power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estimate, float] | None:
     """Return the slope of log seconds over log of the how-many-eth, with its interval, and the seconds of the
     first on that line: seconds = first * n^slope (Newell and Rosenbloom 1981). None for fewer than 3.
     """
@@ -245,8 +245,8 @@ def order_effects(
 
 
 def ratio_cautions(found: Estimate, effect: float | None) -> list[str]:
-    """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None where it is
-    not known.
+    """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None if it is not
+    known.
     """
     n = found.n
     if n < 2:
@@ -301,11 +301,11 @@ def _shift(t: float, df: float, share: float) -> float:
     """
     width = 5 * sqrt(1 + t * t / (2 * df))
     low, high = t - width, t + width
-    f_low, f_high = t_noncentral(t, df, low) - share, t_noncentral(t, df, high) - share
+    f_low, f_high = compute_t_noncentral(t, df, low) - share, compute_t_noncentral(t, df, high) - share
     side = 0
     for _ in range(200):
         middle = (f_low * high - f_high * low) / (f_low - f_high)
-        f = t_noncentral(t, df, middle) - share
+        f = compute_t_noncentral(t, df, middle) - share
         if abs(f) < 1e-13 or high - low < 1e-12 * max(1.0, abs(t)):
             break
         if f > 0:

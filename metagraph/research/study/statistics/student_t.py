@@ -15,7 +15,7 @@ STEPS = 20_000  # of the continued fraction; a few dozen are usual
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
-def incomplete_beta(a: float, b: float, x: float) -> float:
+def compute_incomplete_beta(a: float, b: float, x: float) -> float:
     """Return the regularised incomplete beta function I_x(a, b), 0..1; a, b > 0 (Lentz's continued fraction,
     DLMF 8.17.22).
     """
@@ -52,13 +52,13 @@ def t_two_sided(t: float, df: float) -> float:
         return 0.0
     square = t * t
     return (
-        incomplete_beta(df / 2, 0.5, df / (df + square))
+        compute_incomplete_beta(df / 2, 0.5, df / (df + square))
         if square > 1
-        else 1 - incomplete_beta(0.5, df / 2, square / (df + square))
+        else 1 - compute_incomplete_beta(0.5, df / 2, square / (df + square))
     )
 
 
-def t_cdf(t: float, df: float) -> float:
+def compute_t_cdf(t: float, df: float) -> float:
     """Return the share of Student's distribution up to t."""
     tail = t_two_sided(t, df) / 2
     return tail if t < 0 else 1 - tail
@@ -90,7 +90,7 @@ def t_quantile(share: float, df: float) -> float:
     return copysign(t, share - 0.5)
 
 
-def t_noncentral(t: float, df: float, shift: float) -> float:
+def compute_t_noncentral(t: float, df: float, shift: float) -> float:
     """Return the share of the noncentral t distribution up to t: of (Z + shift) / S, with S^2 a chi-squared
     over df.
 

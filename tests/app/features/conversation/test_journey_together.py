@@ -47,7 +47,7 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     drive.wait(lambda: "the rates ask for 75 % and 75 %" in drive.conversation.title.words)
     drive.actions["rates"].trigger()
     rates = drive.window.findChild(SideRatesDialog)
-    assert rates.delivered.isVisible() and rates.delivered.text().count("asked 75 %, drawn") == 2
+    assert rates.delivered.isVisible() and rates.delivered.text().count("75 % requested") == 2
     rates.fields[0]["clause"].setValue(0)
     QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: "0 % and" in drive.conversation.title.words)

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 
-from app.features.conversation.segment_hits import word_edges
+from app.features.conversation.segment_hits import find_word_edges
 from app.look.theme import theme
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import SPOKEN
@@ -33,7 +33,7 @@ def test_an_edge_is_dragged_and_caught_by_a_word(talk: Any) -> None:
     first, before = talk.segments()[0], steps(talk)
     edges = [
         e
-        for e in word_edges(talk.conversation.sides[0].words, first.end)
+        for e in find_word_edges(talk.conversation.sides[0].words, first.end)
         if first.start < e < first.end - 0.1
     ]
     to = max(edges)
@@ -82,7 +82,7 @@ def test_a_drag_in_a_gap_makes_a_segment_with_its_stress(talk: Any) -> None:
     talk.editing.select({(0, 1)})
     press(talk, Key.Key_Delete)
     assert len(talk.segments()) == count - 1
-    gap = conversation_edits.gap_at(talk.conversation, 0, talk.segments()[0].end + 0.2)
+    gap = conversation_edits.find_gap_at(talk.conversation, 0, talk.segments()[0].end + 0.2)
     assert gap is not None
     start, end = gap[0] + 0.15, gap[1] - 0.15
     talk.drive.drag(talk.at(start), talk.at(end), lambda: len(talk.segments()) == count)

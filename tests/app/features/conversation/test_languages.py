@@ -11,7 +11,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.word_lists import WordsDialog, language_name
+from app.features.conversation.word_lists import WordsDialog, name_language
 from metagraph.graph.conversation.model import lists_of
 from metagraph.speech.language_packs import list_language_packs
 from tests.speech import talk as maker
@@ -50,8 +50,8 @@ def choose(box: Any, code: str) -> None:
 
 
 def test_codes_have_names() -> None:
-    assert [language_name(c) for c in ("de", "", "sv")] == ["German", "", "'sv'"]
-    assert language_name("und") == "language not known"
+    assert [name_language(c) for c in ("de", "", "sv")] == ["German", "", "'sv'"]
+    assert name_language("und") == "language not known"
 
 
 def test_the_language_is_found_shown_chosen_remembered_and_undone(drive: Any, tmp_path: Path) -> None:

@@ -12,17 +12,17 @@ from PySide6.QtCore import QPointF
 
 from app.features.conversation.segment_hits import (
     SegmentHit,
+    find_pitch_maxima,
     find_segment_hit,
-    pitch_maxima,
+    find_word_edges,
     snap_time,
-    word_edges,
 )
 from app.features.conversation.segment_lanes import (
     find_visible_segments,
     find_words_between,
-    least_lane_height,
     least_scale,
-    pitch_y,
+    measure_least_lane_height,
+    measure_pitch_y,
     place_segment_lanes,
 )
 from app.widgets.lane_geometry import LEFT, RULER, LaneScale
@@ -51,7 +51,7 @@ def at(seconds: float, side: int = 0, row: str = "segments") -> SegmentHit:
     return find_segment_hit(TALK, SCALE, SIZE, QPointF(SCALE.x(seconds), lane.center().y()))
 
 
-@pytest.mark.parametrize("height", [least_lane_height(2), 240, 500, 1200])
+@pytest.mark.parametrize("height", [measure_least_lane_height(2), 240, 500, 1200])
 def test_lanes_follow_each_other_and_fit(height: float) -> None:
     first, second = place_segment_lanes(1000, height)
     rows = [r for lane in (first, second) for r in (lane.wave, lane.words, lane.segments)]
@@ -63,8 +63,8 @@ def test_lanes_follow_each_other_and_fit(height: float) -> None:
 
 @pytest.mark.parametrize("sides", range(2, 9))
 def test_lanes_of_all_who_talk_lie_under_each_other_in_the_height_they_need(sides: int) -> None:
-    places = place_segment_lanes(1000, least_lane_height(sides), sides)
-    assert len(places) == sides and places[-1].whole.bottom() <= least_lane_height(sides)
+    places = place_segment_lanes(1000, measure_least_lane_height(sides), sides)
+    assert len(places) == sides and places[-1].whole.bottom() <= measure_least_lane_height(sides)
     for above, below in pairwise(places):
         assert above.whole.bottom() < below.whole.top()
     assert all(lane.segments.height() >= 15 and lane.wave.height() >= 15 for lane in places)
@@ -124,7 +124,7 @@ def test_the_word_that_reaches_into_sight_is_there() -> None:
 
 def test_pitch_stands_higher_the_higher_it_is_and_stays_in_its_lane() -> None:
     wave = place_segment_lanes(*SIZE)[0].wave
-    ys = [float(pitch_y(h, wave)) for h in (10, 80, 160, 320, 5000)]
+    ys = [float(measure_pitch_y(h, wave)) for h in (10, 80, 160, 320, 5000)]
     assert ys == sorted(ys, reverse=True)
     assert wave.top() <= ys[-1] <= ys[0] <= wave.bottom()
     assert ys[1] - ys[2] == pytest.approx(ys[2] - ys[3]), "an octave is as high everywhere"
@@ -138,7 +138,7 @@ def test_all_of_it_can_be_seen_at_once() -> None:
 
 def test_a_time_is_caught_only_near_and_only_when_wanted() -> None:
     words = (Word(text="a", start=1.0, end=1.4), Word(text="b", start=1.4, end=2.0))
-    marks = word_edges(words, 1.5)
+    marks = find_word_edges(words, 1.5)
     assert snap_time(1.44, marks, SCALE) == 1.4
     assert snap_time(1.44, marks, SCALE, on=False) == 1.44
     assert snap_time(1.7, marks, SCALE) == 1.7
@@ -149,6 +149,6 @@ def test_the_tops_of_a_pitch_are_found_with_gaps_ends_and_even_stretches() -> No
     nan = np.nan
     hertz = np.array([nan, 100, 120, 110, nan, 200, 200, 200, 150, 160, nan])
     times = np.arange(len(hertz)) / 100
-    assert pitch_maxima(times, hertz) == pytest.approx([0.02, 0.06, 0.09])
-    assert len(pitch_maxima(times, np.full(len(hertz), nan))) == 0
-    assert len(pitch_maxima(times[:0], hertz[:0])) == 0
+    assert find_pitch_maxima(times, hertz) == pytest.approx([0.02, 0.06, 0.09])
+    assert len(find_pitch_maxima(times, np.full(len(hertz), nan))) == 0
+    assert len(find_pitch_maxima(times[:0], hertz[:0])) == 0

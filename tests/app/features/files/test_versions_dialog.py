@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from app.features.files.versions_dialog import VersionsDialog, find_versions
 from app.project.version_count import version_count
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.project.versions import earlier_versions, version_path
+from metagraph.formats.project.versions import earlier_versions, make_version_path
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -78,7 +78,7 @@ def test_return_opens_the_chosen_one_as_a_copy_that_replaces_nothing(
 
 
 def test_one_that_cannot_be_read_says_why_and_is_not_opened(drive, path: Path) -> None:
-    version_path(path, 1).write_text("- no project")
+    make_version_path(path, 1).write_text("- no project")
     found = find_versions(path, drive.document.project)
     dialog = VersionsDialog(path.name, found, lambda _: pytest.fail("it cannot be opened"), drive.window)
     assert rows(dialog.versions)[0].endswith("Cannot be read") and not dialog.go.isEnabled()
@@ -102,7 +102,7 @@ def test_how_many_are_kept_is_set_there_and_none_is_said_in_words(drive, path: P
 def test_a_save_whose_version_cannot_be_kept_is_whole_and_tells_so(drive, path: Path) -> None:
     told: list[object] = []
     drive.files.report.connect(lambda title, lines: told.append((title, lines)))
-    version_path(path, 3).mkdir()
+    make_version_path(path, 3).mkdir()
     drive.document.edit("Rename", lambda p: edits.rename_project(p, "third"))
     drive.files.save()
     assert drive.files.saver.wait() and not drive.document.dirty
@@ -116,10 +116,11 @@ def test_the_command_waits_for_a_file(drive) -> None:
 
 
 def test_a_version_that_is_opened_as_a_file_is_a_copy(drive, path: Path) -> None:
-    drive.files.open(version_path(path, 1))
+    drive.files.open(make_version_path(path, 1))
     drive.wait(lambda: drive.document.path is None and bool(drive.document.project.clips))
-    before = version_path(path, 1).read_bytes()
+    before = make_version_path(path, 1).read_bytes()
     drive.document.edit("Rename", lambda p: edits.rename_project(p, "changed"))
     assert (
-        version_path(path, 1).read_bytes() == before and not version_path(version_path(path, 1), 1).exists()
+        make_version_path(path, 1).read_bytes() == before
+        and not make_version_path(make_version_path(path, 1), 1).exists()
     )

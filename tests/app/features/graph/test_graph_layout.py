@@ -9,7 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from app.features.graph.graph_layout import bar_part, describe_hole, lay_out_canvas, likelihood_at
+from app.features.graph.graph_layout import (
+    describe_hole,
+    lay_out_canvas,
+    measure_bar_part,
+    read_likelihood_at,
+)
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -185,14 +190,14 @@ def test_a_bar_shows_what_is_set_on_it(toy):
     row = lay_out_canvas(project, "arms", toy.id(project, "rest"), QSizeF(1200, 800)).nodes["gesture"].rows[0]
     values = [n / 10 for n in range(1, 31)]
     for value in values:
-        x = row.bar.left() + bar_part(value) * row.bar.width()
-        assert likelihood_at(row, x) == value
-    assert likelihood_at(row, -1e6) == 0.1
-    assert likelihood_at(row, 1e6) == 3.0
-    parts = [bar_part(v) for v in values]
+        x = row.bar.left() + measure_bar_part(value) * row.bar.width()
+        assert read_likelihood_at(row, x) == value
+    assert read_likelihood_at(row, -1e6) == 0.1
+    assert read_likelihood_at(row, 1e6) == 3.0
+    parts = [measure_bar_part(v) for v in values]
     assert parts == sorted(parts)
-    assert bar_part(1.0) == pytest.approx(0.5), "the usual likelihood stands in the middle"
-    assert (bar_part(0.0), bar_part(100.0)) == (0.0, 1.0)
+    assert measure_bar_part(1.0) == pytest.approx(0.5), "the usual likelihood stands in the middle"
+    assert (measure_bar_part(0.0), measure_bar_part(100.0)) == (0.0, 1.0)
 
 
 def test_ten_thousand_actions_lay_out_only_what_is_in_sight(toy):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QPoint, QRect
 
 from app.features.library.clip_layout import HEAD, ClipLayout, Section
-from app.features.library.clip_sizes import SIZES, cell_of, list_sizes, picture_of
+from app.features.library.clip_sizes import SIZES, list_sizes, measure_cell, picture_of
 
 ONE = (Section("", 0, 7),)
 GROUPS = (Section("a", 0, 4), Section("b", 4, 2, closed=True), Section("c", 6, 5))
@@ -90,7 +90,7 @@ def test_left_and_right_leave_closed_groups_out():
 @pytest.mark.parametrize("style", ["cards", "columns"])
 def test_a_picture_is_within_its_place_at_every_size(style):
     for side in list_sizes(style):
-        width, height = cell_of(style, side, 640)
+        width, height = measure_cell(style, side, 640)
         rect = QRect(0, 0, width or 640, height)
         assert rect.contains(picture_of(style, side, rect))
     assert set(list_sizes(style)) <= set(SIZES)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.features.library.clip_order import GIVEN, ORDERS, natural_key
+from app.features.library.clip_order import GIVEN, ORDERS, make_natural_key
 from app.features.library.clip_rows import ENTRY
 
 
@@ -17,7 +17,7 @@ def shown(panel):
 
 
 def test_names_are_sorted_as_people_count():
-    assert sorted(["beat 10", "Beat 2", "beat 1", "arm"], key=natural_key) == [
+    assert sorted(["beat 10", "Beat 2", "beat 1", "arm"], key=make_natural_key) == [
         "arm",
         "beat 1",
         "Beat 2",
@@ -27,8 +27,8 @@ def test_names_are_sorted_as_people_count():
 
 @given(st.lists(st.text(max_size=8)))
 def test_any_names_can_be_compared(names):
-    found = sorted(names, key=natural_key)
-    assert all(natural_key(a) <= natural_key(b) for a, b in pairwise(found))
+    found = sorted(names, key=make_natural_key)
+    assert all(make_natural_key(a) <= make_natural_key(b) for a, b in pairwise(found))
 
 
 @pytest.mark.nightly
@@ -56,6 +56,6 @@ def test_what_is_chosen_stays_chosen_and_comes_back(toys):
     panel.sort("name")
     assert session.selection.clips == (chosen,)
     assert [i.data(ENTRY).id for i in panel.list.selectedIndexes()] == [chosen]
-    names = [natural_key(e.name) for e in shown(panel)]
+    names = [make_natural_key(e.name) for e in shown(panel)]
     assert names == sorted(names)
     panel.forget()

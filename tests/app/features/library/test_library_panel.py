@@ -1,4 +1,4 @@
-"""The library's filters, and names broken so that clips can be told apart."""
+"""The library's filters, and names broken so that clips can be distinguished."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the panel shows of dials is told by the domain in English, and marked here for translation."""
+"""What the panel shows of dials is given by the domain in English, and marked here for translation."""
 
 from __future__ import annotations
 

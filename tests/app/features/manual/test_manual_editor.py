@@ -195,7 +195,7 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     again = open_project(tmp_path / "drawn.metagraph.yaml").project
     assert again.manual == drive.document.project.manual
 
-    # Exported, it is the meta-graph it amounts to, and the differences are told.
+    # Exported, it is the meta-graph it amounts to, and the differences are reported.
     from app.features.export.export_dialog import ExportDialog
 
     drive.wait(lambda: not drive.jobs.running)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
-from app.features.mimic.mimic_dialog import MimicDialog, recording_of
+from app.features.mimic.mimic_dialog import MimicDialog, pick_recording
 from app.project.files import SAMPLE
 from metagraph.graph import requests as a
 
@@ -22,11 +22,11 @@ def test_one_frame_of_many_stands_for_its_folder(tmp_path: Path) -> None:
     frames = [tmp_path / f"v_{n:012}_keypoints.json" for n in range(3)]
     for frame in frames:
         frame.write_text("{}")
-    assert recording_of(frames[1]) == tmp_path
+    assert pick_recording(frames[1]) == tmp_path
     (tmp_path / "alone").mkdir()
     only = tmp_path / "alone" / frames[0].name
     shutil.copy(frames[0], only)
-    assert recording_of(only) == only and recording_of(DEEP) == DEEP
+    assert pick_recording(only) == only and pick_recording(DEEP) == DEEP
 
 
 @pytest.fixture

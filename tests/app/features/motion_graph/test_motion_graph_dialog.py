@@ -51,7 +51,7 @@ def press(button) -> None:
 
 
 def colours(widget) -> int:
-    """How many colours a widget shows: one where nothing is painted."""
+    """How many colours a widget shows: one if nothing is painted."""
     image = widget.grab().toImage()
     return len({image.pixel(x, y) for x in range(0, image.width(), 3) for y in range(0, image.height(), 3)})
 
@@ -164,7 +164,7 @@ def test_what_no_motion_goes_with_is_given_up_and_that_is_said(shown):
     count = len(drive.document.project.clips)
     press(dialog.wishes.go)
     drive.wait(lambda: not dialog.busy and bool(dialog.said.text()), 120)
-    assert "Given up: responses" in dialog.said.text() and "response at 1.0 s" in dialog.said.text()
+    assert "Dropped: responses" in dialog.said.text() and "response at 1.0 s" in dialog.said.text()
     assert len(drive.document.project.clips) == count + 1
 
 

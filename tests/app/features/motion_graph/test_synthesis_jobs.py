@@ -122,7 +122,7 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
         and "cost" in found.words()
     )
     other = synthesise(graph, takes, Wish(2.0, (Segment("response", 0.5, 1.5),), tolerance=0.0), "new")
-    assert "Given up: responses" in other.words() and "repeats within 3 s" in other.words()
+    assert "Dropped: responses" in other.words() and "repeats within 3 s" in other.words()
 
 
 @pytest.mark.parametrize(("exact", "search"), [(True, "find_best_path"), (False, "greedy")])
@@ -202,8 +202,11 @@ def test_words_and_sounds_of_the_sides_are_compared(tmp_path: Path) -> None:
         4.0, tuple(cut_segments(segments, 8.0, 4.0)), soft=soft, side=ann, whole=tuple(segments), start=8.0
     )
     found = synthesise(graph, takes, wish, "new", folder=tmp_path)
-    assert "loudness 0.00 spreads off" in found.beside and "rate 0.00 spreads off" in found.beside
-    assert "words from where a take says them" in found.words()
+    assert (
+        "loudness differs by 0.00 standard deviations" in found.beside
+        and "rate differs by 0.00 standard deviations" in found.beside
+    )
+    assert "words have the motion of a take" in found.words()
     plain = synthesise(graph, takes, replace(wish, soft=SoftWish()), "new", folder=tmp_path / "nowhere")
     assert plain.beside == ""
     with pytest.raises(FileError, match="the sound file does not exist"):

@@ -1,4 +1,4 @@
-"""The problems panel: what the statistics flag is told once, goes to its place, and is mended with a
+"""The problems panel: what the statistics flag is reported once, goes to its place, and is mended with a
 press.
 """
 

@@ -16,7 +16,7 @@ from app.stage.compatibility_state import compare_proposed_timing
 from metagraph.common.wording import translate_phrase
 from metagraph.graph import edits
 from metagraph.suggest.jumps.found import Measured, stance_curves
-from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, far_ends, words_at
+from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, find_far_ends, find_words_at
 from tests.app.catalogue_texts import catalogue_texts
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -62,29 +62,29 @@ def test_handles_come_to_rest_at_what_is_proposed_and_where_nothing_begins_to_sh
 def test_a_transition_is_beside_the_stance_it_leaves_and_then_the_one_it_enters(toy, wide):
     action, seen = seen_of(toy, wide, "rest to up")
     assert 0 < seen.pivot < len(seen.times)
-    assert "enters from 'rest'" in words_at(wide, action, seen, 0.0)
-    assert "leaves to 'up'" in words_at(wide, action, seen, 0.8)
+    assert "enters from 'rest'" in find_words_at(wide, action, seen, 0.0)
+    assert "leaves to 'up'" in find_words_at(wide, action, seen, 0.8)
     far, elsewhere = seen_of(toy, edits.set_ends(wide, [action.id], toy.id(wide, "far")), "rest to up")
-    assert "leaves to 'far'" in words_at(
+    assert "leaves to 'far'" in find_words_at(
         edits.set_ends(wide, [far.id], toy.id(wide, "far")), far, elsewhere, 0.8
     )
 
 
 def test_words_name_cost_and_blend(toy, wide):
     action, seen = seen_of(toy, wide, "wide")
-    words = words_at(wide, action, seen, 1.5)
+    words = find_words_at(wide, action, seen, 1.5)
     assert (
         words.startswith("At 1.50 s it leaves to 'rest': ")
         and "times the visible threshold" in words
         and "0.05 s" in words
     )
-    assert "no jump, " in words_at(wide, action, seen, 2.4)
+    assert "no jump, " in find_words_at(wide, action, seen, 2.4)
 
 
 def test_a_loop_shows_its_seam(toy, wide):
     action, seen = seen_of(toy, wide, "rest loop")
     assert seen.loops and seen.pivot == 0 and seen.snaps("start") == []
-    assert words_at(wide, action, seen, 2.0).startswith("At 2.00 s it repeats from here")
+    assert find_words_at(wide, action, seen, 2.0).startswith("At 2.00 s it repeats from here")
     assert set(compare_proposed_timing(action, seen.proposed, 2.0)) == {"start", "end", "blend_in"}
 
 
@@ -116,7 +116,7 @@ def test_what_the_problems_call_far_is_never_said_to_be_without_a_jump(toy, wide
     from metagraph.graph.check import check_project
 
     action = wide.action(toy.id(wide, "wide"))
-    far = far_ends(wide, action)
+    far = find_far_ends(wide, action)
     told = [
         p.message for p in check_project(wide) if p.code in ("far-start", "far-end") and p.action == action.id
     ]

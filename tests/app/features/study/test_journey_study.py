@@ -438,7 +438,7 @@ def test_tasks_begin_with_a_clap_where_the_study_wants_it(drive, takes_part, tin
         rect = drive.canvas.layout_now().nodes["gesture"].rect
         return [corner.x() + round(rect.x()), corner.y() + round(rect.y())]
 
-    # What stands elsewhere once the window has settled is told again.
+    # What stands elsewhere once the window has settled is reported again.
     drive.wait(lambda: areas().get("graph gesture", [])[:2] == node_on_screen())
     graph, node = areas()["graph"], areas()["graph gesture"]
     assert graph[0] <= node[0] and node[0] + node[2] <= graph[0] + graph[2]

@@ -55,7 +55,7 @@ def test_a_key_that_is_asked_about_and_then_pressed_counts_once():
 def test_a_click_where_the_pointer_is_is_two_buttons():
     o = OperatorEvents()
     o.move((5, 5), False, 0.0)
-    for _ in range(2):  # the window is told, then the widget
+    for _ in range(2):  # first the window gets it, then the widget
         o.press(LEFT, (5, 5), 1.0)
     for _ in range(2):
         o.release(LEFT, (5, 5), 1.1)

@@ -18,7 +18,7 @@ AXIS = Axis.whole(GUTTER, WIDTH - GUTTER - RIGHT, 3.17)
 
 
 def drawn(look: TimingLook, words: str = "", middle: float = 0.0) -> tuple[np.ndarray, QRectF]:
-    """The ruler's pixels, with a chip on it, and where that is."""
+    """The ruler's pixels, with a chip on it, and if that is."""
     image = QImage(WIDTH, int(RULER), QImage.Format.Format_RGB32)
     image.fill(QColor(look.t.panel))
     painter, box = QPainter(image), QRectF()

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.features.timing_editor.numbers import place_numbers
-from app.features.timing_editor.rows import RULER, TrackWants, lay_out_rows, least_rows_height
+from app.features.timing_editor.rows import RULER, TrackWants, lay_out_rows, measure_least_rows_height
 
 ALL = ("poses", "line", "phases", "speed", "numbers", "stance")
 FEW = ("phases", "speed", "numbers", "stance")
@@ -18,7 +18,7 @@ FEW = ("phases", "speed", "numbers", "stance")
 @pytest.mark.parametrize("more", [0, 40, 900])
 def test_rows_follow_one_another_in_the_height_there_is(names, count, more):
     wants = [TrackWants(f"a{n}", names, 2) for n in range(count)]
-    height = least_rows_height(wants) + more
+    height = measure_least_rows_height(wants) + more
     y = RULER
     for rows in lay_out_rows(wants, 800, height):
         for box in (rows.title, *rows.rows.values(), rows.dope):

@@ -1,4 +1,4 @@
-"""What a study found: reckoned by hand, through files, and what cannot be said from too little."""
+"""What a study found: computed by hand, through files, and what cannot be said from too little."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def clock() -> Clock:
 
 
 class Story:
-    """Writes a log in which events are told with the seconds before them."""
+    """Writes a log in which events are given with the seconds before them."""
 
     def __init__(self, path: Path, clock: Clock) -> None:
         self.path, self.clock = path, clock

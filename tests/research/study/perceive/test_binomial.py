@@ -16,7 +16,7 @@ def test_p_values_and_intervals_are_those_of_scipy(k: int, n: int, share: float)
 
     theirs = binomtest(k, n, share)
     assert binomial.two_sided_p(k, n, share) == pytest.approx(theirs.pvalue, abs=1e-10)
-    interval, ours = theirs.proportion_ci(), binomial.exact_share(k, n)
+    interval, ours = theirs.proportion_ci(), binomial.estimate_exact_share(k, n)
     assert (ours.low, ours.high) == pytest.approx((interval.low, interval.high), abs=1e-9)
     assert ours.holds(k / n) and ours.n == n
 
@@ -33,7 +33,7 @@ def test_the_published_comparisons_have_these_exact_p_values(k: int, n: int, p: 
 def test_nothing_has_no_p_and_no_share_and_impossible_counts_are_refused() -> None:
     assert binomial.two_sided_p(0, 0) is None and binomial.fisher(0, 0, 1, 2) is None
     with pytest.raises(ValueError, match="nothing"):
-        binomial.exact_share(0, 0)
+        binomial.estimate_exact_share(0, 0)
     for k, n in ((-1, 3), (4, 3)):
         with pytest.raises(ValueError, match="no count"):
             binomial.two_sided_p(k, n)

@@ -1,4 +1,4 @@
-"""What the answers show: what was planted, who counts, and how often nothing is found where nothing is."""
+"""What the answers show: what was planted, who counts, and how often nothing is found if nothing is."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def test_who_withdrew_was_deleted_declined_or_stopped_is_not_counted(made: Perce
     assert found.counting == ("P04", "P05", "P06")
     why = {p.participant: p.why for p in found.people}
     assert (why["P01"], why["P02"], why["P03"]) == ("withdrawn", "deleted", "broken off")
-    # Of the three who are left out, only who broke off is among those reckoned with nobody excluded.
+    # Of the three who are left out, only who broke off is among those computed with nobody excluded.
     assert {c.participant for c in found.all_choices} == {"P03", "P04", "P05", "P06"}
     with pytest.raises(ValueError, match="does not take part"):
         note_withdrawal(made, "P77")

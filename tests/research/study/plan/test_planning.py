@@ -9,11 +9,11 @@ import pytest
 
 from metagraph.research.study.plan.planning import (
     assume_without_pilot,
-    chi_squared_cdf,
-    chi_squared_quantile,
+    compute_chi_squared_cdf,
+    compute_chi_squared_quantile,
+    compute_half_width,
     equivalence,
     from_pilot,
-    half_width,
     precision_chance,
     ratio_equivalence_power,
     sample_size,
@@ -74,7 +74,7 @@ def test_intervals_are_as_narrow_as_planned_as_often_as_planned() -> None:
     from scipy import stats as scipy
 
     n = sample_size(assume_without_pilot(2.0, 0.4), 1.25, within=1.25).precise
-    assert n is not None and half_width(n, 0.4) < log(1.25)
+    assert n is not None and compute_half_width(n, 0.4) < log(1.25)
     rng = np.random.default_rng(2)
     drawn = rng.normal(0, 0.4, (4000, n)).std(axis=1, ddof=1)
     narrow = scipy.t.ppf(0.975, n - 1) * drawn / sqrt(n) <= log(1.25)
@@ -120,7 +120,7 @@ def test_chi_squared_is_that_of_scipy() -> None:
 
     for df in (1, 2, 7, 40, 400):
         for share in (0.01, 0.2, 0.5, 0.99):
-            at = chi_squared_quantile(share, df)
+            at = compute_chi_squared_quantile(share, df)
             assert at == pytest.approx(scipy.chi2.ppf(share, df), rel=1e-8)
-            assert chi_squared_cdf(at, df) == pytest.approx(share)
-    assert chi_squared_cdf(0, 3) == 0
+            assert compute_chi_squared_cdf(at, df) == pytest.approx(share)
+    assert compute_chi_squared_cdf(0, 3) == 0

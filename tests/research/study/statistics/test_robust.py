@@ -7,7 +7,12 @@ from math import inf
 import numpy as np
 import pytest
 
-from metagraph.research.study.statistics.robust import censored_mean, hodges_lehmann, leave_one_out, odd_ones
+from metagraph.research.study.statistics.robust import (
+    censored_mean,
+    compute_hodges_lehmann,
+    find_odd_ones,
+    leave_one_out,
+)
 from metagraph.research.study.statistics.small_samples import mean
 from tests.thorough import many
 
@@ -18,15 +23,15 @@ AFTER = (0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29)
 
 def test_nothing_has_no_middle_and_one_value_no_interval() -> None:
     with pytest.raises(ValueError, match="no values"):
-        hodges_lehmann([])
-    assert hodges_lehmann([3.0]).low is None
-    assert hodges_lehmann([1.0, 2.0, 3.0, 4.0, 5.0]).low is None, "five pairs cannot reach 95 %"
-    six = hodges_lehmann([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+        compute_hodges_lehmann([])
+    assert compute_hodges_lehmann([3.0]).low is None
+    assert compute_hodges_lehmann([1.0, 2.0, 3.0, 4.0, 5.0]).low is None, "five pairs cannot reach 95 %"
+    six = compute_hodges_lehmann([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
     assert (six.low, six.value, six.high) == (1.0, 3.5, 6.0), "the whole range"
 
 
 def test_the_middle_of_all_means_is_that_of_the_textbook() -> None:
-    found = hodges_lehmann([b - a for a, b in zip(BEFORE, AFTER, strict=True)])
+    found = compute_hodges_lehmann([b - a for a, b in zip(BEFORE, AFTER, strict=True)])
     assert (found.value, found.low, found.high) == (
         pytest.approx(-0.46),
         pytest.approx(-0.786),
@@ -36,19 +41,19 @@ def test_the_middle_of_all_means_is_that_of_the_textbook() -> None:
 
 def test_many_values_use_the_normal_distribution_of_ranks() -> None:
     rng = np.random.default_rng(2)
-    few = hodges_lehmann((x := rng.normal(0, 1, 25)).tolist())
-    more = hodges_lehmann([*x.tolist(), float(np.median(x))])
+    few = compute_hodges_lehmann((x := rng.normal(0, 1, 25)).tolist())
+    more = compute_hodges_lehmann([*x.tolist(), float(np.median(x))])
     assert few.low is not None and more.low is not None and abs(few.low - more.low) < 0.05
 
 
 def test_one_odd_value_moves_the_mean_and_not_the_middle() -> None:
     values = [0.8 + 0.02 * k for k in range(15)] + [4.0]
-    assert odd_ones(values) == [15]
-    assert hodges_lehmann(values).value == pytest.approx(0.95, abs=0.02)
+    assert find_odd_ones(values) == [15]
+    assert compute_hodges_lehmann(values).value == pytest.approx(0.95, abs=0.02)
     assert mean(values).value > 1.1
     without = leave_one_out(values)
     assert min(w.value for w in without) == without[15].value == pytest.approx(0.94)
-    assert odd_ones([1.0] * 9 + [2.0]) == [] and odd_ones([1, 2, 3, 99]) == []
+    assert find_odd_ones([1.0] * 9 + [2.0]) == [] and find_odd_ones([1, 2, 3, 99]) == []
     assert leave_one_out([1.0, 2.0]) == []
 
 

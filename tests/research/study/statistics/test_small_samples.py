@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from metagraph.research.study.statistics import small_samples as s
 from metagraph.research.study.statistics.student_t import (
-    incomplete_beta,
-    t_cdf,
-    t_noncentral,
+    compute_incomplete_beta,
+    compute_t_cdf,
+    compute_t_noncentral,
     t_quantile,
     t_two_sided,
 )
@@ -43,16 +43,16 @@ def test_nobody_has_no_mean() -> None:
 
 
 def test_one_person_has_a_mean_but_no_interval_and_no_test() -> None:
-    assert triple(s.geometric_mean([20.0])) == (pytest.approx(20.0), None, None)
+    assert triple(s.compute_geometric_mean([20.0])) == (pytest.approx(20.0), None, None)
     assert s.paired_t([2.0], [1.0]).p is None
-    assert s.effect_size([2.0], [1.0]) is None
-    assert not s.geometric_mean([1.0]).holds(1.0)
+    assert s.compute_effect_size([2.0], [1.0]) is None
+    assert not s.compute_geometric_mean([1.0]).holds(1.0)
 
 
 def test_no_time_has_no_logarithm() -> None:
     for bad in (0.0, -1.0, inf, float("nan")):
         with pytest.raises(ValueError, match="has no logarithm"):
-            s.geometric_mean([1.0, bad])
+            s.compute_geometric_mean([1.0, bad])
 
 
 def test_pairs_need_as_many_of_both() -> None:
@@ -66,7 +66,7 @@ def test_people_who_are_all_alike_have_an_interval_without_width() -> None:
     assert s.paired_t([3.0, 3.0], [3.0, 3.0]).p == 1.0
     found, test = s.welch([1.0, 1.0], [3.0, 3.0])
     assert (triple(found), test.p, test.statistic) == ((-2.0, -2.0, -2.0), 0.0, -inf)
-    assert s.effect_size([3.0, 3.0, 3.0], [1.0, 1.0, 1.0]) is None
+    assert s.compute_effect_size([3.0, 3.0, 3.0], [1.0, 1.0, 1.0]) is None
 
 
 def test_a_group_of_one_has_no_interval() -> None:
@@ -99,12 +99,12 @@ def test_holm_by_hand() -> None:
 
 
 def test_the_practice_of_a_perfect_learner_is_found() -> None:
-    found = s.power_law([100 * n**-0.4 for n in range(1, 20)])
+    found = s.fit_power_law([100 * n**-0.4 for n in range(1, 20)])
     assert found is not None
     slope, first = found
     assert triple(slope) == (close(-0.4),) * 3
     assert first == close(100.0)
-    assert s.power_law([2.0, 1.0]) is None
+    assert s.fit_power_law([2.0, 1.0]) is None
 
 
 def test_order_is_told_from_the_condition() -> None:
@@ -144,16 +144,16 @@ def test_students_t_as_published() -> None:
     assert t_quantile(0.025, 3) == close(-3.1824463052837078)
     assert t_two_sided(3.3, 11) == close(0.007077990164459755)
     assert t_two_sided(40, 5000) == pytest.approx(8.41485047193577e-304, rel=1e-8)
-    assert t_cdf(0.0, 4) == 0.5
-    assert t_noncentral(2.1, 6, 1.3) == close(0.729203993214758)
-    assert t_noncentral(-0.4, 3, 0.5) == close(0.1954083082328511)
-    assert t_noncentral(20.0, 9, 18.0) == close(0.6053249088752901)
+    assert compute_t_cdf(0.0, 4) == 0.5
+    assert compute_t_noncentral(2.1, 6, 1.3) == close(0.729203993214758)
+    assert compute_t_noncentral(-0.4, 3, 0.5) == close(0.1954083082328511)
+    assert compute_t_noncentral(20.0, 9, 18.0) == close(0.6053249088752901)
     with pytest.raises(ValueError, match="there is no t"):
         t_quantile(1.0, 3)
 
 
 def test_means_ratios_and_their_test_as_scipy_has_them() -> None:
-    assert triple(s.geometric_mean(A)) == (
+    assert triple(s.compute_geometric_mean(A)) == (
         close(486.90877390478903),
         close(344.93662161640077),
         close(687.315116018961),
@@ -181,7 +181,7 @@ def test_welch_as_scipy_has_it() -> None:
 
 
 def test_sizes_of_effects_and_studies_as_scipy_and_statsmodels_have_them() -> None:
-    found = s.effect_size(s.logs(A), s.logs(B))
+    found = s.compute_effect_size(s.logs(A), s.logs(B))
     assert triple(found) == (close(7.022459538745655), close(3.816024964508703), close(12.01014228550578))
     for n, effect, wanted in (
         (5, 0.8, 0.2809920635173735),
@@ -190,14 +190,14 @@ def test_sizes_of_effects_and_studies_as_scipy_and_statsmodels_have_them() -> No
         (2, 3.0, 0.26077071422910936),
         (100, 0.2, 0.508264806621038),
     ):
-        assert s.paired_power(n, effect) == close(wanted)
+        assert s.compute_paired_power(n, effect) == close(wanted)
     assert [s.count_pairs_needed(e) for e in (0.5, 0.8, 0.2, -2.0)] == [34, 15, 199, 5]
     assert s.count_pairs_needed(0.0) is None
-    assert s.paired_power(1, 1.0) == 0.0
+    assert s.compute_paired_power(1, 1.0) == 0.0
 
 
 def test_practice_as_least_squares_have_it() -> None:
-    found = s.power_law([92.0, 71.5, 66.0, 50.25, 55.0, 43.5, 40.0, 44.25])
+    found = s.fit_power_law([92.0, 71.5, 66.0, 50.25, 55.0, 43.5, 40.0, 44.25])
     assert found is not None
     assert triple(found[0]) == (
         close(-0.394297905169391),
@@ -214,7 +214,7 @@ def test_it_agrees_with_scipy() -> None:
             theirs.t.ppf([0.51, 0.9, 0.9999], df), rel=1e-9
         )
         for shift in (0.0, 1.5, 8.0):
-            assert [t_noncentral(t, df, shift) for t in (-2.0, 0.0, 3.0, 11.0)] == pytest.approx(
+            assert [compute_t_noncentral(t, df, shift) for t in (-2.0, 0.0, 3.0, 11.0)] == pytest.approx(
                 theirs.nct.cdf([-2.0, 0.0, 3.0, 11.0], df, shift), abs=1e-9
             )
 
@@ -225,12 +225,14 @@ def test_it_agrees_with_scipy() -> None:
 @given(st.floats(0.3, 300), st.floats(0.3, 300), st.floats(0, 1))
 def test_both_ends_of_the_beta_function_are_all_of_it(a: float, b: float, x: float) -> None:
     x = round(x, 9)  # what is left of 1 has to be known as well
-    assert incomplete_beta(a, b, x) + incomplete_beta(b, a, 1 - x) == pytest.approx(1, abs=1e-9)
+    assert compute_incomplete_beta(a, b, x) + compute_incomplete_beta(b, a, 1 - x) == pytest.approx(
+        1, abs=1e-9
+    )
 
 
 @given(st.floats(0.001, 0.999), st.floats(1, 500))
 def test_a_share_of_a_t_of_a_share_is_that_share(share: float, df: float) -> None:
-    assert t_cdf(t_quantile(share, df), df) == pytest.approx(share, abs=1e-12)
+    assert compute_t_cdf(t_quantile(share, df), df) == pytest.approx(share, abs=1e-12)
 
 
 @given(st.lists(st.tuples(st.floats(1, 1e4), st.floats(1, 1e4)), min_size=2, max_size=12), st.floats(0.1, 10))
