@@ -3,4 +3,4 @@ OSC.
 """
 
 PORT, OSC_PORT = 8765, 8766  # of WebSocket and of OSC, where none is given
-VMC_PORT = 39539  # where programs that receive VMC listen unless they are told otherwise
+VMC_PORT = 39539  # where programs that receive VMC listen by default

@@ -39,7 +39,7 @@ EXPRESSIONS = {
 _THUMB = {"Metacarpal": "Proximal", "Proximal": "Intermediate"}  # VRM 1.0's bones of the thumb -> Unity's
 
 
-def unity_bone(bone: str) -> str:
+def name_unity_bone(bone: str) -> str:
     """Return Unity's name of a humanoid bone of VRM 1.0's: leftThumbMetacarpal is `LeftThumbProximal`."""
     for part, name in _THUMB.items():
         if bone.endswith(f"Thumb{part}"):
@@ -90,7 +90,7 @@ class VmcBody:
 
         return cls(
             skeleton,
-            tuple(unity_bone(bone) for bone, _ in order),
+            tuple(name_unity_bone(bone) for bone, _ in order),
             np.array([joint for _, joint in order]),
             tuple(nearest(joint) for _, joint in order),
             stand,

@@ -14,9 +14,9 @@ from metagraph.common.wording import phrase
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.half_labels import (
+    find_half_label,
     find_layers,
     find_stance_named,
-    half_label_of,
     place_complete,
     set_half_labels,
 )
@@ -92,7 +92,7 @@ def find_row(project: Project, ident: str) -> ActionRow | None:
     return ActionRow(ident, ident, None) if ident in project.clips and ident not in project.uses else None
 
 
-def cell_text(project: Project, row: ActionRow, column: Column) -> str:
+def read_cell(project: Project, row: ActionRow, column: Column) -> str:
     """Return what a cell says; "" for what is not set or has no meaning in its row. Times are seconds of the
     clip with two decimals, *stands out* is per cent.
     """
@@ -148,7 +148,7 @@ def write_cells(project: Project, cells: Mapping[Cell, str]) -> WrittenCells:
     for ident, texts in rows.items():
         row = find_row(project, ident)
         for column, text in tuple(texts.items()):
-            if row is not None and text == cell_text(project, row, column):
+            if row is not None and text == read_cell(project, row, column):
                 del texts[column]  # numbers are shown rounded: the same text is the same value
                 continue
             why = find_cell_refusal(row, column, texts) if row is not None else _GONE
@@ -219,7 +219,7 @@ def _half_text(project: Project, clip: str, column: Column) -> str:
         return project.clips[clip].name
     if column not in LABEL_COLUMNS:
         return ""
-    value = getattr(half_label_of(project, clip), column)
+    value = getattr(find_half_label(project, clip), column)
     return ", ".join(value) if column == "tags" else str(value)
 
 
@@ -247,7 +247,7 @@ def _write_half_labels(project: Project, rows: Rows, refused: dict[Cell, str]) -
         fields: dict[str, Any] = {str(column): text for column, text in texts.items()}
         if "tags" in fields:
             fields["tags"] = _split_tags(fields["tags"])
-        known = half_label_of(project, clip)
+        known = find_half_label(project, clip)
         if fields.get("end_stance") and not fields.get("kind", known.kind):
             fields["kind"] = "transition"
         start, end = (fields.get(name, getattr(known, name)) for name in ("stance", "end_stance"))

@@ -18,7 +18,7 @@ from metagraph.graph.requests import RequestError
 from metagraph.live.live_session import LiveSession
 from metagraph.live.osc_bytes import messages_of
 from metagraph.live.server import LiveError, Options, Server, check_live_options
-from metagraph.live.vmc import LARGEST, VmcBody, split_bundles, unity_bone
+from metagraph.live.vmc import LARGEST, VmcBody, name_unity_bone, split_bundles
 from metagraph.live.wire import exchange
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -142,7 +142,7 @@ def test_another_library_reads_the_bundles(sample):
     ],
 )
 def test_bones_have_unitys_names(bone, name):
-    assert unity_bone(bone) == name
+    assert name_unity_bone(bone) == name
 
 
 def test_what_is_no_humanoid_is_refused():
@@ -180,5 +180,5 @@ def test_a_receiver_is_sent_sixty_poses_a_second(sample):
 
 
 def test_a_port_that_cannot_be_is_refused():
-    with pytest.raises(LiveError, match="between 0 and 65535"):
+    with pytest.raises(LiveError, match="from 0 to 65535"):
         check_live_options(Options(vmc=("127.0.0.1", 70000)))

@@ -7,15 +7,15 @@ from dataclasses import replace
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.editing.half_labels import half_label_of
+from metagraph.graph.editing.half_labels import find_half_label
 from metagraph.playback.action_table import (
     COLUMNS,
     ActionRow,
     can_write,
-    cell_text,
     find_row,
     list_rows,
     parse_number,
+    read_cell,
     write_cells,
 )
 
@@ -30,7 +30,7 @@ def ident(project, name):
 
 
 def text(project, row, column):
-    return cell_text(project, find_row(project, row), column)
+    return read_cell(project, find_row(project, row), column)
 
 
 def test_each_action_and_each_clip_without_one_has_a_row(project):
@@ -55,7 +55,7 @@ def test_a_cell_says_what_its_action_is(project):
 
 def test_writing_what_every_cell_says_changes_nothing(project):
     cells = {
-        (row.ident, column): cell_text(project, row, column)
+        (row.ident, column): read_cell(project, row, column)
         for row in list_rows(project)
         for column in COLUMNS
         if can_write(row, column) and column != "prominence"
@@ -175,9 +175,9 @@ def test_a_pasted_table_makes_its_stances_whatever_the_order_of_its_rows(project
 def test_a_clip_without_an_action_is_labelled_in_part(project):
     clip = next(r.ident for r in list_rows(project) if r.action is None)
     written = write_cells(project, {(clip, "end_stance"): "up", (clip, "cooldown"): "3"})
-    assert half_label_of(written.project, clip).kind == "transition"
+    assert find_half_label(written.project, clip).kind == "transition"
     assert "give it a kind and a stance first" in written.refused[clip, "cooldown"]
-    assert cell_text(written.project, ActionRow(clip, clip, None), "end_stance") == "up"
+    assert read_cell(written.project, ActionRow(clip, clip, None), "end_stance") == "up"
     wrong = write_cells(written.project, {(clip, "stance"): "up"})
     assert "another stance" in wrong.refused[clip, "stance"]
 

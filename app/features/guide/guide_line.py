@@ -99,7 +99,7 @@ class GuideLine(QToolBar):
         self.addWidget(held)
         self._timer = QTimer(self, interval=LOOKED)
         self._timer.timeout.connect(self._look)
-        document.changed.connect(lambda *_: self._changed())
+        document.changed.connect(self._changed)
         self.hide()
 
     def begin(self) -> None:
@@ -129,7 +129,7 @@ class GuideLine(QToolBar):
         self.seen = replace(self.seen, exported=True)
         self._go_on()
 
-    def _changed(self) -> None:
+    def _changed(self, *_: object) -> None:
         if self._timer.isActive():
             self.seen = replace(self.seen, project=self.document.project)
             self._go_on()

@@ -47,7 +47,7 @@ LANES = lazy_texts(
 )
 
 
-def named_parts(shell: Shell) -> Iterator[Entry]:
+def list_named_parts(shell: Shell) -> Iterator[Entry]:
     """Return the stances and actions of the project, to go to by typing their names."""
     from app.features.help.command_finder import Entry
 
@@ -92,7 +92,7 @@ def contribute(shell: Shell) -> Contribution:
         places = shell.services[PanelPlaces]
         for ident, dock in places.docks.items():
             yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
-        yield from named_parts(shell)
+        yield from list_named_parts(shell)
 
     recent: list[str] = []  # the commands done from the list, the latest first
 

@@ -18,7 +18,7 @@ from app.features.library.clip_sizes import picture_of
 from app.look.shortening import shorten_middle, shorten_to_font
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import tr
-from metagraph.graph.editing.half_labels import half_label_of
+from metagraph.graph.editing.half_labels import find_half_label
 from metagraph.graph.model import ClipEntry, Kind
 
 
@@ -35,7 +35,7 @@ class ClipInk:
 
 def list_clip_kinds(facts: ClipFacts, entry: ClipEntry) -> list[Kind]:
     """Return what a clip serves as, each once, or will serve as once the rest of its label is known."""
-    known = half_label_of(facts.project, entry.id).kind
+    known = find_half_label(facts.project, entry.id).kind
     return list(dict.fromkeys(a.kind for a in facts.uses(entry))) or ([known] if known else [])
 
 

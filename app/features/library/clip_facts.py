@@ -9,7 +9,7 @@ from app.project.document import Document
 from app.translation import tr
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.clip_mark import ClipMark
-from metagraph.graph.editing.half_labels import half_label_of, has_half_label
+from metagraph.graph.editing.half_labels import find_half_label, has_half_label
 from metagraph.graph.editing.marks import mark_of
 from metagraph.graph.model import Action, ClipEntry, Project
 from metagraph.graph.problem import Problem
@@ -67,7 +67,7 @@ class ClipFacts:
         """Return what a half labelled clip waits for, with a question mark; "" for others."""
         if not has_half_label(self.project, entry.id):
             return ""
-        known = half_label_of(self.project, entry.id)
+        known = find_half_label(self.project, entry.id)
         if not known.kind:
             return tr("kind?")
         return tr("stance?") if known.kind != "transition" or not known.stance else tr("end?")

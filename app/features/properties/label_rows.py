@@ -12,9 +12,9 @@ from app.look.theme import KIND_MARKS, KIND_TITLES
 from app.translation import tr
 from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, common_value
 from app.widgets.vocabulary import vocabulary_title
-from metagraph.graph.editing.half_labels import half_label_of, has_half_label
+from metagraph.graph.editing.half_labels import find_half_label, has_half_label
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Project
-from metagraph.playback.action_table import Column, cell_text, list_clip_rows
+from metagraph.playback.action_table import Column, list_clip_rows, read_cell
 
 
 class LabelRows(QWidget):
@@ -80,7 +80,7 @@ class LabelRows(QWidget):
 
     def _shared(self, name: str) -> object:
         column: Column = name  # type: ignore[assignment]
-        return common_value([cell_text(self._project, row, column) for row in self._rows] or [""])
+        return common_value([read_cell(self._project, row, column) for row in self._rows] or [""])
 
     def _choose(self, name: str, place: int) -> None:
         self.wanted.emit(name, str(self.choosers[name].itemData(place)))
@@ -93,7 +93,7 @@ class LabelRows(QWidget):
 
 def describe_waiting(project: Project, clip: str) -> str:
     """Return what a half labelled clip waits for."""
-    known = half_label_of(project, clip)
+    known = find_half_label(project, clip)
     if not known.kind:
         return tr("It is placed as soon as its kind is known, too.")
     if not known.stance:

@@ -37,20 +37,20 @@ UNITS: Mapping[Column, str] = {
 NUMBERS = frozenset(UNITS) | {"likelihood"}
 
 
-def column_tip(column: Column) -> str:
+def describe_column(column: Column) -> str:
     """Return the title of a column with its unit."""
     unit = UNITS.get(column, "")
     return f"{TITLES[column]} ({unit})" if unit else TITLES[column]
 
 
-def shown_text(column: Column, text: str) -> str:
+def translate_cell(column: Column, text: str) -> str:
     """Return a cell's text in the window's language."""
     if column == "kind" and text:
         return KIND_TITLES[text]
     return vocabulary_title(text) if column in CHOICES and text else text
 
 
-def typed_text(column: Column, typed: str) -> str:
+def parse_typed(column: Column, typed: str) -> str:
     """Return the text of a cell that somebody typed or pasted: words of the window's language or in English,
     or how they begin; kinds also as their keys 1 to 4. What is none of these stays as it is.
     """
@@ -60,7 +60,7 @@ def typed_text(column: Column, typed: str) -> str:
     if column == "kind" and bare in ("1", "2", "3", "4"):
         return KINDS[int(bare) - 1]
     wanted = bare.casefold()
-    names = {word: (word, shown_text(column, word).casefold()) for word in words}
+    names = {word: (word, translate_cell(column, word).casefold()) for word in words}
     exact = [word for word, own in names.items() if wanted in own]
     begun = [word for word, own in names.items() if any(name.startswith(wanted) for name in own)]
     return next(iter(exact or (begun if len(begun) == 1 else [])), bare)
@@ -69,7 +69,7 @@ def typed_text(column: Column, typed: str) -> str:
 def list_choices(project: Project, column: Column, layer: str) -> Sequence[str]:
     """Return what is offered while a cell is edited. layer: the row's, "" for any."""
     if column in CHOICES:
-        return [shown_text(column, word) for word in CHOICES[column]]
+        return [translate_cell(column, word) for word in CHOICES[column]]
     if column in ("stance", "end_stance"):
         graphs = [g for g in project.graphs.values() if not layer or g.layer == layer]
         return list(dict.fromkeys(s.name for g in graphs for s in g.stances.values()))

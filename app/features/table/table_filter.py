@@ -9,11 +9,11 @@ from typing import Literal, get_args
 
 from PySide6.QtCore import QSettings
 
-from app.features.table.cell_words import shown_text
+from app.features.table.cell_words import translate_cell
 from metagraph.graph.editing.half_labels import has_half_label
 from metagraph.graph.model import Project
 from metagraph.graph.name_search import matches_search
-from metagraph.playback.action_table import COLUMNS, ActionRow, cell_text
+from metagraph.playback.action_table import COLUMNS, ActionRow, read_cell
 
 Which = Literal["all", "actions", "waiting", "unplaced"]
 WHICH: tuple[Which, ...] = get_args(Which)
@@ -44,7 +44,7 @@ class TableFilter:
 
 
 def _words(project: Project, row: ActionRow) -> list[str]:
-    return [shown_text(column, cell_text(project, row, column)) for column in SEARCHED]
+    return [translate_cell(column, read_cell(project, row, column)) for column in SEARCHED]
 
 
 def read_filters() -> dict[str, TableFilter]:

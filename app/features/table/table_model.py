@@ -9,21 +9,21 @@ from typing import Any
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt
 from PySide6.QtGui import QBrush, QColor
 
-from app.features.table.cell_words import NUMBERS, TITLES, column_tip, shown_text, typed_text
+from app.features.table.cell_words import NUMBERS, TITLES, describe_column, parse_typed, translate_cell
 from app.features.table.table_filter import TableFilter
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import tr
-from metagraph.graph.editing.half_labels import half_label_of, has_half_label
+from metagraph.graph.editing.half_labels import find_half_label, has_half_label
 from metagraph.graph.model import Project
-from metagraph.playback.action_table import COLUMNS, ActionRow, Cell, Column, can_write, cell_text, list_rows
+from metagraph.playback.action_table import COLUMNS, ActionRow, Cell, Column, can_write, list_rows, read_cell
 
 Index = QModelIndex | QPersistentModelIndex
 Role = Qt.ItemDataRole
 
 
 class TableModel(QAbstractTableModel):
-    """Rows keep their order while they are edited; `sort` and `show_filter` arrange them anew. refused: cells
-    whose last text could not be written, with the reason.
+    """Rows keep their order while they are edited; `sort` and `show_filter` arrange them again. refused: the
+    cells whose last text could not be written, with the reason.
     """
 
     def __init__(self, look: WindowTheme) -> None:
@@ -85,10 +85,10 @@ class TableModel(QAbstractTableModel):
         self.endResetModel()
 
     def _sort_key(self, row: ActionRow, column: Column) -> tuple[Any, ...]:
-        text = cell_text(self.project, row, column)
+        text = read_cell(self.project, row, column)
         if column in NUMBERS:
             return (text == "", float(text or 0.0))
-        parts = re.split(r"(\d+)", shown_text(column, text).casefold())
+        parts = re.split(r"(\d+)", translate_cell(column, text).casefold())
         return (text == "", *((int(p) if n % 2 else p) for n, p in enumerate(parts)))
 
     def show_refused(self, refused: Mapping[Cell, str]) -> None:
@@ -105,11 +105,11 @@ class TableModel(QAbstractTableModel):
     def text(self, index: Index) -> str:
         """Return what a cell says, as it is typed."""
         row, column = self.rows[index.row()], COLUMNS[index.column()]
-        return shown_text(column, cell_text(self.project, row, column))
+        return translate_cell(column, read_cell(self.project, row, column))
 
     def typed(self, index: Index, words: str) -> str:
         """Return the text that typed words stand for in a cell."""
-        return typed_text(COLUMNS[index.column()], words)
+        return parse_typed(COLUMNS[index.column()], words)
 
     def find(self, idents: Iterable[str]) -> list[int]:
         """Return the rows of some ids."""
@@ -129,7 +129,7 @@ class TableModel(QAbstractTableModel):
             if role == Role.DisplayRole:
                 return TITLES[COLUMNS[section]]
             if role == Role.ToolTipRole:
-                return column_tip(COLUMNS[section])
+                return describe_column(COLUMNS[section])
         return section + 1 if role == Role.DisplayRole else None
 
     def flags(self, index: Index) -> Qt.ItemFlag:
@@ -156,16 +156,16 @@ class TableModel(QAbstractTableModel):
         return None
 
     def _shown(self, row: ActionRow, column: Column) -> str:
-        text = cell_text(self.project, row, column)
+        text = read_cell(self.project, row, column)
         if column == "kind" and text:
-            return f"{KIND_MARKS[text]} {shown_text(column, text)}"
-        return shown_text(column, text) or (tr("needed") if self._is_needed(row, column) else "")
+            return f"{KIND_MARKS[text]} {translate_cell(column, text)}"
+        return translate_cell(column, text) or (tr("needed") if self._is_needed(row, column) else "")
 
     def _is_needed(self, row: ActionRow, column: Column) -> bool:
         """Return whether a half labelled clip waits for what a cell would say."""
         if row.action is not None or not has_half_label(self.project, row.clip):
             return False
-        known = half_label_of(self.project, row.clip)
+        known = find_half_label(self.project, row.clip)
         if column == "layer":
             return bool(known.kind and known.stance and not known.layer)
         needed = ("kind", "stance", "end_stance") if known.kind == "transition" else ("kind", "stance")
@@ -174,7 +174,7 @@ class TableModel(QAbstractTableModel):
     def _ink(self, row: ActionRow, column: Column) -> QBrush | None:
         if self._is_needed(row, column):
             return QBrush(QColor(self.look.warning))
-        text = cell_text(self.project, row, column)
+        text = read_cell(self.project, row, column)
         if column == "kind" and text:
             return QBrush(self.look.kind(text))
         return QBrush(QColor(self.look.dim)) if row.action is None or column == "clip" else None

@@ -27,7 +27,7 @@ from app.features.table.cell_words import list_choices
 from app.features.table.table_model import TableModel
 from app.translation import tr
 from app.widgets.restyling import set_sheet
-from metagraph.playback.action_table import COLUMNS, Cell, Column, cell_text
+from metagraph.playback.action_table import COLUMNS, Cell, Column, read_cell
 
 Index = QModelIndex | QPersistentModelIndex
 WIDTHS: dict[Column, int] = {
@@ -72,7 +72,7 @@ class CellEditor(QStyledItemDelegate):
         set_sheet(line, "padding: 0 3px; border-radius: 0")
         model, column = self.view.rows, COLUMNS[index.column()]
         line.setAccessibleName(str(model.headerData(index.column(), Qt.Orientation.Horizontal)))
-        layer = cell_text(model.project, model.rows[index.row()], "layer")
+        layer = read_cell(model.project, model.rows[index.row()], "layer")
         words = list_choices(model.project, column, layer)
         if words:
             completer = QCompleter(list(words), line)

@@ -166,7 +166,7 @@ def _between_eyes(project: Project, bones: Mapping[str, int], eyes: list[int]) -
     return [round(float(x), 6) for x in at[eyes].mean(0) - at[bones["head"]]]
 
 
-def find_standing(skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
+def find_vrm_pose(skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
     """Return the T in which VRM wants a humanoid to stand, on its feet. Raises ExportError for one without
     the bones that VRM needs, or that does not face +Z.
     """
@@ -189,7 +189,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
     project, skeleton = order.project, order.project.skeleton
     assert skeleton is not None
     roles = anatomy.project_roles(project)
-    stand = find_standing(skeleton, roles)
+    stand = find_vrm_pose(skeleton, roles)
     body, notes = mesh_of(order)
     if body is None:
         raise ExportError(

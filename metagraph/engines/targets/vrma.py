@@ -18,7 +18,7 @@ from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
-from metagraph.engines.targets.vrm import UNREPEATED, find_standing, humanoid
+from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_pose, humanoid
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
 from metagraph.graph.face.expression_presets import measure_presets, presets_of
@@ -133,7 +133,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
     project, skeleton = order.project, order.project.skeleton
     assert skeleton is not None
     roles = anatomy.project_roles(project)
-    stand = find_standing(skeleton, roles)
+    stand = find_vrm_pose(skeleton, roles)
     bones = humanoid(skeleton, roles)
     stated = {bone: {"node": joint} for bone, joint in bones.items() if bone not in _EYES}
     actions = list(project.actions())

@@ -21,7 +21,7 @@ UNKNOWN = HalfLabel()
 _Place = tuple[Layer, Kind, str, str | None]  # layer, kind, the ids of the stances it begins and ends in
 
 
-def half_label_of(project: Project, clip: str) -> HalfLabel:
+def find_half_label(project: Project, clip: str) -> HalfLabel:
     """Return what is known of a clip without an action; nothing is known of one that has actions."""
     if clip in project.uses:
         return UNKNOWN
@@ -30,7 +30,7 @@ def half_label_of(project: Project, clip: str) -> HalfLabel:
 
 def has_half_label(project: Project, clip: str) -> bool:
     """Return whether a clip waits for the rest of its label."""
-    return half_label_of(project, clip) != UNKNOWN
+    return find_half_label(project, clip) != UNKNOWN
 
 
 def set_half_labels(project: Project, labels: Mapping[str, Mapping[str, Any]]) -> Project:
@@ -44,7 +44,7 @@ def set_half_labels(project: Project, labels: Mapping[str, Mapping[str, Any]]) -
     for clip, fields in labels.items():
         if clip not in project.clips or clip in project.uses:
             continue
-        known = structs.replace(half_label_of(project, clip), **fields)
+        known = structs.replace(find_half_label(project, clip), **fields)
         if known.kind == "transition" and known.stance and known.stance == known.end_stance:
             raise EditError(phrase("a transition must end in another stance"))
         if known.layer and "layer" not in fields and "stance" in fields:

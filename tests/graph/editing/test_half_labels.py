@@ -9,8 +9,8 @@ from metagraph.graph import edits
 from metagraph.graph.clip_mark import HalfLabel
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.half_labels import (
+    find_half_label,
     follow_stance_name,
-    half_label_of,
     has_half_label,
     place_complete,
     set_half_labels,
@@ -95,7 +95,7 @@ def test_a_stance_of_a_name_that_two_layers_have_waits_for_the_layer(project, fr
 def test_a_stance_of_another_layer_makes_the_layer_unknown_again(project, free):
     project = edits.add_stance(project, "head", "nodding")
     half = set_half_labels(project, {free[0]: {"layer": "arms"}})
-    assert half_label_of(set_half_labels(half, {free[0]: {"stance": "nodding"}}), free[0]) == HalfLabel(
+    assert find_half_label(set_half_labels(half, {free[0]: {"stance": "nodding"}}), free[0]) == HalfLabel(
         stance="nodding"
     )
 
@@ -103,7 +103,7 @@ def test_a_stance_of_another_layer_makes_the_layer_unknown_again(project, free):
 def test_what_is_placed_by_other_means_no_longer_waits(project, free):
     half = set_half_labels(project, {free[0]: {"kind": "gesture"}})
     placed = edits.place_clips(half, [free[0]], "arms", "fidget", next(iter(half.graphs["arms"].stances)))
-    assert half_label_of(placed, free[0]) == HalfLabel()
+    assert find_half_label(placed, free[0]) == HalfLabel()
     assert place_complete(placed).marks == {}
 
 
@@ -121,10 +121,10 @@ def test_clips_with_actions_and_clips_that_are_gone_stay_as_they_are(project):
 
 def test_labels_follow_a_stance_that_is_renamed_or_merged(project, free):
     half = set_half_labels(project, {free[0]: {"stance": "up"}})
-    assert half_label_of(follow_stance_name(half, "arms", "up", "raised"), free[0]).stance == "raised"
+    assert find_half_label(follow_stance_name(half, "arms", "up", "raised"), free[0]).stance == "raised"
     assert follow_stance_name(half, "head", "other", "raised") is half
     ids = {s.name: s.id for s in half.graphs["arms"].stances.values()}
-    assert half_label_of(merge_stances(half, ids["up"], ids["far"]), free[0]).stance == "far"
+    assert find_half_label(merge_stances(half, ids["up"], ids["far"]), free[0]).stance == "far"
 
 
 def test_half_labels_are_saved_with_the_project(project, free, tmp_path):

@@ -8,10 +8,10 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit, QMenu
 
-from app.features.table.cell_words import typed_text
+from app.features.table.cell_words import parse_typed
 from app.features.table.table_filter import TableFilter, keep_filters, read_filters
 from metagraph.graph import edits
-from metagraph.playback.action_table import COLUMNS, cell_text, find_row
+from metagraph.playback.action_table import COLUMNS, find_row, read_cell
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 KEY, CTRL, SHIFT = Qt.Key, Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
@@ -44,7 +44,7 @@ class Hand:
 
     def ident(self, name):
         self.drive.wait(lambda: self.rows.project is self.drive.document.project)
-        return next(r.ident for r in self.rows.rows if cell_text(self.rows.project, r, "name") == name)
+        return next(r.ident for r in self.rows.rows if read_cell(self.rows.project, r, "name") == name)
 
     def index(self, name, column):
         return self.rows.index(self.rows.find([self.ident(name)])[0], COLUMNS.index(column))
@@ -72,7 +72,7 @@ class Hand:
         self.drive.wait(lambda: self.rows.project is self.drive.document.project)
         project = self.drive.document.project
         row = find_row(project, self.ident(name))
-        return cell_text(project, row, column)
+        return read_cell(project, row, column)
 
     def steps(self):
         return self.drive.document.undo_stack.index()
@@ -154,7 +154,7 @@ def test_one_pasted_cell_fills_the_selection_and_what_has_no_place_is_reported(t
     assert {table.says(n, "limb") for n in ("rest short", "rest wave rt")} == {"left"}
     last = table.rows.rows[-1]
     QGuiApplication.clipboard().setText("a\nb\nc")
-    table.click(cell_text(table.rows.project, last, "name"), "tags")
+    table.click(read_cell(table.rows.project, last, "name"), "tags")
     table.drive.do("paste")
     assert "2 pasted cells had no place" in table.panel.message.text()
 
@@ -277,7 +277,7 @@ def test_words_are_replaced_in_a_column_in_one_step(table):
 
 def test_a_click_on_a_title_sorts_and_another_sorts_the_other_way(table):
     table.view.sortByColumn(COLUMNS.index("end"), Qt.SortOrder.DescendingOrder)
-    ends = [float(cell_text(table.rows.project, r, "end")) for r in table.rows.rows]
+    ends = [float(read_cell(table.rows.project, r, "end")) for r in table.rows.rows]
     assert ends == sorted(ends, reverse=True)
 
 
@@ -316,7 +316,7 @@ def test_enter_takes_what_was_typed_or_the_choice_that_was_gone_to(table):
     QTest.keyClick(choices, KEY.Key_Down)
     first = choices.currentIndex().data()
     QTest.keyClick(choices, KEY.Key_Return)
-    assert table.says("rest beat lf", "kind") == typed_text("kind", first) != "fidget"
+    assert table.says("rest beat lf", "kind") == parse_typed("kind", first) != "fidget"
 
 
 @pytest.mark.parametrize(
@@ -333,4 +333,4 @@ def test_enter_takes_what_was_typed_or_the_choice_that_was_gone_to(table):
     ],
 )
 def test_typed_words_are_the_domains_words(column, typed, text):
-    assert typed_text(column, typed) == text
+    assert parse_typed(column, typed) == text
