@@ -193,12 +193,15 @@ def _once(options: Namespace) -> None:
         print(f"differs: {words}", file=sys.stderr)
     for loss in made.losses:
         print(f"loses: {loss}", file=sys.stderr)
+    for number, step in enumerate(made.steps, 1):
+        print(f"next {number}: {step}", file=sys.stderr)
     data: dict[str, Any] = {
         **{path.suffix[1:]: str(path) for path in made.files[:2] if made.target == registry.DEFAULT},
         "target": made.target,
         "files": [str(path) for path in files],
         "clips": made.clips,
         "losses": list(made.losses),
+        "next": list(made.steps),
         **({"differences": differences} if differences else {}),
         "warnings": list(made.warnings),
     }

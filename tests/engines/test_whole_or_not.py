@@ -209,7 +209,11 @@ def test_a_sound_outside_the_project_s_folder_is_copied_where_the_user_chose_it(
     wav(base / "in" / "ho.wav")
     project = with_lines(small, out="../voice/hi.wav", whole=outside.as_posix(), inner="in/ho.wav")
     made = registry.write_for_target(project, "metagraph", tmp_path / "a", Contents(base=base))
-    assert set(files(tmp_path / "a")) - {RECORD} == {*(p.name for p in made.files[:2]), "lines/ho.wav"}
+    assert set(files(tmp_path / "a")) - {RECORD} == {
+        *(p.name for p in made.files[:2]),
+        "lines/ho.wav",
+        "README.md",
+    }
     assert sum("outside the project's folder" in w for w in made.warnings) == 2
     asked: list[Path] = []
     registry.write_for_target(
@@ -301,7 +305,7 @@ def test_an_export_killed_at_any_step_is_whole_or_reported_and_the_next_one_is_w
         if os.waitpid(pid, 0)[1] == 0:
             break  # there are no more steps
         found = {name: content for name, content in files(folder).items() if not name.startswith(".")}
-        assert found.keys() == {"toy.json", "toy.glb"}
+        assert found.keys() == {"toy.json", "toy.glb", "README.md"}
         assert all(content in (states["old"][n], states["new"][n]) for n, content in found.items())
         whole = any(all(states[s][n] == content for n, content in found.items()) for s in states)
         try:

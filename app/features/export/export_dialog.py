@@ -367,8 +367,9 @@ class ExportDialog(QDialog):
             names=names,
             size=size,
         )
+        next_steps = [f"{n}. {tr_phrase(step)}" for n, step in enumerate(made.steps, 1)]
         self.results[made.target] = ExportResult(
-            str(folder), words, "\n".join(map(tr_phrase, made.warnings[:5]))
+            str(folder), "\n".join([words, *next_steps]), "\n".join(map(tr_phrase, made.warnings[:5]))
         )
         if self.target.name == made.target:
             self._show_result()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from functools import cache
@@ -12,10 +12,19 @@ from pathlib import Path
 from metagraph.common.wording import phrase
 from metagraph.engines.export import require_exportable, stem_of
 from metagraph.engines.export_error import ExportError
+from metagraph.engines.targets.next_steps import README, STEPS, list_steps, make_readme
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place_files as move
-from metagraph.engines.targets.target import BARE, Contents, ExportOrder, ExportTarget, TargetReport, Tell
-from metagraph.formats.atomic import sync_together
+from metagraph.engines.targets.target import (
+    BARE,
+    Contents,
+    ExportedFiles,
+    ExportOrder,
+    ExportTarget,
+    TargetReport,
+    Tell,
+)
+from metagraph.formats.atomic import sync_together, write_atomically
 from metagraph.formats.store import writable
 from metagraph.graph.model import Project
 
@@ -97,11 +106,26 @@ def write_for_target(
         order = ExportOrder(project, staged.path, stem_of(project), contents)
         if tell is not None:
             order = replace(order, tell=tell)
+        lost = losses(project, name)
         with sync_together():
-            made = chosen.write(order)
+            made = _with_readme(chosen.write(order), chosen, order, lost)
         names = tuple(path.relative_to(staged.path).as_posix() for path in made.files)
         move(staged, place, names, name, project.name, overwrite)
     clips = len(project.uses.keys() | {project.base.clip} - {None})
+    files = tuple(place / n for n in names)
     return TargetReport(
-        name, tuple(place / n for n in names), clips, losses(project, name), (*made.notes, *warnings)
+        name, files, clips, lost, (*made.notes, *warnings), list_steps(name, stem_of(project))
     )
+
+
+def _with_readme(
+    made: ExportedFiles, chosen: ExportTarget, order: ExportOrder, lost: Sequence[str]
+) -> ExportedFiles:
+    """Write a README into an export's folder, unless the target has one of its own."""
+    path = order.folder / README
+    if chosen.name not in STEPS or path in made.files:
+        return made
+    names = [file.relative_to(order.folder).as_posix() for file in made.files]
+    text = make_readme(chosen.name, chosen.title, chosen.files, order.stem, names, lost)
+    write_atomically(path, text.encode())
+    return replace(made, files=(*made.files, path))

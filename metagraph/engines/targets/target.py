@@ -98,10 +98,11 @@ class ExportTarget:
 
 @dataclass(frozen=True)
 class TargetReport:
-    """What was written for a target. `losses` are in words, for this project."""
+    """What was written for a target. `losses` are in words, for this project; `steps` are what to do next."""
 
     target: str
     files: tuple[Path, ...]
     clips: int
     losses: tuple[str, ...] = ()
     warnings: tuple[str, ...] = field(default_factory=tuple)
+    steps: tuple[str, ...] = ()

@@ -1,0 +1,209 @@
+"""What to do with an export: the steps for each target, and the README that stands in the export's folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from metagraph import __version__
+from metagraph.common.wording import phrase
+
+README = "README.md"
+MORE = 8  # files of one ending that are listed by name; more are counted
+
+
+@dataclass(frozen=True)
+class NextSteps:
+    """`steps` are what to do, in order, for people; `{stem}` is the name of the export's files. `code` is a
+    first program in `language`, "" for none. `page` is the manual's page.
+    """
+
+    steps: tuple[str, ...]
+    page: str
+    language: str = ""
+    code: str = ""
+
+
+STEPS: Mapping[str, NextSteps] = {
+    "metagraph": NextSteps(
+        (
+            phrase("Load '{stem}.json' with the runtime of your language; '{stem}.glb' lies beside it."),
+            phrase("Ask for gestures, speech and gaze, and apply the pose in each frame."),
+        ),
+        "engines/python",
+        "python",
+        'from metagraph import Character\n\ncharacter = Character("{stem}.json")\n'
+        'character.ask({"do": "gesture", "after": 1})\npose = character.update(0.0)\n',
+    ),
+    "web": NextSteps(
+        (
+            phrase("Serve this folder with any web server, for example: python3 -m http.server"),
+            phrase(
+                "Open the address that the server names. Scripts need a server; a double click is not enough."
+            ),
+            phrase("To use the character in a page of your own, copy the lines below."),
+        ),
+        "engines/web-page",
+        "html",
+        '<script type="module" src="metagraph-character.js"></script>\n'
+        '<metagraph-character id="me" src="{stem}.json"></metagraph-character>\n'
+        "<button onclick=\"me.say('Hello!')\">Say hello</button>\n",
+    ),
+    "javascript": NextSteps(
+        (
+            phrase("Copy this folder to where your program or page can read it."),
+            phrase("Import the runtime from 'metagraph/'. Its README has three.js and all calls."),
+        ),
+        "engines/javascript",
+        "js",
+        'import { readFileSync } from "node:fs";\nimport { Character, load } from "./metagraph/index.js";\n\n'
+        'const graph = load(readFileSync("{stem}.json", "utf8"), readFileSync("{stem}.glb"));\n'
+        'const character = new Character(graph, { seed: 7 });\ncharacter.ask({ do: "gesture", after: 1 });\n'
+        "character.update(0);\nconsole.log(character.pose());\n",
+    ),
+    "unity": NextSteps(
+        (
+            phrase("Copy 'Metagraph' into the Packages folder of your Unity project."),
+            phrase("Import '{stem}.glb' with glTFast or UnityGLTF, and put it into the scene."),
+            phrase(
+                "Add the component MetagraphCharacter to it, and give it the JSON and the GLB as .glb.bytes."
+            ),
+        ),
+        "engines/unity",
+        "csharp",
+        'character.Gesture("greeting");\ncharacter.Say("Hello! How are you?");\n',
+    ),
+    "cpp": NextSteps(
+        (
+            phrase("Put this folder on the include path of your program. The headers need only C++17."),
+            phrase("Load the two files, ask, and apply the pose in each frame."),
+        ),
+        "engines/cpp",
+        "cpp",
+        '#include "metagraph/metagraph.hpp"\n\n'
+        "// json and glb are the bytes of {stem}.json and {stem}.glb\n"
+        'const metagraph::Loaded loaded = metagraph::load(json, glb, size, "{stem}.json");\n'
+        "metagraph::Character character(loaded.graph);\n"
+        'character.ask(R"({"do": "gesture", "after": 1})");\n',
+    ),
+    "unreal": NextSteps(
+        (
+            phrase("Export into the folder of your .uproject, open the project and let it build the plugin."),
+            phrase("Import '{stem}.json' as a Metagraph asset and '{stem}.glb' as a skeletal mesh."),
+            phrase("Give an actor the mesh and a Metagraph component, and set the component's asset."),
+            phrase("Put the node Metagraph before the output pose of the mesh's animation blueprint."),
+        ),
+        "engines/unreal",
+    ),
+    "playcanvas": NextSteps(
+        (
+            phrase("Upload '{stem}.glb', and add an anim component to its entity."),
+            phrase("Load '{stem}.animstategraph.json', and assign each animation to the state of its name."),
+            phrase("Ask with the numbers of '{stem}.numbers.json'."),
+        ),
+        "engines/playcanvas",
+    ),
+    "godot-tree": NextSteps(
+        (
+            phrase("Copy this folder into your Godot project, and put '{stem}.glb' into a scene."),
+            phrase(
+                "Give its AnimationTree the resource '{stem}.tres'. '{stem}.godot.md' names what it takes."
+            ),
+        ),
+        "engines/godot",
+    ),
+    "interactivity": NextSteps(
+        (
+            phrase("Load '{stem}.glb' in a viewer that supports KHR_interactivity. It plays by itself."),
+            phrase("Send it the events of '{stem}.events.json'."),
+        ),
+        "engines/gltf-interactivity",
+    ),
+    "xstate": NextSteps(
+        (
+            phrase(
+                "Create a machine of XState 5 from '{stem}.xstate.json', and provide 'play' and 'missed'."
+            ),
+            phrase("In 'play', start the animation of that name from '{stem}.glb'."),
+        ),
+        "engines/state-charts",
+    ),
+    "scxml": NextSteps(
+        (
+            phrase("Run '{stem}.scxml' in an interpreter of SCXML."),
+            phrase("Play the animation that each state names from '{stem}.glb'."),
+        ),
+        "engines/state-charts",
+    ),
+    "bml": NextSteps(
+        (phrase("Send the blocks to a realizer. '{stem}.vocabulary.json' lists the names they may use."),),
+        "engines/bml-systems",
+    ),
+    "vrm": NextSteps(
+        (phrase("Load '{stem}.vrm' in a program that reads VRM 1.0."),),
+        "engines/vrm",
+    ),
+    "vrma": NextSteps(
+        (
+            phrase("Load an avatar in a program that plays VRM animations."),
+            phrase("Play a file on it. Each is named after its action."),
+        ),
+        "engines/vrm",
+    ),
+    "usd": NextSteps(
+        (phrase("Open '{stem}.usda'. The variant set 'clip' chooses the clip that plays."),),
+        "engines/usd",
+    ),
+    "smartbody": NextSteps(
+        (phrase("Load the motions of 'motions/', then run '{stem}_gestures.py'."),),
+        "engines/bml-systems",
+    ),
+    "sumerian": NextSteps(
+        (phrase("Give 'gesture.json' to the host, and load its animations from '{stem}.glb'."),),
+        "engines/bml-systems",
+    ),
+}
+
+
+def list_steps(target: str, stem: str) -> tuple[str, ...]:
+    """Return what to do with an export of files called `stem`, in words; nothing for a target that brings a
+    README of its own.
+    """
+    found = STEPS.get(target)
+    return tuple(phrase(str(step), stem=stem) for step in found.steps) if found is not None else ()
+
+
+def make_readme(
+    target: str, title: str, what: str, stem: str, files: Iterable[str], losses: Sequence[str]
+) -> str:
+    """Return the README of an export: its files, what to do, the first lines of code, and what is lost.
+
+    title, what: the target's title and what it writes, in words. files: names relative to the folder.
+    """
+    found = STEPS[target]
+    lines = [f"# {stem}: {title}", "", f"Made by Metagraph {__version__}: {what}.", "", "## Next", ""]
+    lines += [f"{n}. {step}" for n, step in enumerate(list_steps(target, stem), 1)]
+    if found.code:
+        lines += ["", f"```{found.language}", found.code.replace("{stem}", stem).rstrip(), "```"]
+    lines += ["", f"The manual has more, on its page `{found.page}`.", "", "## Files", ""]
+    lines += [f"- {line}" for line in _list_files(files)]
+    lines += ["", "## What this format loses", ""]
+    lines += [f"- {loss}" for loss in losses] or ["Nothing."]
+    return "\n".join(lines) + "\n"
+
+
+def _list_files(files: Iterable[str]) -> list[str]:
+    """Return files and folders in words, many of one kind counted."""
+    inside: dict[str, int] = {}
+    alone: dict[str, list[str]] = {}
+    for name in sorted(files):
+        path = PurePosixPath(name)
+        if len(path.parts) > 1:
+            inside[path.parts[0]] = inside.get(path.parts[0], 0) + 1
+        else:
+            alone.setdefault(path.suffix, []).append(name)
+    out: list[str] = []
+    for suffix, names in alone.items():
+        out += [f"`{name}`" for name in names] if len(names) <= MORE else [f"{len(names)} files `*{suffix}`"]
+    return [*out, *(f"`{folder}/`, {count} files" for folder, count in inside.items())]

@@ -1,0 +1,48 @@
+"""The README of an export, and what is said to do next."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from metagraph.engines.targets import registry
+from metagraph.engines.targets.next_steps import README, STEPS, list_steps, make_readme
+
+OWN = {"godot", "blender", "unity-controller"}  # these bring a README, or want a .meta beside each file
+
+
+def test_every_target_says_what_to_do_next_or_brings_a_readme():
+    assert STEPS.keys() | OWN == registry.targets().keys()
+    assert not STEPS.keys() & OWN
+
+
+@pytest.mark.parametrize("target", sorted(STEPS))
+def test_steps_name_the_files_as_they_are_called(target):
+    steps = list_steps(target, "my hero")
+    assert steps and not any("{" in step for step in steps)
+    assert page_of(target).is_file()
+
+
+def page_of(target: str) -> Path:
+    return Path(__file__).parents[2] / "docs" / f"{STEPS[target].page}.md"
+
+
+def test_an_export_has_a_readme_with_its_files_its_steps_and_what_it_loses(toy, tmp_path):
+    report = registry.write_for_target(toy.project(), "xstate", tmp_path)
+    text = (tmp_path / README).read_text(encoding="utf-8")
+    assert tmp_path / README in report.files
+    assert report.steps == list_steps("xstate", "toy")
+    assert "`toy.xstate.json`" in text and "1. Create a machine of XState 5 from 'toy.xstate.json'" in text
+    assert all(loss in text for loss in report.losses)
+    registry.write_for_target(toy.project(), "xstate", tmp_path)  # it is replaced without a question
+
+
+def test_many_files_of_one_kind_are_counted():
+    text = make_readme("vrma", "VRM animations", "files", "a", [f"{n}.vrma" for n in range(20)], ())
+    assert "20 files `*.vrma`" in text and "Nothing." in text
+
+
+def test_a_target_with_a_readme_keeps_its_own(toy, tmp_path):
+    registry.write_for_target(toy.project(), "godot", tmp_path)
+    assert "Made by Metagraph" not in (tmp_path / README).read_text(encoding="utf-8")
