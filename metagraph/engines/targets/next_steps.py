@@ -42,7 +42,7 @@ STEPS: Mapping[str, NextSteps] = {
             phrase(
                 "Open the address that the server names. Scripts need a server; a double click is not enough."
             ),
-            phrase("To use the character in a page of your own, copy the lines below."),
+            phrase("For the character in a page of your own, use the lines in README.md."),
         ),
         "engines/web-page",
         "html",
