@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sample_clips.make import shapes
+from sample_clips.make.face import face_form, skull
 from sample_clips.make.looks import Look
 from sample_clips.make.mannequin_skeleton import ARM
 from sample_clips.make.sculpt import (
@@ -23,7 +24,7 @@ from sample_clips.make.sculpt import (
     union,
     without,
 )
-from sample_clips.make.shapes import CUFF, HEM, JOINT, Part, step
+from sample_clips.make.shapes import CUFF, JOINT, Part, step
 
 Array = NDArray[Any]
 
@@ -48,57 +49,50 @@ def _short() -> Field:
 
 
 def _bob() -> Field:
-    """To the chin, parted on the side, behind the ears."""
+    """What lies under the locks: a cap from the hairline to the nape."""
     whole = union(
         [
-            ellipsoid((0, 1.6420, -0.0170), (0.0895, 0.0945, 0.1030)),
-            mirrored(cone((0.0720, 1.6350, -0.0160), (0.0770, 1.5260, -0.0260), 0.0260, 0.0240)),
-            ellipsoid((0, 1.5750, -0.0620), (0.0820, 0.0850, 0.0480)),
-            cone((0.028, 1.7060, 0.045), (-0.058, 1.6500, 0.060), 0.026, 0.016),
-            cone((0.028, 1.7060, 0.045), (0.066, 1.6600, 0.046), 0.022, 0.015),
+            grown(skull(), 0.0050),
+            mirrored(cone((0.0660, 1.6300, -0.0250), (0.0680, 1.5400, -0.0350), 0.0170, 0.0150)),
+            ellipsoid((0, 1.5850, -0.0560), (0.0760, 0.0700, 0.0420)),
         ],
-        0.030,
+        0.026,
     )
-    face = union(
-        [
-            ellipsoid((0.0, 1.5800, 0.1000), (0.0640, 0.0980, 0.0900)),
-            ellipsoid((0.018, 1.6500, 0.1050), (0.0300, 0.0330, 0.0420)),
-            cone((0, 1.500, 0.02), (0, 1.440, 0.02), 0.062, 0.062),
-        ],
-        0.016,
-    )
-    hair = without(whole, face, 0.010)
-    hair = common(hair, plane((0, 1.508, -0.02), (0, -1.0, 0.16)), 0.010)
-    return _strands(hair, 19, 0.0010)
+    return common(whole, _hairline, 0.006)
+
+
+def _hairline(p: Array) -> Array:
+    """Positive where no hair grows: the face, from the forehead past the temples to before the ears."""
+    x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+    edge = np.interp(y, [1.500, 1.560, 1.605, 1.640, 1.665, 1.690, 1.720], [-0.022, -0.012, 0.010, 0.034, 0.050, 0.064, 0.090])
+    edge = edge + 0.35 * np.maximum(0.050 - x, 0) * step(1.630, 1.680, y)
+    return np.asarray(0.8 * (z - edge))
 
 
 def _receding() -> Field:
-    """Short, thin, far back at the temples."""
-    cap = ellipsoid((0, 1.6375, -0.0185), (0.0790, 0.0885, 0.0950))
-    sides = mirrored(ellipsoid((0.052, 1.625, -0.020), (0.0300, 0.0520, 0.0640)))
+    """What lies under short hair on the sides and the back: it ends flat on the skin."""
 
     def bare(p: Array) -> Array:
-        forehead = plane((0, 1.6960, 0.050), (0, -0.45, 1.0))(p)
-        temple = mirrored(plane((0.030, 1.66, 0.030), (0.75, 0.30, 1.0)))(p)
-        ear = plane((0, 1.60, 0.008), (0, 0.10, 1.0))(p)
-        nape = plane((0, 1.5640, -0.060), (0, -1.0, 0.62))(p)
-        front = np.maximum(np.minimum(forehead, ear + 0.05), np.minimum(temple, ear + 0.02))
-        return np.asarray(np.maximum(np.maximum(np.where(p[:, 1] > 1.640, front, ear), nape), -0.02))
+        x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+        edge = np.interp(y, [1.555, 1.580, 1.605, 1.640, 1.660, 1.690], [-0.070, -0.034, 0.004, 0.006, -0.030, -0.080])
+        return np.asarray(0.7 * (z - edge) + 0.0 * x)
 
-    return _strands(common(union([cap, sides], 0.02), bare, 0.010), 19, 0.0004)
+    return common(grown(skull(), 0.0026), bare, 0.012)
 
 
 def _beard() -> Field:
-    """Short, on jaw, chin and upper lip; round the mouth it leaves the lips free."""
-    skin = shapes.face_form()
-    cheek = mirrored(plane((0.046, 1.556, 0.050), (0.30, 1.0, -0.28)))
-    mouth = ellipsoid((0, shapes.MOUTH_Y + 0.0005, 0.090), (0.0265, 0.0098, 0.050))
-    neck = plane((0, 1.490, 0.030), (0, -1.0, -0.45))
-    ear = mirrored(plane((0.0, 1.560, 0.012), (0.0, 0.20, -1.0)))
+    """What lies under a short beard on jaw, chin and upper lip; it leaves the lips free."""
+    mouth = ellipsoid((0, shapes.MOUTH_Y - 0.001, 0.090), (0.0265, 0.0098, 0.050))
+    ear = mirrored(plane((0.0, 1.560, 0.008), (0.0, 0.20, -1.0)))
 
-    out = common(grown(skin, 0.0042), cheek, 0.006)
-    out = without(out, mouth, 0.003)
-    return common(common(out, neck, 0.006), ear, 0.006)
+    def cheek(p: Array) -> Array:
+        x, y = np.abs(p[:, 0]), p[:, 1]
+        top = np.interp(x, [0, 0.012, 0.026, 0.034, 0.048, 0.060], [1.5570, 1.5580, 1.5540, 1.5500, 1.5560, 1.5760])
+        low = np.interp(x, [0, 0.020, 0.045, 0.060], [1.4960, 1.4980, 1.5120, 1.5300])
+        return np.asarray(np.maximum(0.7 * (y - top), 0.7 * (low - y)))
+
+    out = common(grown(face_form(), 0.0016), cheek, 0.004)
+    return common(without(out, mouth, 0.003), ear, 0.006)
 
 
 def _opening(p: Array) -> Array:
@@ -125,25 +119,24 @@ def _coat() -> Field:
     return field
 
 
-def _sweater(sleeve: float) -> Field:
-    body = common(shapes.torso(), plane((0, HEM, 0), (0, -1, 0)), 0.012)
-    body = common(body, plane(shapes.COLLAR_AT + shapes.COLLAR_UP * 0.002, shapes.COLLAR_UP), 0.004)
-    return union([body, mirrored(shapes.sleeve(CUFF - ARM * sleeve))], 0.050)
-
-
 def _forearm() -> Field:
     """A bare left forearm, from inside its sleeve to inside the hand."""
     elbow, wrist = JOINT["LeftLowerArm"], JOINT["LeftHand"]
     return common(
         union(
             [
-                cone(elbow + ARM * 0.11, wrist + ARM * 0.002, 0.0305, 0.0222, flat=(1, 1.0, 0.97)),
+                cone(elbow + ARM * 0.11, wrist + ARM * 0.002, 0.0315, 0.0205, flat=(1, 1.0, 0.95)),
             ],
             0.02,
         ),
         plane(elbow + ARM * 0.125, -ARM),
         0.002,
     )
+
+
+def bare_arm() -> Field:
+    """The left hand and forearm as one form, whose normals both take."""
+    return union([shapes.hand(), _forearm()], 0.020)
 
 
 def _coat_size(p: Array) -> Array:
@@ -156,7 +149,7 @@ def _coat_size(p: Array) -> Array:
 
 
 def _hair_size(p: Array) -> Array:
-    return np.full(len(p), 0.0085)
+    return np.full(len(p), 0.0120)
 
 
 HAIR: dict[str, Callable[[], Field]] = {"short": _short, "bob": _bob, "receding": _receding}
@@ -170,7 +163,7 @@ def parts(look: Look) -> tuple[Part, ...]:
     box = ((-0.110, 1.480, -0.135), (0.110, 1.755, 0.120))
     out = [known["head"], Part("hair", HAIR[look.hair](), *box, 0.0028, _hair_size), known["palm"]]
     cloth = known["sweater"]
-    out.append(Part("sweater", _sweater(look.sleeve), cloth.low, cloth.high, cloth.cell, cloth.size))
+    out.append(Part("sweater", shapes.sweater(CUFF - ARM * look.sleeve, bust=look.build.bust), cloth.low, cloth.high, cloth.cell, cloth.size))
     out += [known["trousers"], known["shoe"]]
     if look.sleeve > 0:
         out.append(
@@ -189,9 +182,9 @@ def parts(look: Look) -> tuple[Part, ...]:
                 "beard",
                 _beard(),
                 (-0.080, 1.480, -0.030),
-                (0.080, 1.575, 0.110),
+                (0.080, 1.585, 0.110),
                 0.0022,
-                lambda p: np.full(len(p), 0.0052),
+                lambda p: np.full(len(p), 0.0070),
             )
         )
     if look.coat:
