@@ -4,6 +4,7 @@ mesh, for any number of instances at once.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
@@ -26,6 +27,9 @@ LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (
     (190, 193, 198),
     (150, 154, 163),
 )  # neutral: only light tells the sides apart
+
+
+SKIN = re.compile(r"(?<![a-z])skin(?![a-z])", re.IGNORECASE)  # in the names of materials that are skin
 
 
 class MeshFigure:
@@ -391,7 +395,7 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
             total = weights.sum(1, keepdims=True)
             v["weights"] = np.where(total > 1e-6, weights / np.maximum(total, 1e-6), [1.0, 0, 0, 0])
             v["bones"] = character.joints[used]
-            v["color"] = (*_srgb8(material.color[:3]), round(255 * (1 - min(1, max(0, material.roughness)))))
+            v["color"] = (*_srgb8(material.color[:3]), shininess(material))
             vertices.append(v)
             triangles.append(corners.reshape(-1, 3) + count)
             origins.append(used)
@@ -411,6 +415,12 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
         len(character.skeleton),
         morphs,
     )
+
+
+def shininess(material: MeshMaterial) -> int:
+    """Return how shiny a material is, 0..255: odd for skin, which light goes into, even for all else."""
+    shiny = 2 * round(127 * (1 - min(1.0, max(0.0, material.roughness))))
+    return shiny + (SKIN.search(material.name) is not None)
 
 
 def _srgb8(linear: tuple[float, ...]) -> list[int]:

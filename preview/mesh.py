@@ -21,7 +21,7 @@ VERTEX = np.dtype(
         ("uv", "<f4", 2),
         ("bones", "<u2", 4),
         ("weights", "<f4", 4),
-        ("color", "u1", 4),  # sRGB; the fourth is shininess
+        ("color", "u1", 4),  # sRGB; the fourth is shininess, odd for skin
     ]
 )
 

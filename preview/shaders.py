@@ -314,8 +314,14 @@ void main() {
     float facing = dot(n, u_to_light);
     float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
     float light = clamp(facing * 0.86 + 0.14, 0.0, 1.0);  // the terminator is soft, as on skin
+    // Under skin light goes on a little beyond the terminator, red the farthest: an odd shininess is skin's.
+    float skin = step(0.5, fract(v_color.a * 127.5 + 0.25));
+    vec3 spread = skin * vec3(0.150, 0.035, 0.010) * max(0.0, 1.0 - abs(facing + 0.05) * 1.9);
 #ifdef SHADOWED
-    light *= mix(1.0, lit(v_world + n * u_off, 0.0025), u_shade);
+    // Where the surface turns away it is dark by itself: there the map's texels would show as teeth.
+    float seen = mix(1.0, lit(v_world + n * u_off, 0.0025), u_shade * smoothstep(0.0, 0.3, facing));
+    light *= seen;
+    spread *= seen;
 #endif
     float up = n.y * 0.5 + 0.5;
     vec3 fill = mix(u_below, u_above, up) * (1.0 - 0.25 * away);
@@ -332,7 +338,7 @@ void main() {
     float shine = v_color.a;
     float nh = clamp(dot(n, h), 0.0, 1.0);
     float gloss = pow(nh, 8.0 + 240.0 * shine * shine) * (0.03 + 0.9 * shine * shine) * light;
-    vec3 color = base * (u_key * light + fill) + u_rim * rim * (0.14 + base) + u_key * gloss;
+    vec3 color = base * (u_key * (light + spread) + fill) + u_rim * rim * (0.14 + base) + u_key * gloss;
     color = color / (1.0 + 0.18 * max(color.r, max(color.g, color.b)));  // roll highlights off
     vec3 root = sqrt(color);  // to sRGB: within a step of 255 of the power 1 / 2.2, and cheaper
     o_color = vec4(0.94823 * root + 0.09858 * sqrt(root) - 0.04681 * color, 1.0) * u_opacity;

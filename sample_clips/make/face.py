@@ -81,7 +81,7 @@ def neck() -> Field:
         ],
         0.02,
     )
-    slope = mirrored(cone((0.012, 1.535, -0.050), (0.060, 1.430, -0.044), 0.0250, 0.0300))
+    slope = mirrored(cone((0.012, 1.535, -0.052), (0.046, 1.430, -0.048), 0.0240, 0.0270))
     strap = mirrored(cone((0.046, 1.560, -0.028), (0.014, 1.430, 0.000), 0.0110, 0.0090))
     return union([rod, strap, slope], 0.034)
 
@@ -162,7 +162,12 @@ def ear() -> Field:
         0.002,
     )
     inner = along(
-        [(0.0010, 0.0160, 0.0024), (0.0080, 0.0110, 0.0048), (0.0090, 0.0000, 0.0046), (0.0035, -0.0110, 0.0030)],
+        [
+            (0.0010, 0.0160, 0.0024),
+            (0.0080, 0.0110, 0.0048),
+            (0.0090, 0.0000, 0.0046),
+            (0.0035, -0.0110, 0.0030),
+        ],
         [0.0020, 0.0026, 0.0026, 0.0024],
         0.003,
     )
@@ -190,5 +195,3 @@ def front(field: Field, xy: Array) -> Array:
         inside = field(np.concatenate([xy, middle[:, None]], 1)) < 0
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
     return np.asarray(low)
-
-

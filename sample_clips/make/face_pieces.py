@@ -38,7 +38,7 @@ def skin_rows(p: Array) -> Array:
         q = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], 1)
         return np.exp(-(np.linalg.norm(q - np.array(at), axis=1) ** 2) / reach**2)
 
-    blush = 0.85 * spot((0.0430, 1.5700, 0.0560), 0.022) + 0.6 * spot((0.0, 1.5740, 0.1050), 0.012)
+    blush = 0.62 * spot((0.0430, 1.5700, 0.0560), 0.021) + 0.6 * spot((0.0, 1.5740, 0.1050), 0.012)
     blush += 0.8 * spot((0.0800, 1.5975, -0.013), 0.018) + 0.3 * spot((0.0, 1.5080, 0.0860), 0.012)
     nostril = spot((0.0068, 1.5660, 0.0925), 0.0040)
     return np.asarray(ROWS["skin"] - np.clip(blush, 0, 1) * (1 - nostril) + 1.6 * nostril)
@@ -84,7 +84,8 @@ def _lashes(patch: openings.Patch, share: Array, look: Look) -> Piece:
     inner, outside = patch.positions[0, :count], patch.positions[1, :count]
     t = np.linspace(0, 1, count)
     long = look.lashes * np.sin(np.pi * np.clip(0.06 + 0.86 * t, 0, 1)) ** 0.7 * (0.45 + 0.75 * t)
-    fine = np.linspace(0, count - 1, 4 * count - 3)
+    many = 4 if look.lashes > 0.002 else 2
+    fine = np.linspace(0, count - 1, many * (count - 1) + 1)
 
     def between(values: Array) -> Array:
         values = values.reshape(count, -1)
@@ -107,8 +108,10 @@ def _lashes(patch: openings.Patch, share: Array, look: Look) -> Piece:
     held = np.tile(np.interp(fine, np.arange(count), share[0, :count]), rows)
     return Piece(
         strip.reshape(-1, 3),
-        np.tile(np.array([0.0, 0.3, 0.95]), (rows * columns, 1)),
-        np.concatenate([np.stack([a, a + columns + 1, a + 1], -1), np.stack([a, a + columns, a + columns + 1], -1)]),
+        np.tile(np.array([0.0, -0.6, 0.8]), (rows * columns, 1)),
+        np.concatenate(
+            [np.stack([a, a + 1, a + columns + 1], -1), np.stack([a, a + columns + 1, a + columns], -1)]
+        ),
         np.full(rows * columns, float(ROWS["lash"])),
         {"LeftUpperLid": held, "Head": 1 - held},
         "hair",
@@ -117,10 +120,10 @@ def _lashes(patch: openings.Patch, share: Array, look: Look) -> Piece:
 
 def brow(face: Field, full: float = 1.0) -> Piece:
     """The left brow on the face: full at its inner end, arched, and thin outside. full: of its thickness."""
-    t = np.linspace(0, 1, 15)
+    t = np.linspace(0, 1, 12)
     x = 0.0125 + 0.0415 * t
-    y = 1.6268 + 0.0080 * np.sin(np.pi * np.clip(0.04 + 0.80 * t, 0, 1)) - 0.0040 * t**3
-    path = np.stack([x, y, np.full(15, 0.085)], 1)
+    y = 1.6290 + 0.0062 * np.sin(np.pi * np.clip(0.06 + 0.76 * t, 0, 1)) - 0.0050 * t**2
+    path = np.stack([x, y, np.full(12, 0.085)], 1)
     path[:, 2] = openings.front(face, path[:, :2])
     normal = gradient(face, path)
     thick = full * np.interp(t, [0, 0.04, 0.14, 0.5, 0.8, 1.0], [0.15, 0.72, 1.0, 0.86, 0.5, 0.08])
@@ -129,6 +132,7 @@ def brow(face: Field, full: float = 1.0) -> Piece:
         0.0034 * thick + 1e-5,
         0.0010 * thick**0.5 + 1e-5,
         np.cross(normal, np.gradient(path, axis=0)),
+        5,
     )
     return rigid(made, "LeftBrow", "hair")
 

@@ -31,7 +31,11 @@ def eye_image(iris: Color) -> bytes:
     shade = 1 - 0.42 * step(8.0, 30.0, y * EYE_SEEN) - 0.16 * step(14.0, 34.0, -y * EYE_SEEN)
     fibre = sum(np.sin(n * way + p) * a for n, p, a in ((23, 0.3, 0.5), (37, 1.9, 0.35), (61, 4.1, 0.25)))
     share = np.clip((degrees - PUPIL) / (IRIS - PUPIL), 0, 1)
-    glow = 0.80 + 0.75 * step(0.5, -0.9, np.sin(way)) * (1 - share) ** 0.5 + 0.30 * np.exp(-(((share - 0.22) / 0.16) ** 2))
+    glow = (
+        0.80
+        + 0.75 * step(0.5, -0.9, np.sin(way)) * (1 - share) ** 0.5
+        + 0.30 * np.exp(-(((share - 0.22) / 0.16) ** 2))
+    )
     glow = glow * (1 + 0.16 * fibre * (1 - np.abs(2 * share - 1) ** 2)) * (1 - 0.62 * step(0.66, 1.0, share))
     color = np.clip(np.array(iris) * glow[..., None] * 1.25, 0, 255)
     out = white + (color - white) * step(IRIS + 1.1, IRIS - 0.9, degrees)[..., None]

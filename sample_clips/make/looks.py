@@ -188,7 +188,7 @@ BEN = Look(
         ),
         arms=1.07,
         legs=1.04,
-        neck=1.12,
+        neck=1.03,
         jaw=1.07,
         nose=1.16,
         lips=0.92,

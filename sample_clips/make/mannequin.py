@@ -86,7 +86,9 @@ def _pieces(look: Look, sculpt: Sculpt) -> list[Piece]:
         normals = gradient(wardrobe.bare_arm() if part.name in ("palm", "forearm") else part.field, positions)
         rows = _rows(part.name, positions)
         material = pieces.material_of(_ROW_OF.get(part.name, {"head": "skin"}.get(part.name, part.name)))
-        piece = Piece(positions, normals, triangles, rows, _WEIGHTS[part.name](positions), material, part=part.name)
+        piece = Piece(
+            positions, normals, triangles, rows, _WEIGHTS[part.name](positions), material, part=part.name
+        )
         if part.name == "head":
             piece = _opened(piece)
         out += [piece, piece.mirrored()] if part.name in _BOTH else [piece]
@@ -100,6 +102,7 @@ def _pieces(look: Look, sculpt: Sculpt) -> list[Piece]:
         *(pieces.finger(name) for name in FINGERS),
         pieces.sole(),
         *pieces.laces(),
+        *wardrobe.lapels(look),
         *([pieces.earring()] if look.earrings else []),
     ]
     inside = [face_pieces.mouth_inside(), face_pieces.teeth(True), face_pieces.teeth(False)]
@@ -110,7 +113,7 @@ def _pieces(look: Look, sculpt: Sculpt) -> list[Piece]:
     return [*out, *left, *(p.mirrored() for p in left), lips, *inside, pieces.collar(), pieces.hem(), *worn]
 
 
-_COVERS = {"head": ("hair",), "trousers": ("sweater",), "sweater": ("coat",)}
+_COVERS = {"head": ("hair",), "trousers": ("sweater", "coat"), "sweater": ("coat",)}
 _COVER = 0.0045  # metres under what covers it that a triangle is left out
 
 
@@ -190,7 +193,8 @@ def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Ch
     normals = _turned_along(normals, positions, body, triangles)
     image, eyes = look.image(), eye_image(look.colors.get("iris", NEUTRAL["iris"]))
     materials = tuple(
-        MeshMaterial(name, (1, 1, 1, 1), eyes if name == "eyeball" else image, rough, name == "hair") for name, _, rough in MATERIALS
+        MeshMaterial(name, (1, 1, 1, 1), eyes if name == "eyeball" else image, rough)
+        for name, _, rough in MATERIALS
     )
     sizes = [sum(len(p.triangles) for p in made if p.material == name) for name in order]
     firsts = np.cumsum([0, *sizes])

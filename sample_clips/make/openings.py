@@ -209,8 +209,14 @@ def mouth(face: Field, full: float = 1.0) -> Patch:
     border = rows[-1]
     for share in (0.14, 0.40, 0.72, 1.0, 1.22):
         xy = border[:, :2] + share * (skin - border[:, :2])
-        z = front(face, xy) + np.where(upper, 0.0006, -0.0004) * taper * (1 - share) ** 2 + {1.0: 0.00025, 1.22: -0.0008}.get(share, 0.0)
+        z = (
+            front(face, xy)
+            + np.where(upper, 0.0006, -0.0004) * taper * (1 - share) ** 2
+            + {1.0: 0.00025, 1.22: -0.0008}.get(share, 0.0)
+        )
         rows.append(np.concatenate([xy, z[:, None]], 1))
-    away = np.repeat(np.array([0, 0, 0, 0.1, 0.3, 0.4, 0.5, 0.5, 0.6, 0.7, 0.9, 1.0, 1.0])[:, None], len(x), 1)
+    away = np.repeat(
+        np.array([0, 0, 0, 0.1, 0.3, 0.4, 0.5, 0.5, 0.6, 0.7, 0.9, 1.0, 1.0])[:, None], len(x), 1
+    )
     smooth = np.array([0, 0, 0, 0, 0, 0, 0.1, 0.2, 0.5, 1, 1, 1, 1.0])
     return _patch(rows, away, upper, face, smooth)

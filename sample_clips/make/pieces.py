@@ -154,8 +154,15 @@ def cuff(sleeve: float = 0.0) -> Piece:
 
 
 def sole() -> Piece:
-    profile = [(0.0, -0.006), (0.001, 0.0012), (0.004, 0.0030), (0.0170, 0.0034), (0.0200, 0.0010), (0.0200, -0.006)]
-    made = ring(shapes.sole_outline, np.array([0.1055, 0, 0.045]), np.array([0.0, 1, 0]), profile, 40, "sole")
+    profile = [
+        (0.0, -0.006),
+        (0.001, 0.0012),
+        (0.004, 0.0030),
+        (0.0170, 0.0034),
+        (0.0200, 0.0010),
+        (0.0200, -0.006),
+    ]
+    made = ring(shapes.sole_outline, np.array([0.1055, 0, 0.045]), np.array([0.0, 1, 0]), profile, 34, "sole")
     return replace(made, weights=weights.shoe_weights(made.positions))
 
 
@@ -164,12 +171,14 @@ def laces() -> list[Piece]:
     shoe = shapes.shoe()
     out = []
     for ahead in (0.022, 0.042, 0.062, 0.082):
-        x = np.linspace(-0.019, 0.019, 6)
-        path = np.stack([0.103 + x, np.full(6, 0.12), np.full(6, ahead) - 0.004 * np.abs(x) / 0.019], 1)
+        x = np.linspace(-0.019, 0.019, 5)
+        path = np.stack([0.103 + x, np.full(5, 0.12), np.full(5, ahead) - 0.004 * np.abs(x) / 0.019], 1)
         for _ in range(12):
             path[:, 1] -= shoe(path)
-        full = np.full(6, 0.0026)
-        made = rigid(tube(path + [0, 0.0006, 0], full, full * 0.7, np.tile([0.0, 0, 1], (6, 1)), 5), "LeftFoot", "sole")
+        full = np.full(5, 0.0026)
+        made = rigid(
+            tube(path + [0, 0.0006, 0], full, full * 0.7, np.tile([0.0, 0, 1], (5, 1)), 4), "LeftFoot", "sole"
+        )
         out.append(replace(made, weights=weights.shoe_weights(made.positions)))
     return out
 
@@ -238,7 +247,7 @@ def wire(path: Array | Sequence[tuple[float, float, float]], radius: float) -> P
     """A thin round tube along a path, carried by the head."""
     points = np.asarray(path, float)
     full = np.full(len(points), radius)
-    return rigid(tube(points, full, full, np.tile([0.13, 0.31, 0.94], (len(points), 1)), 6), "Head", "frame")
+    return rigid(tube(points, full, full, np.tile([0.13, 0.31, 0.94], (len(points), 1)), 5), "Head", "frame")
 
 
 def earring() -> Piece:

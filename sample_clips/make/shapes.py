@@ -60,7 +60,7 @@ def step(low: float, high: float, x: Array) -> Array:
 
 def mouth_line(x: Array) -> Array:
     """Height of the line between the lips: level, but for corners a hair above; a mood makes the smile."""
-    return np.asarray(MOUTH_Y + 0.0013 * np.minimum(np.abs(x) / MOUTH_HALF, 1.3) ** 2)
+    return np.asarray(MOUTH_Y + 0.0019 * np.minimum(np.abs(x) / MOUTH_HALF, 1.3) ** 2)
 
 
 # --- head
@@ -334,8 +334,8 @@ def _head_size(p: Array) -> Array:
     nose = np.linalg.norm((q - [0, 1.573, 0.097]) / [0.017, 0.014, 0.02], axis=1)
     ear = np.linalg.norm((q - [0.074, 1.5975, -0.012]) / [0.014, 0.026, 0.020], axis=1)
     out = 0.0115 + 0.009 * step(0.03, -0.05, p[:, 2])
-    for near, fine in ((mouth, 0.0046), (eye, 0.0050), (nose, 0.0036), (ear, 0.0040)):
-        out = np.minimum(out, fine + (0.0108 - fine) * step(0.9, 2.8, near))
+    for near, fine in ((mouth, 0.0050), (eye, 0.0052), (nose, 0.0040), (ear, 0.0042)):
+        out = np.minimum(out, fine + (0.0124 - fine) * step(0.9, 2.8, near))
     return np.asarray(out)
 
 

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sample_clips.make import shapes
-from sample_clips.make.face import face_form, skull
+from sample_clips.make.face import face_form, front, skull
+from sample_clips.make.folds import body_folds, sleeve_folds
 from sample_clips.make.looks import Look
 from sample_clips.make.mannequin_skeleton import ARM
+from sample_clips.make.mannequin_weights import sweater_weights
+from sample_clips.make.pieces import Piece, rigid
 from sample_clips.make.sculpt import (
     Field,
     common,
@@ -64,7 +68,11 @@ def _bob() -> Field:
 def _hairline(p: Array) -> Array:
     """Positive where no hair grows: the face, from the forehead past the temples to before the ears."""
     x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
-    edge = np.interp(y, [1.500, 1.560, 1.605, 1.640, 1.665, 1.690, 1.720], [-0.022, -0.012, 0.010, 0.034, 0.050, 0.064, 0.090])
+    edge = np.interp(
+        y,
+        [1.500, 1.560, 1.605, 1.640, 1.665, 1.690, 1.720],
+        [-0.022, -0.012, 0.010, 0.034, 0.050, 0.064, 0.090],
+    )
     edge = edge + 0.35 * np.maximum(0.050 - x, 0) * step(1.630, 1.680, y)
     return np.asarray(0.8 * (z - edge))
 
@@ -74,7 +82,9 @@ def _receding() -> Field:
 
     def bare(p: Array) -> Array:
         x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
-        edge = np.interp(y, [1.555, 1.580, 1.605, 1.640, 1.660, 1.690], [-0.070, -0.034, 0.004, 0.006, -0.030, -0.080])
+        edge = np.interp(
+            y, [1.555, 1.580, 1.605, 1.640, 1.660, 1.690], [-0.070, -0.034, 0.004, 0.006, -0.030, -0.080]
+        )
         return np.asarray(0.7 * (z - edge) + 0.0 * x)
 
     return common(grown(skull(), 0.0026), bare, 0.012)
@@ -87,7 +97,9 @@ def _beard() -> Field:
 
     def cheek(p: Array) -> Array:
         x, y = np.abs(p[:, 0]), p[:, 1]
-        top = np.interp(x, [0, 0.012, 0.026, 0.034, 0.048, 0.060], [1.5570, 1.5580, 1.5540, 1.5500, 1.5560, 1.5760])
+        top = np.interp(
+            x, [0, 0.012, 0.026, 0.034, 0.048, 0.060], [1.5570, 1.5580, 1.5540, 1.5500, 1.5560, 1.5760]
+        )
         low = np.interp(x, [0, 0.020, 0.045, 0.060], [1.4960, 1.4980, 1.5120, 1.5300])
         return np.asarray(np.maximum(0.7 * (y - top), 0.7 * (low - y)))
 
@@ -101,20 +113,21 @@ def _opening(p: Array) -> Array:
     return np.interp(p[:, 1], height, (0.060, 0.034, 0.018, 0.020, 0.036, 0.054, 0.062))
 
 
-def _coat() -> Field:
-    """Open in front, with lapels, over the hips."""
-    hips = ellipsoid((0, 0.900, -0.010), (0.160, 0.150, 0.110))
+def _coat(opened: bool = True) -> Field:
+    """Open in front, over the hips. opened: else as if it were closed."""
+    hips = ellipsoid((0, 0.900, -0.010), (0.166, 0.150, 0.114))
     body = union([shapes.torso(), hips], 0.05)
     body = common(body, plane((0, COAT_HEM, 0), (0, -1, 0)), 0.010)
     body = common(body, plane(shapes.COLLAR_AT + shapes.COLLAR_UP * -0.006, shapes.COLLAR_UP), 0.004)
     whole = union([body, mirrored(shapes.sleeve(CUFF - ARM * 0.012))], 0.050)
+    whole = shapes.folded(whole, sleeve_folds, lambda p: 0.6 * body_folds(p, COAT_HEM))
 
     def field(p: Array) -> Array:
-        x, half = np.abs(p[:, 0]), _opening(p)
-        lapel = step(0.054, 0.034, x - half) * step(1.10, 1.15, p[:, 1]) * step(0.0, 0.03, p[:, 2])
-        cloth = whole(p) - CLOTH - 0.0050 * lapel
-        gap = np.maximum(x - half, 0.010 - p[:, 2])  # negative in the gap
-        return np.asarray(-smooth_min(-cloth, gap, 0.008))
+        cloth = whole(p) - CLOTH
+        if not opened:
+            return np.asarray(cloth)
+        gap = np.maximum(np.abs(p[:, 0]) - _opening(p), 0.010 - p[:, 2])  # negative in the gap
+        return np.asarray(-smooth_min(-cloth, gap, 0.006))
 
     return field
 
@@ -140,16 +153,63 @@ def bare_arm() -> Field:
 
 
 def _coat_size(p: Array) -> Array:
-    """Fine along the edges of the opening and of the lapels, and round the elbows."""
+    """Fine along the edges of the opening, at the hem and round the elbows."""
     x = np.abs(p[:, 0])
-    edge = np.minimum(np.abs(x - _opening(p)), np.abs(x - _opening(p) - 0.043))
-    front = step(0.0, 0.02, p[:, 2]) * step(0.024, 0.008, edge)
+    front = step(0.0, 0.02, p[:, 2]) * step(0.020, 0.006, np.abs(x - _opening(p)))
     hem = step(0.03, 0.01, np.abs(p[:, 1] - COAT_HEM))
-    return np.minimum(0.026 - 0.0175 * np.maximum(front, 0.5 * hem), shapes.elbow_size(p, 0.026))
+    return np.minimum(0.0330 - 0.0190 * np.maximum(front, 0.5 * hem), shapes.elbow_size(p, 0.033) * 1.2)
+
+
+def lapels(look: Look) -> list[Piece]:
+    """The left edge of a coat turned back: a lapel from the neck to the waist, and a facing below it."""
+    if not look.coat:
+        return []
+    coat = _coat(opened=False)
+    heights = np.array(
+        [0.850, 0.90, 0.96, 1.02, 1.08, 1.12, 1.15, 1.19, 1.24, 1.29, 1.34, 1.375, 1.40, 1.43, 1.452]
+    )
+    broad = np.interp(
+        heights,
+        [0.84, 1.10, 1.13, 1.36, 1.375, 1.39, 1.46],
+        [0.011, 0.012, 0.020, 0.060, 0.062, 0.044, 0.032],
+    )
+    at = np.stack([np.zeros(len(heights)), heights, np.zeros(len(heights))], 1)
+    inner = _opening(at) - 0.0015
+    columns = []
+    for share, off in (
+        (0.0, -0.010),
+        (0.0, 0.0022),
+        (0.12, 0.0040),
+        (0.5, 0.0046),
+        (0.92, 0.0040),
+        (1.0, 0.0022),
+        (1.0, -0.003),
+    ):
+        xy = np.stack([inner + share * broad, heights + (0.012 * share if off > -0.005 else 0.0)], 1)
+        z = front(coat, xy)
+        columns.append(np.concatenate([xy, (z + off)[:, None]], 1))
+    grid = np.stack(columns)
+    across, along = np.gradient(grid, axis=0), np.gradient(grid, axis=1)
+    normals = np.cross(across, along)
+    normals /= np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-9)
+    rows, count = grid.shape[:2]
+    i, j = np.meshgrid(np.arange(rows - 1), np.arange(count - 1), indexing="ij")
+    a = (i * count + j).ravel()
+    triangles = np.concatenate(
+        [np.stack([a, a + count, a + count + 1], -1), np.stack([a, a + count + 1, a + 1], -1)]
+    )
+    flat = grid.reshape(-1, 3)
+    made = rigid((flat, normals.reshape(-1, 3), triangles), "Hips", "coat")
+    return [replace(made, weights=sweater_weights(flat))]
+
+
+def _plain(p: Array) -> Array:
+    """Less fine: a coat hides most of it."""
+    return shapes.sweater_size(p) * 1.35
 
 
 def _hair_size(p: Array) -> Array:
-    return np.full(len(p), 0.0120)
+    return np.full(len(p), 0.0165)
 
 
 HAIR: dict[str, Callable[[], Field]] = {"short": _short, "bob": _bob, "receding": _receding}
@@ -163,7 +223,16 @@ def parts(look: Look) -> tuple[Part, ...]:
     box = ((-0.110, 1.480, -0.135), (0.110, 1.755, 0.120))
     out = [known["head"], Part("hair", HAIR[look.hair](), *box, 0.0028, _hair_size), known["palm"]]
     cloth = known["sweater"]
-    out.append(Part("sweater", shapes.sweater(CUFF - ARM * look.sleeve, bust=look.build.bust), cloth.low, cloth.high, cloth.cell, cloth.size))
+    out.append(
+        Part(
+            "sweater",
+            shapes.sweater(CUFF - ARM * look.sleeve, bust=look.build.bust),
+            cloth.low,
+            cloth.high,
+            cloth.cell,
+            _plain if look.coat else cloth.size,
+        )
+    )
     out += [known["trousers"], known["shoe"]]
     if look.sleeve > 0:
         out.append(
@@ -184,7 +253,7 @@ def parts(look: Look) -> tuple[Part, ...]:
                 (-0.080, 1.480, -0.030),
                 (0.080, 1.585, 0.110),
                 0.0022,
-                lambda p: np.full(len(p), 0.0070),
+                lambda p: np.full(len(p), 0.0110),
             )
         )
     if look.coat:
