@@ -368,20 +368,21 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
     """Collect a character's surfaces by texture, so that a model with many plain materials is drawn with one
     call.
     """
-    groups: dict[tuple[bytes | None, bool], list[tuple[Array, MeshMaterial]]] = {}
+    groups: dict[tuple[bytes | None, bool, bytes | None], list[tuple[Array, MeshMaterial]]] = {}
     for surface in character.surfaces:
         material = (
             character.materials[surface.material]
             if surface.material < len(character.materials)
             else MeshMaterial("")
         )
+        grain = None if character.grain_uvs is None else material.grain
         run = np.asarray(character.triangles[surface.first : surface.first + surface.count])
-        groups.setdefault((material.image, material.double_sided), []).append((run, material))
+        groups.setdefault((material.image, material.double_sided, grain), []).append((run, material))
     if not character.surfaces and len(character.triangles):
-        groups[(None, False)] = [(np.asarray(character.triangles), MeshMaterial(""))]
+        groups[(None, False, None)] = [(np.asarray(character.triangles), MeshMaterial(""))]
     vertices, triangles, batches, origins = [], [], [], []
     count = first = 0
-    for (image, double_sided), runs in groups.items():
+    for (image, double_sided, grain), runs in groups.items():
         start = first
         for run, material in runs:
             used, corners = np.unique(run, return_inverse=True)
@@ -400,7 +401,7 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
             triangles.append(corners.reshape(-1, 3) + count)
             origins.append(used)
             count, first = count + len(used), first + len(run)
-        batches.append(TriangleBatch(start, first - start, image, double_sided))
+        batches.append(TriangleBatch(start, first - start, image, double_sided, grain))
     if not batches:
         return SkinnedMesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
     morphs = None
@@ -414,6 +415,7 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
         tuple(batches),
         len(character.skeleton),
         morphs,
+        None if character.grain_uvs is None else character.grain_uvs[np.concatenate(origins)],
     )
 
 

@@ -28,12 +28,15 @@ VERTEX = np.dtype(
 
 @dataclass(frozen=True, eq=False)
 class TriangleBatch:
-    """Triangles `first .. first + count` that share a texture and are single-sided or double-sided."""
+    """Triangles `first .. first + count` that share a texture and are single-sided or double-sided. `grain` is
+    their normal map in the mesh's `grain` coordinates, or None.
+    """
 
     first: int
     count: int
     image: bytes | None = None
     double_sided: bool = False
+    grain: bytes | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +71,8 @@ class SkinnedMesh:
     """Vertices in rest pose `[V]` of VERTEX, `triangles` `[N, 3]`, and the number of `matrices` in the
     palette.
 
-    `morphs` is what a face moves, or None. Compared by identity: the renderer keeps one copy for each value.
+    `morphs` is what a face moves, or None. `grain` `[V, 2]` are second texture coordinates, for batches with a
+    grain, or None. Compared by identity: the renderer keeps one copy for each value.
     """
 
     vertices: Array
@@ -76,6 +80,7 @@ class SkinnedMesh:
     batches: tuple[TriangleBatch, ...]
     matrices: int
     morphs: Morphs | None = None
+    grain: Array | None = None
 
 
 def arrange_vertices(mesh: SkinnedMesh) -> tuple[Array, Array]:

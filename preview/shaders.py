@@ -251,6 +251,10 @@ in vec4 in_color;
 out vec3 v_world, v_normal;
 out vec2 v_uv;
 out vec4 v_color;
+#ifdef GRAINED
+in vec2 in_grain;
+out vec2 v_grain;
+#endif
 #ifdef MARKED
 uniform sampler2D u_marks;  // one texel a matrix: colour, amount
 uniform int u_marks_row;
@@ -261,6 +265,9 @@ void main() {
     v_world = m * vec4(in_position, 1.0);
     v_normal = mat3(m) * in_normal;
     v_uv = in_uv;
+#ifdef GRAINED
+    v_grain = in_grain;
+#endif
     v_color = vec4(pow(in_color.rgb, vec3(1.1)), in_color.a);  // the root of linear light: so colours fade evenly
 #ifdef MARKED
     v_mark = vec4(0.0);
@@ -289,6 +296,20 @@ uniform sampler2D u_image;
 in vec3 v_world, v_normal;
 in vec2 v_uv;
 in vec4 v_color;
+#ifdef GRAINED
+uniform sampler2D u_grain;
+in vec2 v_grain;
+// The normal that a normal map bends n to, and how deep in the grain the place is: 1 on top. The directions of
+// the map come from how its coordinates change on the screen.
+vec4 grained(vec3 n) {
+    vec3 map = texture(u_grain, v_grain).xyz * 2.0 - 1.0;
+    vec3 right = cross(dFdy(v_world), n), up = cross(n, dFdx(v_world));
+    vec2 x = dFdx(v_grain), y = dFdy(v_grain);
+    vec3 along = right * x.x + up * y.x, across = right * x.y + up * y.y;
+    float size = inversesqrt(max(max(dot(along, along), dot(across, across)), 1e-20));
+    return vec4(normalize((along * map.x - across * map.y) * size + n * max(map.z, 0.05)), map.z);
+}
+#endif
 #ifdef MARKED
 in vec4 v_mark;
 #endif
@@ -310,6 +331,11 @@ void main() {
 #ifdef MARKED
     float amount = clamp(v_mark.a, 0.0, 1.0);
     base = mix(base, v_mark.rgb * v_mark.rgb / max(v_mark.a, 1e-3), amount);
+#endif
+#ifdef GRAINED
+    vec4 bent = grained(n);
+    n = bent.xyz;
+    base *= 0.5 + 0.5 * bent.w * bent.w;  // little light comes into the grain
 #endif
     float facing = dot(n, u_to_light);
     float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);

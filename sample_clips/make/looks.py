@@ -43,7 +43,9 @@ GLOSSY = ("white", "iris", "pupil", "teeth", "frame", "metal")  # the first thre
 LIVING = ("blush", "skin", "lip")  # what light goes a little way into: its shadows are warm
 # How rough each kind of surface is, 0..1: the material's name, what is of it, roughness.
 MATERIALS = (
-    ("cloth", ("sweater", "band", "trousers", "coat"), 0.92),
+    ("knit", ("sweater", "band"), 0.92),
+    ("denim", ("trousers",), 0.90),
+    ("wool", ("coat",), 0.94),
     ("skin", ("blush", "skin", "lip", "mouth"), 0.66),
     ("hair", ("hair", "lash", "beard"), 0.56),
     ("shoes", ("shoe", "sole"), 0.74),

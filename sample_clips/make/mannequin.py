@@ -33,6 +33,7 @@ from sample_clips.make.iris import eye_image
 from sample_clips.make.pieces import Piece
 from sample_clips.make.sculpt import gradient, polygonise, project, remesh, union
 from sample_clips.make.shapes import JOINT, SKELETON, step
+from sample_clips.make.weave import TILE, grain_image, woven
 
 Array = NDArray[Any]
 
@@ -110,9 +111,11 @@ def _pieces(look: Look, sculpt: Sculpt) -> list[Piece]:
     worn += [face_pieces.tongue()] if look.targets else []
     lips = face_pieces.lips(face, look)
     out += hair_locks(look, face)
-    return [*out, *left, *(p.mirrored() for p in left), lips, *inside, pieces.collar(), pieces.hem(), *worn]
+    made = [*out, *left, *(p.mirrored() for p in left), lips, *inside, pieces.collar(), pieces.hem(), *worn]
+    return [woven(p, p.material, _LIMBS[p.material]) if p.material in _LIMBS else p for p in made]
 
 
+_LIMBS = {"knit": "arms", "denim": "legs", "wool": "arms"}  # what of cloth is wound about limbs
 _COVERS = {"head": ("hair",), "trousers": ("sweater", "coat"), "sweater": ("coat",)}
 _COVER = 0.0045  # metres under what covers it that a triangle is left out
 
@@ -166,7 +169,7 @@ def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Ch
     counts = np.cumsum([0] + [len(p.positions) for p in made])
     triangles = np.concatenate([p.triangles + start for p, start in zip(made, counts, strict=False)])
     light = _open_light(parts, positions, normals)
-    light = np.where(_of(made, "cloth", "hair"), _evened(light, triangles), light)
+    light = np.where(_of(made, *TILE, "hair"), _evened(light, triangles), light)
     light = np.where(_of(made, "eyes"), np.maximum(light, _BRIGHT), light)
     # Round the eyes the lids move: what they shade now they do not shade shut.
     eyes = np.minimum(*(np.linalg.norm(positions - JOINT[n], axis=1) for n in ("LeftEye", "RightEye")))
@@ -191,9 +194,16 @@ def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Ch
     targets = _targets(positions, dense, made) if look.targets else None
     body = np.concatenate([built(p.positions, p.weights, look.build) for p in made])
     normals = _turned_along(normals, positions, body, triangles)
+    grain = np.concatenate([np.zeros((len(p.positions), 2)) if p.grain is None else p.grain for p in made])
     image, eyes = look.image(), eye_image(look.colors.get("iris", NEUTRAL["iris"]))
     materials = tuple(
-        MeshMaterial(name, (1, 1, 1, 1), eyes if name == "eyeball" else image, rough)
+        MeshMaterial(
+            name,
+            (1, 1, 1, 1),
+            eyes if name == "eyeball" else image,
+            rough,
+            grain=grain_image(name) if name in TILE else None,
+        )
         for name, _, rough in MATERIALS
     )
     sizes = [sum(len(p.triangles) for p in made if p.material == name) for name in order]
@@ -211,6 +221,7 @@ def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Ch
         tuple(Surface(int(firsts[i]), size, i) for i, size in enumerate(sizes)),
         tuple(face_targets.TARGETS) if look.targets else (),
         targets,
+        grain_uvs=grain.astype(np.float32),
     )
 
 

@@ -34,6 +34,7 @@ class Piece:
     tongue: bool = False
     uvs: Array | None = None  # of an image of its own, not of the rows
     shade: Array | None = None  # what its light is multiplied by
+    grain: Array | None = None  # coordinates of a grain, `[V, 2]`
     part: str = ""  # the name of the sculpted part it is
 
     def mirrored(self) -> Piece:
