@@ -138,11 +138,7 @@ def bob(_skin: Field) -> list[Piece]:
     """To the jaw, parted on the left, swept over the forehead, its ends uneven and turned in."""
     made: list[Piece] = []
     n = 0
-    for out, every, wide, shade in (
-        (-0.0030, 11, 0.0185, 0.72),
-        (0.0012, 17, 0.0128, 1.0),
-        (0.0036, 11, 0.0056, 1.16),
-    ):
+    for out, every, wide, shade in ((0.0006, 21, 0.0138, 0.96), (0.0034, 7, 0.0056, 1.12)):
         for side in (1.0, -1.0):
             for k in range(every):
                 n += 1
@@ -156,7 +152,7 @@ def bob(_skin: Field) -> list[Piece]:
                     u, way, out + 0.0012 * (_spread(n, 5) - 0.5), low, lift, curl, _spread(n, 6)
                 )
                 along = np.linspace(0, 1, len(path))
-                width = wide * np.interp(along, [0, 0.12, 0.45, 0.8, 1.0], [0.28, 0.85, 1.15, 0.95, 0.12])
+                width = wide * np.interp(along, [0, 0.12, 0.45, 0.8, 1.0], [0.28, 0.85, 1.15, 1.05, 0.22])
                 width *= 0.8 + 0.4 * _spread(n, 7)
                 high = 0.30 * width
                 light = (

@@ -18,9 +18,9 @@ Color = tuple[int, int, int]
 
 # Rows of the image, sRGB in full light. Neighbours may melt into each other: blush, skin, lip, mouth.
 NEUTRAL: dict[str, Color] = {
-    "blush": (219, 204, 194),
-    "skin": (219, 208, 198),
-    "lip": (203, 177, 167),
+    "blush": (206, 182, 168),
+    "skin": (206, 190, 177),
+    "lip": (184, 150, 138),
     "mouth": (70, 50, 48),
     "teeth": (232, 229, 222),
     "hair": (82, 76, 73),
@@ -41,13 +41,14 @@ NEUTRAL: dict[str, Color] = {
 ROWS = {name: i for i, name in enumerate(NEUTRAL)}
 GLOSSY = ("white", "iris", "pupil", "teeth", "frame", "metal")  # the first three: of the eyeball's image
 LIVING = ("blush", "skin", "lip")  # what light goes a little way into: its shadows are warm
-# How rough each kind of surface is, 0..1: the material's name, what is of it, roughness.
+# How rough each kind of surface is, 0..1: the material's name, what is of it, roughness. What covers others comes
+# first: so nothing is shaded that is not seen.
 MATERIALS = (
+    ("hair", ("hair", "lash", "beard"), 0.56),
+    ("wool", ("coat",), 0.94),
     ("knit", ("sweater", "band"), 0.92),
     ("denim", ("trousers",), 0.90),
-    ("wool", ("coat",), 0.94),
     ("skin", ("blush", "skin", "lip", "mouth"), 0.66),
-    ("hair", ("hair", "lash", "beard"), 0.56),
     ("shoes", ("shoe", "sole"), 0.74),
     ("eyes", GLOSSY, 0.12),
     ("eyeball", (), 0.10),

@@ -169,7 +169,7 @@ def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Ch
     counts = np.cumsum([0] + [len(p.positions) for p in made])
     triangles = np.concatenate([p.triangles + start for p, start in zip(made, counts, strict=False)])
     light = _open_light(parts, positions, normals)
-    light = np.where(_of(made, *TILE, "hair"), _evened(light, triangles), light)
+    light = np.where(_of(made, *TILE, "hair"), _evened(light, positions, triangles), light)
     light = np.where(_of(made, "eyes"), np.maximum(light, _BRIGHT), light)
     # Round the eyes the lids move: what they shade now they do not shade shut.
     eyes = np.minimum(*(np.linalg.norm(positions - JOINT[n], axis=1) for n in ("LeftEye", "RightEye")))
@@ -249,14 +249,19 @@ def _of(made: list[Piece], *materials: str) -> Array:
     return np.concatenate([np.full(len(p.positions), p.material in materials) for p in made])
 
 
-def _evened(light: Array, triangles: Array, rounds: int = 4) -> Array:
-    """Return light `[V]` spread over neighbours: folds are darker, but not in beads."""
-    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+def _evened(light: Array, positions: Array, triangles: Array, rounds: int = 4) -> Array:
+    """Return light `[V]` spread over neighbours: folds are darker, but not in beads. Points at one place are
+    one, so that seams stay unseen.
+    """
+    _, first, place = np.unique(positions.round(6), axis=0, return_index=True, return_inverse=True)
+    place = place.reshape(-1)
+    corners, light = place[triangles], light[first]
+    ends = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     ends = np.concatenate([ends, ends[:, ::-1]])
     count = np.maximum(np.bincount(ends[:, 0], minlength=len(light)), 1)
     for _ in range(rounds):
         light = 0.4 * light + 0.6 * np.bincount(ends[:, 0], light[ends[:, 1]], len(light)) / count
-    return light
+    return light[place]
 
 
 def _turned_along(normals: Array, before: Array, after: Array, triangles: Array) -> Array:

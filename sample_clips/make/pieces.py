@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from preview.mesh import lathe
 from sample_clips.make import mannequin_weights as weights
 from sample_clips.make import shapes
+from sample_clips.make.face import neck
 from sample_clips.make.looks import MATERIALS, ROWS
 from sample_clips.make.mannequin_skeleton import ARM
 from sample_clips.make.sculpt import Field, gradient
@@ -206,14 +207,10 @@ def ribs(count: int, columns: int) -> Array:
 
 
 def collar() -> Piece:
-    angle = np.linspace(0, 2 * np.pi, 37)
-    at, up = shapes.COLLAR_AT, shapes.COLLAR_UP
-    back = np.cross([1.0, 0, 0], up)
-    out = np.cos(angle)[:, None] * [1.0, 0, 0] + np.sin(angle)[:, None] * back
-    path = at + out * np.where(out @ back < 0, 0.0510, 0.0490)[:, None] - up * 0.001
-    shape = tube(path, np.full(37, 0.0062), np.full(37, 0.0115), out, 6)
-    shade = np.repeat(np.where(np.arange(37) % 2 == 0, 1.0, 0.80), 6)
-    return replace(rigid(shape, "Neck", "band"), weights=weights.spine(shape[0]), shade=shade)
+    """The band of a sweater round the neck."""
+    profile = [(-0.016, 0.0030), (-0.010, 0.0085), (0.004, 0.0080), (0.0105, 0.0050), (0.0100, -0.0030)]
+    made = ring(neck(), shapes.COLLAR_AT, shapes.COLLAR_UP, profile, 44, "band")
+    return replace(made, weights=weights.spine(made.positions), shade=ribs(len(profile), 44))
 
 
 def glasses() -> list[Piece]:

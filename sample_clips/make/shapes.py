@@ -358,6 +358,8 @@ def sweater_size(p: Array) -> Array:
     edge = np.minimum(np.abs((q - CUFF) @ ARM) / 0.03, np.abs(p[:, 1] - HEM) / 0.03)
     edge = np.minimum(edge, np.linalg.norm((q - COLLAR_AT) / [0.07, 0.03, 0.07], axis=1))
     out = 0.0290 - 0.0125 * step(1.2, 0.5, np.linalg.norm(q - shoulder, axis=1) / 0.10)
+    chest = np.linalg.norm((q - [0.065, 1.275, 0.10]) / [0.08, 0.08, 0.08], axis=1)
+    out = np.minimum(out, 0.0290 - 0.0090 * step(1.2, 0.7, chest))
     out = np.minimum(out, elbow_size(p, 0.0290))
     folds = np.exp(-(((p[:, 1] - HEM - 0.055) / 0.050) ** 2)) + 0.8 * np.exp(
         -(np.linalg.norm((q - [0.120, 1.285, 0.0]) / [0.05, 0.07, 0.12], axis=1) ** 2)

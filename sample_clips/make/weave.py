@@ -103,7 +103,9 @@ def woven(piece: Piece, grain: str, limbs: str = "") -> Piece:
     chart = np.zeros(len(triangles), int)
     if limbs == "arms":
         away = middle * flip - SHOULDER
-        chart = np.where(away @ ARM - 0.35 * np.abs(away[:, 1]) > -0.012, 1 + (side < 0), 0)
+        along = away @ ARM
+        beside = np.linalg.norm(away - along[:, None] * ARM, axis=1)
+        chart = np.where((along > 0.0) & (beside < 0.080), 1 + (side < 0), 0)
     if limbs == "legs":
         chart = np.where(middle[:, 1] < 0.86, 1 + (side < 0), 0)
     corners, uvs, old = [], [], []
