@@ -28,8 +28,9 @@ VERTEX = np.dtype(
 
 @dataclass(frozen=True, eq=False)
 class TriangleBatch:
-    """Triangles `first .. first + count` that share a texture and are single-sided or double-sided. `grain` is
-    their normal map in the mesh's `grain` coordinates, or None.
+    """Triangles `first .. first + count` that share a texture and are single-sided or double-sided.
+
+    `grain` is their normal map in the mesh's `grain` coordinates, or None.
     """
 
     first: int
@@ -71,8 +72,8 @@ class SkinnedMesh:
     """Vertices in rest pose `[V]` of VERTEX, `triangles` `[N, 3]`, and the number of `matrices` in the
     palette.
 
-    `morphs` is what a face moves, or None. `grain` `[V, 2]` are second texture coordinates, for batches with a
-    grain, or None. Compared by identity: the renderer keeps one copy for each value.
+    `morphs` is what a face moves, or None. `grain` `[V, 2]` are second texture coordinates, for batches with
+    a grain, or None. Compared by identity: the renderer keeps one copy for each value.
     """
 
     vertices: Array

@@ -21,8 +21,8 @@ INSIDE = 0.25  # share of the joints that are within a small mesh that is a part
 
 @dataclass(frozen=True, eq=False)
 class MeshMaterial:
-    """color: linear RGBA 0..1. image: encoded PNG or JPEG bytes of the base colour texture, or None. grain: the
-    same of a normal map in the mesh's second texture coordinates, such as a weave that repeats over cloth.
+    """color: linear RGBA 0..1. image: encoded PNG or JPEG bytes of the base colour texture, or None.
+    grain: the same of a normal map in the mesh's second texture coordinates, such as a weave over cloth.
     """
 
     name: str

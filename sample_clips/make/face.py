@@ -1,10 +1,10 @@
-"""The form of our characters' heads as a distance field: skull, face, nose, ears and neck, without the openings
-of eyes and mouth, which `openings` makes ring by ring.
+"""The form of our characters' heads as a distance field: skull, face, nose, ears and neck, without the
+openings of eyes and mouth, which `openings` makes ring by ring.
 
 Sizes are those of ANSUR II (Gordon and others, 2014, means of the women; men's in brackets) scaled from a
 stature of 1.63 m to the skeleton's 1.72 m: head length 187 (197) mm, head breadth 146 (152), bizygomatic
-breadth 130 (140), bigonial breadth 105 (115), menton to sellion 111 (122), interpupillary breadth 61 (64). The
-head is 1/7.5 of the height. What these leave open (brow, lids, cheeks, lips) is by eye.
+breadth 130 (140), bigonial breadth 105 (115), menton to sellion 111 (122), interpupillary breadth 61 (64).
+The head is 1/7.5 of the height. What these leave open (brow, lids, cheeks, lips) is by eye.
 """
 
 from __future__ import annotations

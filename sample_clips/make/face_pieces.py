@@ -166,9 +166,11 @@ def mouth_inside() -> Piece:
         [np.stack([first, beside + 14, beside], -1), np.stack([first, first + 14, beside + 14], -1)]
     )
     open_ = positions[triangles][:, :, 2].mean(1) > 0.0735
+    used, triangles = np.unique(triangles[~open_], return_inverse=True)
+    positions, ball = positions[used], ball[used]
     jaw = shapes.step(0.004, -0.004, positions[:, 1] - MOUTH_Y)
     rows = np.full(len(positions), float(ROWS["mouth"]))
-    return Piece(positions, -ball, triangles[~open_], rows, {"Head": 1 - jaw, "Jaw": jaw})
+    return Piece(positions, -ball, triangles.reshape(-1, 3), rows, {"Head": 1 - jaw, "Jaw": jaw})
 
 
 def teeth(upper: bool) -> Piece:

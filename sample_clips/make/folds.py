@@ -1,7 +1,7 @@
 """Folds of cloth, as metres by which it stands out (plus) or in at points of the left or the right side.
 
-Cloth folds where it is pushed together: over a hem, inside an elbow, behind a knee, over a shoe; and where it is
-drawn: from the armpit, from the crotch. Waves are by eye; each bends, so that no two folds are alike.
+Cloth folds where it is pushed together: over a hem, inside an elbow, behind a knee, over a shoe; and where
+it is drawn: from the armpit, from the crotch. Waves are by eye; each bends, so that no two folds are alike.
 """
 
 from __future__ import annotations

@@ -5,12 +5,14 @@ Every number that varies from lock to lock comes from `_spread`, so that the sam
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sample_clips.make.looks import ROWS, Look
+from sample_clips.make.mannequin_weights import head_weights
 from sample_clips.make.pieces import Piece
 from sample_clips.make.sculpt import Field, gradient, project
 
@@ -146,7 +148,7 @@ def bob(_skin: Field) -> list[Piece]:
                 u = np.clip(1.08 * t**0.85 + 0.06 * (_spread(n, 1) - 0.5), 0.0, 1.0)
                 way = side * (64.0 + (184.0 - 64.0) * t**0.95)
                 low = 1.5080 - 0.010 * (1 - t) + 0.022 * (_spread(n, 2) - 0.5)
-                lift = (0.0050 if side < 0 else 0.0036) * (1 - 0.6 * t) + 0.001 * (_spread(n, 3) - 0.5)
+                lift = (0.0034 if side < 0 else 0.0028) * (1 - 0.6 * t) + 0.001 * (_spread(n, 3) - 0.5)
                 curl = 0.014 + 0.010 * _spread(n, 4)
                 path, outs = _fall(
                     u, way, out + 0.0012 * (_spread(n, 5) - 0.5), low, lift, curl, _spread(n, 6)
@@ -245,7 +247,8 @@ def beard(skin: Field) -> list[Piece]:
                     0.80 + 0.36 * _spread(n, 4),
                 )
             )
-    return [_tufts(skin, np.array(starts), np.array(ways), np.array(sizes), "beard")]
+    made = _tufts(skin, np.array(starts), np.array(ways), np.array(sizes), "beard")
+    return [replace(made, weights=head_weights(made.positions))]
 
 
 HAIRS = {"bob": bob, "receding": receding}

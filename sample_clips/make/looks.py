@@ -41,8 +41,8 @@ NEUTRAL: dict[str, Color] = {
 ROWS = {name: i for i, name in enumerate(NEUTRAL)}
 GLOSSY = ("white", "iris", "pupil", "teeth", "frame", "metal")  # the first three: of the eyeball's image
 LIVING = ("blush", "skin", "lip")  # what light goes a little way into: its shadows are warm
-# How rough each kind of surface is, 0..1: the material's name, what is of it, roughness. What covers others comes
-# first: so nothing is shaded that is not seen.
+# How rough each kind of surface is, 0..1: the material's name, what is of it, roughness. What covers others
+# comes first: so nothing is shaded that is not seen.
 MATERIALS = (
     ("hair", ("hair", "lash", "beard"), 0.56),
     ("wool", ("coat",), 0.94),
@@ -59,8 +59,8 @@ MATERIALS = (
 class Build:
     """How a body differs from the mannequin's. trunk: (height in metres, wide, deep ahead, deep behind), the
     scales of the trunk at heights, upwards. arms, legs, neck: scales about the bones. jaw: of its width.
-    nose: of its size. lips: of their fullness. cheeks, chin: metres outwards, downwards. bust: metres that the
-    breasts stand out.
+    nose: of its size. lips: of their fullness. cheeks, chin: metres outwards, downwards. bust: metres that
+    the breasts stand out.
     """
 
     trunk: tuple[tuple[float, float, float, float], ...] = ()
@@ -79,7 +79,8 @@ class Build:
 @dataclass(frozen=True)
 class Look:
     """A character of ours. colors: what differs from `NEUTRAL`. sleeve: metres the sleeves end above the
-    wrist. targets: whether the face has morph targets. lids: degrees the upper lids rest lower. lashes: their length, metres.
+    wrist. targets: whether the face has morph targets. lids: degrees the upper lids rest lower. lashes: their
+    length, metres.
     """
 
     name: str

@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from sample_clips.make import face_pieces, face_targets, pieces, shapes, wardrobe
-from sample_clips.make.face import face_form
 from sample_clips.make import mannequin_weights as weights
 from sample_clips.make.build import built
-from sample_clips.make.looks import LOOKS, MANNEQUIN, MATERIALS, NEUTRAL, ROWS, Look
-from sample_clips.make.mannequin_skeleton import FINGERS
+from sample_clips.make.face import face_form
 from sample_clips.make.hair_locks import hair_locks
 from sample_clips.make.iris import eye_image
+from sample_clips.make.looks import LOOKS, MANNEQUIN, MATERIALS, NEUTRAL, ROWS, Look
+from sample_clips.make.mannequin_skeleton import FINGERS
 from sample_clips.make.pieces import Piece
 from sample_clips.make.sculpt import gradient, polygonise, project, remesh, union
 from sample_clips.make.shapes import JOINT, SKELETON, step
@@ -238,7 +238,9 @@ def _targets(positions: Array, dense: Array, made: list[Piece]) -> Array:
     """Return what the face's targets move each point by, `[K, V, 3]`."""
     of = {n: dense[:, SKELETON.index(n)] for n in ("Head", "Jaw", "LeftBrow", "RightBrow")}
     face = step(0.5, 0.9, sum(of.values(), np.zeros(len(positions))))
-    still = _of(made, "hair", "eyes", "eyeball") & (of["Head"] > 0.5)  # but brows are hair that moves
+    rows = np.concatenate([p.rows for p in made])
+    still = (rows == ROWS["hair"]) | _of(made, "eyes", "eyeball")
+    still &= of["Head"] > 0.5  # but brows are hair that moves
     loose = {s + n: dense[:, SKELETON.index(s + n)] for s in ("Left", "Right") for n in _LOOSE}
     loose["Tongue"] = np.concatenate([np.full(len(p.positions), float(p.tongue)) for p in made])
     return face_targets.offsets(positions, of["Jaw"], np.where(still, 0.0, face), loose)

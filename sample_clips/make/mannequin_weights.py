@@ -97,7 +97,7 @@ def trouser_weights(p: Array) -> Weights:
         (leg(p) + above, _leg(p)),
         (leg(p * [-1, 1, 1]) + above, _other_side(_leg, p)),
     ]
-    return _mixed(groups, 0.014)
+    return _mixed(groups, 0.011)
 
 
 def shoe_weights(p: Array) -> Weights:

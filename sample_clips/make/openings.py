@@ -21,7 +21,7 @@ Array = NDArray[Any]
 
 UPPER_LID_OPEN, LOWER_LID_OPEN = 26.0, -28.0  # degrees above the eye's axis at which the rims' middles rest
 SHUT_AT = -13.5  # where they meet
-LID_OVER = 0.0019  # metres a lid's outside is beyond the eyeball
+LID_OVER = 0.0025  # metres a lid's outside is beyond the eyeball
 INNER, OUTER = (-0.0150, -0.0034), (0.0152, 0.0012)  # corners of the left eye: across and up from its middle
 
 
@@ -114,8 +114,8 @@ def lids(face: Field, open_: tuple[float, float] = (UPPER_LID_OPEN, LOWER_LID_OP
     across = INNER[0] + (OUTER[0] - INNER[0]) * t
     angle = np.where(upper, rim_angles(t, True, open_[0]), rim_angles(t, False, open_[1]))
     bow = _bow(t, 0.5, 0.6)
-    inner = _on_ball(across, angle, np.full(len(t), EYE_RADIUS + 0.0002))
-    over = EYE_RADIUS + 0.0006 + (LID_OVER - 0.0006) * bow
+    inner = _on_ball(across, angle, np.full(len(t), EYE_RADIUS + 0.0008))
+    over = EYE_RADIUS + 0.0010 + (LID_OVER - 0.0010) * bow
     outside = _on_ball(across, angle + np.where(upper, 2.6, -2.6) * bow, over)
     turn = np.pi * np.where(upper, 1 - t, 1 + t)
     left, right, up, down = _LID_ABOUT

@@ -28,7 +28,6 @@ from sample_clips.make.sculpt import (
     rods,
     smooth_min,
     union,
-    without,
 )
 
 Array = NDArray[Any]

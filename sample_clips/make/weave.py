@@ -1,5 +1,5 @@
-"""Grains of cloth as tangent-space normal maps that repeat, made from heights by numbers, and where on cloth each
-point lies.
+"""Grains of cloth as tangent-space normal maps that repeat, made from heights by numbers, and where on
+cloth each point lies.
 """
 
 from __future__ import annotations
