@@ -4,6 +4,9 @@ and in the same way the two who talk, `ada.glb` and `ben.glb`: see `looks`.
 
     python -m sample_clips.make.mannequin
 
+A head is a sculpted form (`face`) with openings made ring by ring (`openings`: lids, lips), hair in locks
+(`hair_locks`), eyes with an image of their own (`iris`). Clothes have folds (`folds`) and grains (`weave`).
+
 The face, for whoever animates it (degrees about the joints' own axes; the rest pose has eyes open and mouth
 closed): eyes shut: UpperLid +X `UPPER_LID_CLOSED`, LowerLid +X `LOWER_LID_CLOSED`; a lid follows its eye's
 pitch at 0.6 (upper) and 0.35 (lower). Jaw opens about +X: 4 a murmur, 10 an "ah", `JAW_OPEN` the widest.
@@ -161,7 +164,7 @@ def sculpted(part: shapes.Part) -> tuple[Array, Array]:
 
 
 def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> CharacterMesh:
-    """Build a character from nothing (about half a minute; the same to the bit every time)."""
+    """Build a character from nothing (about two minutes; the same to the bit every time)."""
     parts = wardrobe.parts(look)
     order = [name for name, _, _ in MATERIALS]
     made = sorted(_pieces(look, sculpt), key=lambda p: order.index(p.material))

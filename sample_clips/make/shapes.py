@@ -1,6 +1,11 @@
 """The mannequin's forms as distance fields on its skeleton's joints: head, hair, hands, sweater, trousers,
 shoes.
 
+Measures of the body are about the means of ANSUR II (Gordon and others, 2014), rounded to the centimetre and
+scaled to the skeleton's 1.72 m: waist breadth 0.30 m, hip breadth 0.36, biacromial breadth 0.39, circumferences
+of neck 0.35, thigh 0.64 and calf 0.39, foot length 0.26, with some millimetres of cloth. Shoulders slope by
+about 20 degrees from the neck.
+
 `JOINT` are the joints' places in the rest pose (metres). The figure is 1.72 m tall, faces +Z, its left is at
 +X. Left-hand parts are made at x > 0 and mirrored.
 """

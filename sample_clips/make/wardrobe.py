@@ -56,7 +56,7 @@ def _bob() -> Field:
     """What lies under the locks: a cap from the hairline to the nape."""
     whole = union(
         [
-            grown(skull(), 0.0050),
+            grown(skull(), 0.0085),
             mirrored(cone((0.0660, 1.6300, -0.0250), (0.0660, 1.5300, -0.0350), 0.0190, 0.0160)),
             ellipsoid((0, 1.5750, -0.0560), (0.0780, 0.0720, 0.0430)),
         ],
