@@ -159,13 +159,13 @@ def mouth_inside() -> Piece:
     around, along = np.linspace(0, 2 * np.pi, 15)[:-1], np.linspace(0, np.pi, 8)
     a, b = np.meshgrid(along, around, indexing="ij")
     ball = np.stack([np.sin(a) * np.cos(b), np.sin(a) * np.sin(b), np.cos(a)], -1).reshape(-1, 3)
-    positions = ball * [0.0235, 0.0135, 0.0270] + [0.0, MOUTH_Y + 0.0005, 0.0530]
+    positions = ball * [0.0255, 0.0150, 0.0310] + [0.0, MOUTH_Y + 0.0005, 0.0540]
     i, j = np.meshgrid(np.arange(len(along) - 1), np.arange(len(around)), indexing="ij")
     first, beside = (i * 14 + j).ravel(), (i * 14 + (j + 1) % 14).ravel()
     triangles = np.concatenate(
-        [np.stack([first, beside + 14, beside], -1), np.stack([first, first + 14, beside + 14], -1)]
+        [np.stack([first, beside, beside + 14], -1), np.stack([first, beside + 14, first + 14], -1)]
     )
-    open_ = positions[triangles][:, :, 2].mean(1) > 0.0735
+    open_ = positions[triangles][:, :, 2].mean(1) > 0.0800
     used, triangles = np.unique(triangles[~open_], return_inverse=True)
     positions, ball = positions[used], ball[used]
     jaw = shapes.step(0.004, -0.004, positions[:, 1] - MOUTH_Y)
@@ -177,12 +177,12 @@ def teeth(upper: bool) -> Piece:
     """A row of teeth: an arch with a groove between each two."""
     columns, cut = 25, np.linspace(-1, 1, 25)
     angle = cut * 1.15
-    x, z = 0.0185 * np.sin(angle), 0.0830 - 0.0250 * (1 - np.cos(angle))
+    x, z = 0.0185 * np.sin(angle), 0.0818 - 0.0250 * (1 - np.cos(angle))
     groove = np.where(np.arange(columns) % 2 == 0, 0.0007, 0.0)
     out = np.stack([np.sin(angle), np.zeros(columns), np.cos(angle)], 1)
     sign = 1.0 if upper else -1.0
-    base = MOUTH_Y + (0.0056 if upper else -0.0058)
-    tall = 0.0072 - 0.0016 * np.abs(cut) - groove * 0.8
+    base = MOUTH_Y + (0.0042 if upper else -0.0062)
+    tall = (0.0088 if upper else 0.0070) - 0.0016 * np.abs(cut) - groove * 0.8
     back = 0.0 if upper else 0.0022
     line = np.stack([x, np.full(columns, base), z - back], 1) - out * groove[:, None]
     rows = [

@@ -137,10 +137,11 @@ def _opened(head: Piece) -> Piece:
     """Return a head without the triangles that lie whole behind the lids' and the lips' patches."""
     p = head.positions
     x, y, ahead = np.abs(p[:, 0]) - JOINT["LeftEye"][0], p[:, 1] - JOINT["LeftEye"][1], p[:, 2]
-    hidden = (((x - 0.0025) / 0.0205) ** 2 + (y / 0.0150) ** 2 < 1) & (ahead > 0.04)
-    mouth = (p[:, 0] / 0.0282) ** 2 + ((p[:, 1] - shapes.MOUTH_Y) / 0.0146) ** 2 < 1
-    hidden |= mouth & (ahead > 0.06)
-    return _kept(head, ~hidden[head.triangles].all(1))
+    eye, front = np.stack([(x - 0.0025) / 0.0205, y / 0.0150], 1), ahead > 0.04
+    mouth = np.stack([p[:, 0] / 0.0282, (p[:, 1] - shapes.MOUTH_Y) / 0.0146], 1)
+    away = np.minimum(np.linalg.norm(eye, axis=1), np.linalg.norm(mouth, axis=1))
+    away = np.where(front, away, np.inf)[head.triangles]  # of their edges, 1 where a patch is sure to cover
+    return _kept(head, ~((away < 1).all(1) | (away < 0.62).any(1)))
 
 
 def _kept(piece: Piece, which: Array) -> Piece:

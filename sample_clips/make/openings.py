@@ -197,8 +197,8 @@ def mouth(face: Field, full: float = 1.0) -> Patch:
 
     contact = at(0.0, dip)
     rows = [
-        contact + np.stack([-0.10 * x, sign * 0.0034, np.full(len(x), -0.0150)], -1),
-        contact + np.stack([-0.04 * x, sign * 0.0011 * taper, np.full(len(x), -0.0042)], -1),
+        contact + np.stack([-0.12 * x, sign * 0.0105, np.full(len(x), -0.0070)], -1),
+        contact + np.stack([-0.05 * x, sign * 0.0042 * taper, np.full(len(x), -0.0046)], -1),
         contact,
         at(0.16, np.where(upper, 0.0009, 0.0010) * taper + dip * (1 - taper)),
         at(0.48, np.where(upper, 0.0022, 0.0031) * taper * (0.75 + 0.25 * full)),

@@ -2,9 +2,9 @@
 shoes.
 
 Measures of the body are about the means of ANSUR II (Gordon and others, 2014), rounded to the centimetre and
-scaled to the skeleton's 1.72 m: waist breadth 0.30 m, hip breadth 0.36, biacromial breadth 0.39, circumferences
-of neck 0.35, thigh 0.64 and calf 0.39, foot length 0.26, with some millimetres of cloth. Shoulders slope by
-about 20 degrees from the neck.
+scaled to the skeleton's 1.72 m: waist breadth 0.30 m, hip breadth 0.36, biacromial breadth 0.39; round the
+neck 0.35, the thigh 0.64 and the calf 0.39; foot length 0.26; and some millimetres of cloth. Shoulders slope
+by about 20 degrees from the neck.
 
 `JOINT` are the joints' places in the rest pose (metres). The figure is 1.72 m tall, faces +Z, its left is at
 +X. Left-hand parts are made at x > 0 and mirrored.

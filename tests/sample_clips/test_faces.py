@@ -1,5 +1,5 @@
 """The faces of our characters: openings that close, lids that clear the eyes, heads of the right size. And
-the grain of their clothes.
+grains of their clothes.
 """
 
 from __future__ import annotations
