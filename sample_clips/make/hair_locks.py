@@ -120,7 +120,7 @@ def _fall(
     cosine = np.clip(first @ end / np.linalg.norm(end), -1, 1)
     whole = np.arccos(cosine)
     points, outs = [], []
-    for t in np.linspace(0, 1, 7):
+    for t in np.linspace(0, 1, 6):
         d = (np.sin((1 - t) * whole) * first + np.sin(t * whole) * end) / np.sin(whole)
         d = d / np.linalg.norm(d)
         size = _CROWN + out - 0.0020 * (t == 0) + lift * np.exp(-(((t - 0.24) / 0.22) ** 2))
@@ -140,7 +140,7 @@ def bob(_skin: Field) -> list[Piece]:
     """To the jaw, parted on the left, swept over the forehead, its ends uneven and turned in."""
     made: list[Piece] = []
     n = 0
-    for out, every, wide, shade in ((0.0006, 21, 0.0142, 0.96), (0.0032, 7, 0.0056, 1.12)):
+    for out, every, wide, shade in ((0.0006, 19, 0.0150, 0.98), (0.0032, 2, 0.0056, 1.12)):
         for side in (1.0, -1.0):
             for k in range(every):
                 n += 1
