@@ -64,9 +64,11 @@ class SceneDrawing:
         target.use()
         self.ctx.enable_only(flags)
 
-    def triangles(self, mesh: SkinnedMesh, actor: Actor, program: moderngl.Program, kind: str) -> None:
+    def triangles(
+        self, mesh: SkinnedMesh, actor: Actor, program: moderngl.Program, kind: str, grained: bool = False
+    ) -> None:
         """Draw the batches of the actor that `program` is for: all of them (kind "depth"), the plain ones or
-        the textured ones.
+        the textured ones; of these, those with a grain or those without.
         """
         loaded = self.store[mesh]
         self.store.shape(mesh, actor.morphs)
@@ -75,12 +77,17 @@ class SceneDrawing:
             moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING
         )
         for batch in mesh.batches if kind == "depth" else loaded.batches:
-            if kind != "depth" and (batch.image is not None) != (kind == "textured"):
+            if kind != "depth" and (batch.image is not None, batch.grain is not None) != (
+                kind == "textured",
+                grained,
+            ):
                 continue
             if not batch.count:
                 continue
             if kind == "textured" and batch.image is not None:
                 loaded.images[batch.image].use(2)
+            if grained and batch.grain is not None:
+                loaded.images[batch.grain].use(4)
             self.ctx.enable_only(flags | (moderngl.NOTHING if batch.double_sided else moderngl.CULL_FACE))
             array.render(moderngl.TRIANGLES, batch.count * 3, first=batch.first * 3, instances=actor.count)
 

@@ -4,6 +4,7 @@ mesh, for any number of instances at once.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
@@ -26,6 +27,9 @@ LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (
     (190, 193, 198),
     (150, 154, 163),
 )  # neutral: only light tells the sides apart
+
+
+SKIN = re.compile(r"(?<![a-z])skin(?![a-z])", re.IGNORECASE)  # in the names of materials that are skin
 
 
 class MeshFigure:
@@ -364,20 +368,21 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
     """Collect a character's surfaces by texture, so that a model with many plain materials is drawn with one
     call.
     """
-    groups: dict[tuple[bytes | None, bool], list[tuple[Array, MeshMaterial]]] = {}
+    groups: dict[tuple[bytes | None, bool, bytes | None], list[tuple[Array, MeshMaterial]]] = {}
     for surface in character.surfaces:
         material = (
             character.materials[surface.material]
             if surface.material < len(character.materials)
             else MeshMaterial("")
         )
+        grain = None if character.grain_uvs is None else material.grain
         run = np.asarray(character.triangles[surface.first : surface.first + surface.count])
-        groups.setdefault((material.image, material.double_sided), []).append((run, material))
+        groups.setdefault((material.image, material.double_sided, grain), []).append((run, material))
     if not character.surfaces and len(character.triangles):
-        groups[(None, False)] = [(np.asarray(character.triangles), MeshMaterial(""))]
+        groups[(None, False, None)] = [(np.asarray(character.triangles), MeshMaterial(""))]
     vertices, triangles, batches, origins = [], [], [], []
     count = first = 0
-    for (image, double_sided), runs in groups.items():
+    for (image, double_sided, grain), runs in groups.items():
         start = first
         for run, material in runs:
             used, corners = np.unique(run, return_inverse=True)
@@ -391,12 +396,12 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
             total = weights.sum(1, keepdims=True)
             v["weights"] = np.where(total > 1e-6, weights / np.maximum(total, 1e-6), [1.0, 0, 0, 0])
             v["bones"] = character.joints[used]
-            v["color"] = (*_srgb8(material.color[:3]), round(255 * (1 - min(1, max(0, material.roughness)))))
+            v["color"] = (*_srgb8(material.color[:3]), shininess(material))
             vertices.append(v)
             triangles.append(corners.reshape(-1, 3) + count)
             origins.append(used)
             count, first = count + len(used), first + len(run)
-        batches.append(TriangleBatch(start, first - start, image, double_sided))
+        batches.append(TriangleBatch(start, first - start, image, double_sided, grain))
     if not batches:
         return SkinnedMesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
     morphs = None
@@ -410,7 +415,14 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
         tuple(batches),
         len(character.skeleton),
         morphs,
+        None if character.grain_uvs is None else character.grain_uvs[np.concatenate(origins)],
     )
+
+
+def shininess(material: MeshMaterial) -> int:
+    """Return how shiny a material is, 0..255: odd for skin, which light goes into, even for all else."""
+    shiny = 2 * round(127 * (1 - min(1.0, max(0.0, material.roughness))))
+    return shiny + (SKIN.search(material.name) is not None)
 
 
 def _srgb8(linear: tuple[float, ...]) -> list[int]:

@@ -49,6 +49,7 @@ class LoadedMesh:
     images: dict[bytes, moderngl.Texture]
     arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)
     limbs: moderngl.Buffer | None = None
+    grain: moderngl.Buffer | None = None
     morphs: bytes = b""
     idle: int = 0
 
@@ -66,13 +67,15 @@ class LoadedMesh:
                     held = np.frombuffer(self.vertices.read(), VERTEX)
                     self.limbs = ctx.buffer(rods.of(held).tobytes())
                 content.append((self.limbs, "1u1", "in_limb"))
+            if self.grain is not None and "in_grain" in program:
+                content.append((self.grain, "2f", "in_grain"))
             self.arrays[program.glo] = ctx.vertex_array(program, content, self.indices)
         return self.arrays[program.glo]
 
     def release(self) -> None:
         for array in self.arrays.values():
             array.release()
-        for buffer in (self.vertices, self.positions, self.indices, self.limbs):
+        for buffer in (self.vertices, self.positions, self.indices, self.limbs, self.grain):
             if buffer is not None:
                 buffer.release()
 
@@ -182,7 +185,15 @@ class Store:
                 buffer(vertices.tobytes()),
                 buffer(vertices["position"].tobytes()),
                 buffer(np.ascontiguousarray(triangles, "<u4").tobytes()),
-                {b.image: self._image(b.image) for b in drawn.batches if b.image is not None},
+                {
+                    image: self._image(image, image == b.grain)
+                    for b in drawn.batches
+                    for image in (b.image, b.grain)
+                    if image is not None
+                },
+                grain=None
+                if mesh.grain is None
+                else buffer(np.ascontiguousarray(mesh.grain[origins[order]], "<f4").tobytes()),
             )
         loaded.idle = 0
 
@@ -206,13 +217,13 @@ class Store:
         for image in [image for image in self._images if image not in used]:
             self._images.pop(image).release()
 
-    def _image(self, encoded: bytes) -> moderngl.Texture:
+    def _image(self, encoded: bytes, repeats: bool = False) -> moderngl.Texture:
         if encoded in self._images:
             return self._images[encoded]
         size, pixels = decode_texture(encoded)
         texture = self._ctx.texture(size, 4, pixels)
         # Smaller pictures hold flat colours, and making mipmaps stalls drawing in software.
-        if max(size) > PALETTE and min(size) > NARROW:
+        if repeats or (max(size) > PALETTE and min(size) > NARROW):
             texture.build_mipmaps()
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
         self._images[encoded] = texture

@@ -21,19 +21,23 @@ VERTEX = np.dtype(
         ("uv", "<f4", 2),
         ("bones", "<u2", 4),
         ("weights", "<f4", 4),
-        ("color", "u1", 4),  # sRGB; the fourth is shininess
+        ("color", "u1", 4),  # sRGB; the fourth is shininess, odd for skin
     ]
 )
 
 
 @dataclass(frozen=True, eq=False)
 class TriangleBatch:
-    """Triangles `first .. first + count` that share a texture and are single-sided or double-sided."""
+    """Triangles `first .. first + count` that share a texture and are single-sided or double-sided.
+
+    `grain` is their normal map in the mesh's `grain` coordinates, or None.
+    """
 
     first: int
     count: int
     image: bytes | None = None
     double_sided: bool = False
+    grain: bytes | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +72,8 @@ class SkinnedMesh:
     """Vertices in rest pose `[V]` of VERTEX, `triangles` `[N, 3]`, and the number of `matrices` in the
     palette.
 
-    `morphs` is what a face moves, or None. Compared by identity: the renderer keeps one copy for each value.
+    `morphs` is what a face moves, or None. `grain` `[V, 2]` are second texture coordinates, for batches with
+    a grain, or None. Compared by identity: the renderer keeps one copy for each value.
     """
 
     vertices: Array
@@ -76,6 +81,7 @@ class SkinnedMesh:
     batches: tuple[TriangleBatch, ...]
     matrices: int
     morphs: Morphs | None = None
+    grain: Array | None = None
 
 
 def arrange_vertices(mesh: SkinnedMesh) -> tuple[Array, Array]:

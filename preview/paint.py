@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.mesh import SkinnedMesh, TriangleBatch
+from preview.mesh import SkinnedMesh
 
 Array = NDArray[Any]
 
@@ -55,7 +55,7 @@ def without_invisible_texture(
         part[plain] = count + np.searchsorted(kept, part[plain])
         part[:] = np.concatenate([part[plain], part[~plain]])
         first, rest = int(plain.sum()), int((~plain).sum())
-        batches.append(TriangleBatch(batch.first, first, None, batch.double_sided))
+        batches.append(replace(batch, count=first, image=None))
         if rest:
             batches.append(replace(batch, first=batch.first + first, count=rest))
         vertices.append(more)
@@ -63,7 +63,7 @@ def without_invisible_texture(
         count += len(kept)
     if len(vertices) == 1:
         return mesh, origins[0]
-    # Morphs are not copied: the origins say to which vertices they belong.
+    # Morphs and grain are not copied: the origins say to which vertices they belong.
     return (
         SkinnedMesh(np.concatenate(vertices), triangles, tuple(batches), mesh.matrices),
         np.concatenate(origins),

@@ -132,7 +132,7 @@ class Renderer:
         self._drawing.store.palette.use(0)
         self._shadows.map.use(1)
         self._drawing.store.marks.use(3)
-        shared: dict[str, Any] = {"u_palette": 0, "u_shadow": 1, "u_image": 2, "u_marks": 3}
+        shared: dict[str, Any] = {"u_palette": 0, "u_shadow": 1, "u_image": 2, "u_marks": 3, "u_grain": 4}
         shared |= {"u_matrix": frame.matrix, "u_eye": frame.camera.eye, "u_to_light": theme.to_light}
         shared |= {"u_key": theme.key, "u_above": theme.above, "u_below": theme.below, "u_rim": theme.rim}
         shared["u_shade"] = SHADE
@@ -150,9 +150,10 @@ class Renderer:
             if rods is not None:
                 own["u_rod_starts"], own["u_rod_ends"] = rods.placed(self.store.palettes[i][0])
             batches = self._drawing.store[frame.meshes[i]].batches
-            for textured in {b.image is not None for b in batches}:
+            for textured, grained in sorted({(b.image is not None, b.grain is not None) for b in batches}):
                 flags = (
                     ("TEXTURED", textured),
+                    ("GRAINED", grained),
                     ("MARKED", bool(actor.marks)),
                     ("SHADOWED", cast),
                     ("SUNK", sunk),
@@ -165,7 +166,7 @@ class Renderer:
                 )
                 set_uniforms(program, **shared, **own)
                 kind = "textured" if textured else "plain"
-                self._drawing.triangles(frame.meshes[i], actor, program, kind)
+                self._drawing.triangles(frame.meshes[i], actor, program, kind, grained)
 
     def _ghosts(self, frame: Frame) -> None:
         """Draw depth first, so that a ghost shows only its nearest surface, then colour."""

@@ -251,6 +251,10 @@ in vec4 in_color;
 out vec3 v_world, v_normal;
 out vec2 v_uv;
 out vec4 v_color;
+#ifdef GRAINED
+in vec2 in_grain;
+out vec2 v_grain;
+#endif
 #ifdef MARKED
 uniform sampler2D u_marks;  // one texel a matrix: colour, amount
 uniform int u_marks_row;
@@ -261,6 +265,9 @@ void main() {
     v_world = m * vec4(in_position, 1.0);
     v_normal = mat3(m) * in_normal;
     v_uv = in_uv;
+#ifdef GRAINED
+    v_grain = in_grain;
+#endif
     v_color = vec4(pow(in_color.rgb, vec3(1.1)), in_color.a);  // the root of linear light: so colours fade evenly
 #ifdef MARKED
     v_mark = vec4(0.0);
@@ -289,6 +296,20 @@ uniform sampler2D u_image;
 in vec3 v_world, v_normal;
 in vec2 v_uv;
 in vec4 v_color;
+#ifdef GRAINED
+uniform sampler2D u_grain;
+in vec2 v_grain;
+// The normal that a normal map bends n to, and how deep in the grain the place is: 1 on top. The directions of
+// the map come from how its coordinates change on the screen.
+vec4 grained(vec3 n) {
+    vec3 map = texture(u_grain, v_grain).xyz * 2.0 - 1.0;
+    vec3 right = cross(dFdy(v_world), n), up = cross(n, dFdx(v_world));
+    vec2 x = dFdx(v_grain), y = dFdy(v_grain);
+    vec3 along = right * x.x + up * y.x, across = right * x.y + up * y.y;
+    float size = inversesqrt(max(max(dot(along, along), dot(across, across)), 1e-20));
+    return vec4(normalize((along * map.x - across * map.y) * size + n * max(map.z, 0.05)), map.z);
+}
+#endif
 #ifdef MARKED
 in vec4 v_mark;
 #endif
@@ -311,11 +332,22 @@ void main() {
     float amount = clamp(v_mark.a, 0.0, 1.0);
     base = mix(base, v_mark.rgb * v_mark.rgb / max(v_mark.a, 1e-3), amount);
 #endif
+#ifdef GRAINED
+    vec4 bent = grained(n);
+    n = bent.xyz;
+    base *= 0.5 + 0.5 * bent.w * bent.w;  // little light comes into the grain
+#endif
     float facing = dot(n, u_to_light);
     float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
     float light = clamp(facing * 0.86 + 0.14, 0.0, 1.0);  // the terminator is soft, as on skin
+    // Under skin light goes on a little beyond the terminator, red the farthest: an odd shininess is skin's.
+    float skin = step(0.5, fract(v_color.a * 127.5 + 0.25));
+    vec3 spread = skin * vec3(0.150, 0.035, 0.010) * max(0.0, 1.0 - abs(facing + 0.05) * 1.9);
 #ifdef SHADOWED
-    light *= mix(1.0, lit(v_world + n * u_off, 0.0025), u_shade);
+    // Where the surface turns away it is dark by itself: there the map's texels would show as teeth.
+    float seen = mix(1.0, lit(v_world + n * u_off, 0.0025), u_shade * smoothstep(0.0, 0.3, facing));
+    light *= seen;
+    spread *= seen;
 #endif
     float up = n.y * 0.5 + 0.5;
     vec3 fill = mix(u_below, u_above, up) * (1.0 - 0.25 * away);
@@ -332,7 +364,7 @@ void main() {
     float shine = v_color.a;
     float nh = clamp(dot(n, h), 0.0, 1.0);
     float gloss = pow(nh, 8.0 + 240.0 * shine * shine) * (0.03 + 0.9 * shine * shine) * light;
-    vec3 color = base * (u_key * light + fill) + u_rim * rim * (0.14 + base) + u_key * gloss;
+    vec3 color = base * (u_key * (light + spread) + fill) + u_rim * rim * (0.14 + base) + u_key * gloss;
     color = color / (1.0 + 0.18 * max(color.r, max(color.g, color.b)));  // roll highlights off
     vec3 root = sqrt(color);  // to sRGB: within a step of 255 of the power 1 / 2.2, and cheaper
     o_color = vec4(0.94823 * root + 0.09858 * sqrt(root) - 0.04681 * color, 1.0) * u_opacity;

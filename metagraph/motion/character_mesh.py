@@ -21,13 +21,16 @@ INSIDE = 0.25  # share of the joints that are within a small mesh that is a part
 
 @dataclass(frozen=True, eq=False)
 class MeshMaterial:
-    """color: linear RGBA 0..1. image: encoded PNG or JPEG bytes of the base colour texture, or None."""
+    """color: linear RGBA 0..1. image: encoded PNG or JPEG bytes of the base colour texture, or None.
+    grain: the same of a normal map in the mesh's second texture coordinates, such as a weave over cloth.
+    """
 
     name: str
     color: tuple[float, float, float, float] = (0.8, 0.8, 0.8, 1.0)
     image: bytes | None = None
     roughness: float = 0.8
     double_sided: bool = False
+    grain: bytes | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +49,7 @@ class Surface:
 @dataclass(frozen=True, eq=False)
 class CharacterMesh:
     """positions, normals `[V, 3]` in model space in the skeleton's rest pose, metres; uvs `[V, 2]`;
+    grain_uvs `[V, 2]` are the second texture coordinates, None where no material has a grain;
     joints `[V, 4]` and weights `[V, 4]` summing to 1; triangles `[N, 3]`;
     morph_positions `[K, V, 3]` are offsets for the morph targets named in `morphs`. meshes: the names of all
     its meshes, of those that were left out, too.
@@ -65,6 +69,7 @@ class CharacterMesh:
     morph_positions: Array | None = None
     notes: tuple[str, ...] = ()
     meshes: tuple[str, ...] = ()
+    grain_uvs: Array | None = None
 
     def __post_init__(self) -> None:
         count = len(self.positions)
@@ -74,6 +79,7 @@ class CharacterMesh:
             "uvs": (count, 2),
             "joints": (count, 4),
             "weights": (count, 4),
+            **({} if self.grain_uvs is None else {"grain_uvs": (count, 2)}),
         }
         for field, shape in shapes.items():
             if getattr(self, field).shape != shape:

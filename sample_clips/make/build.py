@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sample_clips.make.looks import Build
-from sample_clips.make.shapes import JOINT, mouth_line, step
+from sample_clips.make.shapes import JOINT, step
 
 Array = NDArray[Any]
 
 MIDDLE = -0.012  # metres ahead: where the trunk's depth is computed from
 TRUNK = ("Hips", "Spine", "Chest", "UpperChest")
+FACE = ("Head", "Jaw", *(s + n for s in ("Left", "Right") for n in ("Brow", "UpperLid", "LowerLid")))
 LIMBS = {
     "arms": (("UpperArm", "LowerArm"), ("LowerArm", "Hand")),
     "legs": (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot")),
@@ -43,10 +44,8 @@ def built(p: Array, weights: dict[str, Array], build: Build) -> Array:
                     out += w[:, None] * (scale - 1) * _beside(p, JOINT[side + upper], JOINT[side + lower])
     if "Neck" in weights and build.neck != 1:
         out += weights["Neck"][:, None] * (build.neck - 1) * _beside(p, JOINT["Neck"], JOINT["Head"])
-    if any(n in weights for n in ("Head", "Jaw", "LeftBrow", "RightBrow")):
-        skull = sum(
-            (weights[n] for n in ("Head", "Jaw", "LeftBrow", "RightBrow") if n in weights), np.zeros(len(p))
-        )
+    if any(n in weights for n in FACE):
+        skull = sum((weights[n] for n in FACE if n in weights), np.zeros(len(p)))
         out += skull[:, None] * (_face(p, build) - p)
     return out
 
@@ -71,10 +70,6 @@ def _face(p: Array, b: Build) -> Array:
     out[:, 0] += (b.jaw - 1) * p[:, 0] * low
     nose = np.exp(-((np.linalg.norm((p - [0, 1.580, 0.100]) / [0.016, 0.026, 0.022], axis=1)) ** 2))
     out += ((b.nose - 1) * nose)[:, None] * (p - [0, 1.592, 0.080])
-    lips = np.exp(-(np.linalg.norm((p - [0, 1.5415, 0.086]) / [0.026, 0.014, 0.022], axis=1) ** 2))
-    line = mouth_line(p[:, 0])
-    out[:, 1] += (b.lips - 1) * lips * np.clip(p[:, 1] - line, -0.012, 0.012)
-    out[:, 2] += (b.lips - 1) * lips * 0.008
     cheeks = _near(p, (0.042, 1.570, 0.055), 0.024)
     out[:, 0] += b.cheeks * cheeks * side
     out[:, 2] += b.cheeks * cheeks

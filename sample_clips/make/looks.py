@@ -18,9 +18,9 @@ Color = tuple[int, int, int]
 
 # Rows of the image, sRGB in full light. Neighbours may melt into each other: blush, skin, lip, mouth.
 NEUTRAL: dict[str, Color] = {
-    "blush": (219, 204, 194),
-    "skin": (219, 208, 198),
-    "lip": (203, 177, 167),
+    "blush": (206, 182, 168),
+    "skin": (206, 190, 177),
+    "lip": (184, 150, 138),
     "mouth": (70, 50, 48),
     "teeth": (232, 229, 222),
     "hair": (82, 76, 73),
@@ -39,14 +39,19 @@ NEUTRAL: dict[str, Color] = {
     "metal": (212, 178, 110),
 }
 ROWS = {name: i for i, name in enumerate(NEUTRAL)}
-GLOSSY = ("white", "iris", "pupil", "teeth", "frame", "metal")
+GLOSSY = ("white", "iris", "pupil", "teeth", "frame", "metal")  # the first three: of the eyeball's image
 LIVING = ("blush", "skin", "lip")  # what light goes a little way into: its shadows are warm
-# How rough each kind of surface is, 0..1: the material's name, what is of it, roughness.
+# How rough each kind of surface is, 0..1: the material's name, what is of it, roughness. What covers others
+# comes first: so nothing is shaded that is not seen.
 MATERIALS = (
-    ("cloth", ("sweater", "band", "trousers", "coat"), 0.92),
-    ("skin", ("blush", "skin", "lip", "mouth", "lash", "beard"), 0.66),
-    ("hair", ("hair", "shoe", "sole"), 0.74),
+    ("hair", ("hair", "lash", "beard"), 0.56),
+    ("wool", ("coat",), 0.94),
+    ("knit", ("sweater", "band"), 0.92),
+    ("denim", ("trousers",), 0.90),
+    ("skin", ("blush", "skin", "lip", "mouth"), 0.66),
+    ("shoes", ("shoe", "sole"), 0.74),
     ("eyes", GLOSSY, 0.12),
+    ("eyeball", (), 0.10),
 )
 
 
@@ -54,7 +59,8 @@ MATERIALS = (
 class Build:
     """How a body differs from the mannequin's. trunk: (height in metres, wide, deep ahead, deep behind), the
     scales of the trunk at heights, upwards. arms, legs, neck: scales about the bones. jaw: of its width.
-    nose: of its size. lips: of their fullness. cheeks, chin: metres outwards, downwards.
+    nose: of its size. lips: of their fullness. cheeks, chin: metres outwards, downwards. bust: metres that
+    the breasts stand out.
     """
 
     trunk: tuple[tuple[float, float, float, float], ...] = ()
@@ -67,12 +73,14 @@ class Build:
     cheeks: float = 0.0
     chin: float = 0.0
     brows: float = 1.0
+    bust: float = 0.0
 
 
 @dataclass(frozen=True)
 class Look:
     """A character of ours. colors: what differs from `NEUTRAL`. sleeve: metres the sleeves end above the
-    wrist. targets: whether the face has morph targets.
+    wrist. targets: whether the face has morph targets. lids: degrees the upper lids rest lower. lashes: their
+    length, metres.
     """
 
     name: str
@@ -86,13 +94,15 @@ class Look:
     earrings: bool = False
     targets: bool = True
     lids: float = 0.0
+    lashes: float = 0.0030
 
     @property
     def file(self) -> str:
         return f"{self.name.lower()}.glb"
 
     def image(self) -> bytes:
-        """Return the colour rows as PNG: 64 texels from shadow to light, eight texels a row."""
+        """Return the colour rows as PNG: 64 texels from shadow to light, one texel a row,
+        so that neighbouring rows melt into each other."""
         from PIL import Image
 
         u = np.linspace(0, 1, 64)[:, None]
@@ -100,7 +110,7 @@ class Look:
         for name, neutral in NEUTRAL.items():
             dark = np.array([0.42, 0.25, 0.22] if name in LIVING and self.colors else [0.30, 0.265, 0.26])
             color = np.array(self.colors.get(name, neutral))
-            rows.append(np.repeat(((dark + (1 - dark) * u) * color)[None], 8, 0))
+            rows.append(((dark + (1 - dark) * u) * color)[None])
         out = io.BytesIO()
         Image.fromarray(np.concatenate(rows).round().astype(np.uint8)).save(out, "PNG", optimize=True)
         return out.getvalue()
@@ -114,8 +124,8 @@ ADA = Look(
         "skin": (170, 120, 96),
         "lip": (146, 84, 80),
         "mouth": (62, 30, 30),
-        "hair": (56, 44, 40),
-        "lash": (26, 18, 18),
+        "hair": (82, 56, 44),
+        "lash": (30, 20, 18),
         "sweater": (204, 128, 104),
         "band": (180, 106, 84),
         "trousers": (66, 76, 98),
@@ -126,24 +136,25 @@ ADA = Look(
     hair="bob",
     build=Build(
         trunk=(
-            (0.80, 1.00, 1.00, 1.04),
-            (0.92, 1.02, 0.98, 1.06),
-            (1.02, 0.92, 0.90, 0.96),
-            (1.11, 0.86, 0.86, 0.90),
-            (1.20, 0.90, 1.00, 0.92),
-            (1.275, 0.92, 1.17, 0.92),
-            (1.35, 0.93, 1.02, 0.92),
-            (1.43, 0.94, 0.94, 0.94),
+            (0.80, 0.99, 0.98, 1.02),
+            (0.92, 0.99, 0.94, 1.03),
+            (1.00, 0.92, 0.88, 0.96),
+            (1.09, 0.85, 0.86, 0.94),
+            (1.18, 0.86, 0.90, 0.92),
+            (1.27, 0.89, 0.98, 0.90),
+            (1.35, 0.92, 0.94, 0.90),
+            (1.43, 0.95, 0.94, 0.94),
         ),
         arms=0.86,
         legs=0.96,
-        neck=0.86,
+        neck=0.96,
         jaw=0.93,
         nose=0.90,
         lips=1.22,
         cheeks=0.0012,
         chin=-0.002,
         brows=0.8,
+        bust=0.022,
     ),
     sleeve=0.085,
     earrings=True,
@@ -181,7 +192,7 @@ BEN = Look(
         ),
         arms=1.07,
         legs=1.04,
-        neck=1.12,
+        neck=1.03,
         jaw=1.07,
         nose=1.16,
         lips=0.92,
@@ -193,5 +204,6 @@ BEN = Look(
     beard=True,
     glasses=True,
     lids=4.0,
+    lashes=0.0014,
 )
 LOOKS = (MANNEQUIN, ADA, BEN)

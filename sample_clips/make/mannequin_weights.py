@@ -97,7 +97,7 @@ def trouser_weights(p: Array) -> Weights:
         (leg(p) + above, _leg(p)),
         (leg(p * [-1, 1, 1]) + above, _other_side(_leg, p)),
     ]
-    return _mixed(groups, 0.014)
+    return _mixed(groups, 0.011)
 
 
 def shoe_weights(p: Array) -> Weights:
@@ -122,7 +122,10 @@ def hand_weights(p: Array, fingers: tuple[str, ...] = FINGERS) -> Weights:
     return _mixed(groups, 0.0022)
 
 
-def head_weights(p: Array) -> Weights:
+def head_weights(p: Array, lower: Array | None = None, across: Array | None = None) -> Weights:
+    """lower: whether points `[V]` are of the lower lip, else of the upper; across `[V]`: where between the
+    corners of the mouth they belong. By default both are told from where the points are.
+    """
     out = chain(
         p,
         ("UpperChest", "Neck", "Head"),
@@ -135,9 +138,12 @@ def head_weights(p: Array) -> Weights:
     out["Head"] = out["Head"] + face
     below = mouth_line(x) - y
     soft = step(-0.016, 0.012, below)
-    sharp = (below > 0).astype(float)
+    sharp = (below > 0).astype(float) if lower is None else lower
     # Where the two lips part: fully in the middle, less towards the corners, so that the open mouth is round.
-    lips = np.sqrt(np.clip(1 - (x / (MOUTH_HALF + 0.0015)) ** 2, 0, 1)) * step(0.040, 0.055, z)
+    between = np.abs(p[:, 0] if across is None else across)
+    lips = np.sqrt(np.clip(1 - (between / MOUTH_HALF) ** 2, 0, 1)) * step(0.040, 0.055, z)
+    reach = 1.0 if lower is None else step(0.019, 0.004, np.abs(below))  # the skin about lips goes softly
+    lips = lips * reach
     jaw = (
         (soft * (1 - lips) + sharp * lips)
         * step(-0.010, 0.040, z + 0.35 * (1.545 - y))

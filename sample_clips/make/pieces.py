@@ -12,14 +12,12 @@ from numpy.typing import NDArray
 from preview.mesh import lathe
 from sample_clips.make import mannequin_weights as weights
 from sample_clips.make import shapes
+from sample_clips.make.face import neck
 from sample_clips.make.looks import MATERIALS, ROWS
 from sample_clips.make.mannequin_skeleton import ARM
 from sample_clips.make.sculpt import Field, gradient
-from sample_clips.make.shapes import EYE_RADIUS, JOINT, LID_RADIUS
 
 Array = NDArray[Any]
-
-UPPER_LID_OPEN, LOWER_LID_OPEN = 26.0, -28.0  # degrees above the eye's axis at which the lids' edges rest
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +33,10 @@ class Piece:
     weights: dict[str, Array]
     material: str = "skin"
     tongue: bool = False
+    uvs: Array | None = None  # of an image of its own, not of the rows
+    shade: Array | None = None  # what its light is multiplied by
+    grain: Array | None = None  # coordinates of a grain, `[V, 2]`
+    part: str = ""  # the name of the sculpted part it is
 
     def mirrored(self) -> Piece:
         flip = np.array([-1.0, 1, 1])
@@ -46,6 +48,8 @@ class Piece:
             self.rows,
             swap,
             self.material,
+            uvs=None if self.uvs is None else (1 - self.uvs) * [1, 0] + self.uvs * [0, 1],
+            shade=self.shade,
         )
 
 
@@ -74,80 +78,6 @@ def rigid(shape: tuple[Array, Array, Array], joint: str, row: str | Array) -> Pi
     )
 
 
-def eye() -> list[Piece]:
-    """The left eyeball looking along +Z; each colour has its own triangles, so that the iris has a crisp
-    edge.
-    """
-    out = []
-    for row, first, last, rings in (
-        ("pupil", 0.0, 13.5, 2),
-        ("iris", 13.5, 30.0, 2),
-        ("white", 30.0, 80.0, 4),
-    ):
-        angles = np.radians(np.linspace(last, first, rings + 1))
-        profile = [(EYE_RADIUS * np.cos(a), EYE_RADIUS * np.sin(a) if a > 0 else 0.0) for a in angles]
-        positions, _, triangles = lathe(profile, 18)
-        positions = positions[:, [0, 2, 1]] * [1, -1, 1]
-        normals = positions / EYE_RADIUS
-        out.append(rigid((positions + JOINT["LeftEye"], normals, triangles), "LeftEye", row))
-    return out
-
-
-def lid(joint: str, edge: float, back: float) -> Piece:
-    """A shell round the eye between the angles `edge` and `back` (degrees up from forwards, about X), with a
-    dark rim.
-    """
-    along = np.radians(np.linspace(4, 176, 12))  # from corner to corner
-    turn = np.radians(
-        np.concatenate([[edge, edge, edge + 0.04 * (back - edge)], np.linspace(edge, back, 6)[1:]])
-    )
-    radius = np.concatenate([[EYE_RADIUS + 0.0001, LID_RADIUS + 0.0001], np.full(len(turn) - 2, LID_RADIUS)])
-    shape = np.stack(
-        [
-            np.broadcast_to(np.cos(along)[None], (len(turn), len(along))),
-            np.sin(turn)[:, None] * np.sin(along)[None],
-            np.cos(turn)[:, None] * np.sin(along)[None],
-        ],
-        -1,
-    )
-    normals = shape.reshape(-1, 3).copy()
-    rim = np.sign(edge) * np.stack([0 * along, -np.cos(turn[0]) + 0 * along, np.sin(turn[0]) + 0 * along], -1)
-    normals[: len(along)] = rim
-    i, j = np.meshgrid(np.arange(len(turn) - 1), np.arange(len(along) - 1), indexing="ij")
-    a = (i * len(along) + j).ravel()
-    b, c, d = a + 1, a + len(along), a + len(along) + 1
-    triangles = np.concatenate([np.stack([a, b, d], -1), np.stack([a, d, c], -1)])
-    rows = np.full((len(turn), len(along)), float(ROWS["skin"]))
-    rows[:2] = ROWS["lash"] if edge > 0 else ROWS["lip"]
-    positions = (shape * radius[:, None, None]).reshape(-1, 3) + JOINT["LeftEye"]
-    # Rows melt only between neighbours: the rim has vertices of its own.
-    return rigid((positions, normals, triangles), joint, rows.ravel())
-
-
-def split_rows(piece: Piece) -> Piece:
-    """Give triangles whose corners have rows far apart corners of their own, in the row nearest the rim."""
-    corner = piece.rows[piece.triangles]
-    far = np.flatnonzero(np.ptp(corner, axis=1) > 2.5)
-    if not len(far):
-        return piece
-    extra = piece.triangles[far].ravel()
-    positions, normals = (
-        np.concatenate([piece.positions, piece.positions[extra]]),
-        np.concatenate([piece.normals, piece.normals[extra]]),
-    )
-    rows = np.concatenate([piece.rows, np.repeat(corner[far].max(1), 3)])
-    triangles = piece.triangles.copy()
-    triangles[far] = len(piece.positions) + np.arange(len(extra)).reshape(-1, 3)
-    return Piece(
-        positions,
-        normals,
-        triangles,
-        rows,
-        {n: np.concatenate([w, w[extra]]) for n, w in piece.weights.items()},
-        piece.material,
-    )
-
-
 def tube(path: Array, wide: Array, tall: Array, across: Array, sides: int = 8) -> tuple[Array, Array, Array]:
     """A tapered tube along `path [N, 3]`: half `wide` along `across`, half `tall` along the third direction;
     closed ends.
@@ -171,28 +101,6 @@ def tube(path: Array, wide: Array, tall: Array, across: Array, sides: int = 8) -
     a, b = (i * sides + j).ravel(), (i * sides + (j + 1) % sides).ravel()
     triangles = np.concatenate([np.stack([a, b, b + sides], -1), np.stack([a, b + sides, a + sides], -1)])
     return positions.reshape(-1, 3), normals.reshape(-1, 3), triangles
-
-
-def brow(face: Field, full: float = 1.0) -> Piece:
-    """The left brow on the face; full: scale of its thickness."""
-    t = np.linspace(0, 1, 11)
-    path = np.stack(
-        [0.0145 + 0.0365 * t, 1.6278 + 0.0068 * np.sin(np.pi * (0.13 + 0.74 * t)), np.full(11, 0.085)], 1
-    )
-    for _ in range(8):  # onto the face, straight back
-        path[:, 2] -= face(path)
-    normal = gradient(face, path)
-    thick = full * np.sin(np.pi * np.clip(0.10 + 0.90 * t, 0, 1)) ** 0.6
-    return rigid(
-        tube(
-            path + normal * 0.0002,
-            0.0030 * thick + 1e-5,
-            0.0016 * thick + 1e-5,
-            np.cross(normal, np.gradient(path, axis=0)),
-        ),
-        "LeftBrow",
-        "hair",
-    )
 
 
 def ring(
@@ -231,49 +139,50 @@ def ring(
 
 
 def hem() -> Piece:
-    profile = [
-        (0.034, -0.0030),
-        (0.0335, 0.0018),
-        (0.030, 0.0028),
-        (0.004, 0.0030),
-        (0.0, 0.0016),
-        (-0.0005, -0.004),
-        (0.004, -0.012),
-    ]
+    profile = [(0.040, -0.0040), (0.038, 0.0014), (0.010, 0.0016), (0.0, 0.0), (0.002, -0.010)]
     made = ring(
-        shapes.torso(), np.array([0, shapes.HEM - 0.004, 0.0]), np.array([0.0, 1, 0]), profile, 40, "band"
+        shapes.torso(), np.array([0, shapes.HEM - 0.004, 0.0]), np.array([0.0, 1, 0]), profile, 64, "band"
     )
-    return replace(made, weights=weights.sweater_weights(made.positions))
+    shade = ribs(len(profile), 64)
+    return replace(made, weights=weights.sweater_weights(made.positions), shade=shade)
 
 
 def cuff(sleeve: float = 0.0) -> Piece:
     """The band at the end of the left sleeve, `sleeve` metres above the wrist."""
-    profile = [
-        (-0.0305, -0.003),
-        (-0.030, 0.0014),
-        (-0.027, 0.0022),
-        (-0.004, 0.0022),
-        (0.0, 0.0010),
-        (0.0005, -0.004),
-        (-0.004, -0.010),
-    ]
+    profile = [(-0.0340, -0.003), (-0.0320, 0.0014), (-0.005, 0.0012), (0.0, -0.0006), (-0.004, -0.010)]
     rod = shapes.forearm()
-    band = ring(rod, shapes.CUFF + ARM * (0.002 - sleeve), ARM, profile, 18, "band")
-    return replace(band, weights=weights.arm(band.positions))
+    band = ring(rod, shapes.CUFF + ARM * (0.002 - sleeve), ARM, profile, 36, "band")
+    return replace(band, weights=weights.arm(band.positions), shade=ribs(len(profile), 36))
 
 
 def sole() -> Piece:
     profile = [
-        (0.000, -0.006),
-        (0.0, 0.0),
-        (0.003, 0.0030),
-        (0.015, 0.0036),
-        (0.0185, 0.0028),
-        (0.0195, 0.0005),
-        (0.0195, -0.006),
+        (0.0, -0.006),
+        (0.001, 0.0012),
+        (0.004, 0.0030),
+        (0.0170, 0.0034),
+        (0.0200, 0.0010),
+        (0.0200, -0.006),
     ]
-    made = ring(shapes.sole_outline, np.array([0.1055, 0, 0.045]), np.array([0.0, 1, 0]), profile, 40, "sole")
+    made = ring(shapes.sole_outline, np.array([0.1055, 0, 0.045]), np.array([0.0, 1, 0]), profile, 34, "sole")
     return replace(made, weights=weights.shoe_weights(made.positions))
+
+
+def laces() -> list[Piece]:
+    """Four laces across the left shoe."""
+    shoe = shapes.shoe()
+    out = []
+    for ahead in (0.022, 0.042, 0.062, 0.082):
+        x = np.linspace(-0.019, 0.019, 5)
+        path = np.stack([0.103 + x, np.full(5, 0.12), np.full(5, ahead) - 0.004 * np.abs(x) / 0.019], 1)
+        for _ in range(12):
+            path[:, 1] -= shoe(path)
+        full = np.full(5, 0.0026)
+        made = rigid(
+            tube(path + [0, 0.0006, 0], full, full * 0.7, np.tile([0.0, 0, 1], (5, 1)), 4), "LeftFoot", "sole"
+        )
+        out.append(replace(made, weights=weights.shoe_weights(made.positions)))
+    return out
 
 
 def finger(name: str) -> Piece:
@@ -292,39 +201,16 @@ def finger(name: str) -> Piece:
     )
 
 
+def ribs(count: int, columns: int) -> Array:
+    """Return how light the ribs of a knitted band are, `[columns * count]`: of each column in each ring."""
+    return np.tile(np.where(np.arange(columns) % 2 == 0, 1.0, 0.80), count)
+
+
 def collar() -> Piece:
-    angle = np.linspace(0, 2 * np.pi, 29)
-    at, up = shapes.COLLAR_AT, shapes.COLLAR_UP
-    back = np.cross([1.0, 0, 0], up)
-    out = np.cos(angle)[:, None] * [1.0, 0, 0] + np.sin(angle)[:, None] * back
-    path = at + out * 0.0465
-    shape = tube(path, np.full(29, 0.0080), np.full(29, 0.0125), out, 10)
-    return replace(rigid(shape, "Neck", "band"), weights=weights.spine(shape[0]))
-
-
-def teeth() -> Piece:
-    x = np.linspace(-0.0150, 0.0150, 9)
-    path = np.stack([x, np.full(9, 1.5474), 0.0625 - 22.0 * x * x], 1)
-    return rigid(
-        tube(path, np.full(9, 0.0050), np.full(9, 0.0020), np.tile([0.0, 1, 0], (9, 1)), 6), "Head", "teeth"
-    )
-
-
-def tongue() -> Piece:
-    """Flat on the floor of the mouth, behind the lips while they are shut."""
-    around, along = np.linspace(0, 2 * np.pi, 13)[:-1], np.linspace(0, np.pi, 9)
-    a, b = np.meshgrid(along, around, indexing="ij")
-    ball = np.stack([np.sin(a) * np.cos(b), np.sin(a) * np.sin(b), np.cos(a)], -1).reshape(-1, 3)
-    radii = np.array([0.0125, 0.0030, 0.0150])
-    i, j = np.meshgrid(np.arange(len(along) - 1), np.arange(len(around)), indexing="ij")
-    first, beside = (i * 12 + j).ravel(), (i * 12 + (j + 1) % 12).ravel()
-    triangles = np.concatenate(
-        [np.stack([first, beside, beside + 12], -1), np.stack([first, beside + 12, first + 12], -1)]
-    )
-    normals = ball / radii
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    made = rigid((ball * radii + [0.0, 1.5382, 0.0560], normals, triangles), "Jaw", "lip")
-    return replace(made, tongue=True)
+    """The band of a sweater round the neck."""
+    profile = [(-0.016, 0.0030), (-0.010, 0.0085), (0.004, 0.0080), (0.0105, 0.0050), (0.0100, -0.0030)]
+    made = ring(neck(), shapes.COLLAR_AT, shapes.COLLAR_UP, profile, 44, "band")
+    return replace(made, weights=weights.spine(made.positions), shade=ribs(len(profile), 44))
 
 
 def glasses() -> list[Piece]:
@@ -359,7 +245,7 @@ def wire(path: Array | Sequence[tuple[float, float, float]], radius: float) -> P
     """A thin round tube along a path, carried by the head."""
     points = np.asarray(path, float)
     full = np.full(len(points), radius)
-    return rigid(tube(points, full, full, np.tile([0.13, 0.31, 0.94], (len(points), 1)), 6), "Head", "frame")
+    return rigid(tube(points, full, full, np.tile([0.13, 0.31, 0.94], (len(points), 1)), 5), "Head", "frame")
 
 
 def earring() -> Piece:

@@ -1,6 +1,11 @@
 """The mannequin's forms as distance fields on its skeleton's joints: head, hair, hands, sweater, trousers,
 shoes.
 
+Measures of the body are about the means of ANSUR II (Gordon and others, 2014), rounded to the centimetre and
+scaled to the skeleton's 1.72 m: waist breadth 0.30 m, hip breadth 0.36, biacromial breadth 0.39; round the
+neck 0.35, the thigh 0.64 and the calf 0.39; foot length 0.26; and some millimetres of cloth. Shoulders slope
+by about 20 degrees from the neck.
+
 `JOINT` are the joints' places in the rest pose (metres). The figure is 1.72 m tall, faces +Z, its left is at
 +X. Left-hand parts are made at x > 0 and mirrored.
 """
@@ -14,6 +19,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sample_clips.make.default_body.forms import foot, loft
+from sample_clips.make.face import face_form
+from sample_clips.make.folds import body_folds, sleeve_folds, trouser_folds
 from sample_clips.make.mannequin_skeleton import ARM, FINGERS, mannequin_skeleton
 from sample_clips.make.sculpt import (
     Field,
@@ -25,7 +33,6 @@ from sample_clips.make.sculpt import (
     rods,
     smooth_min,
     union,
-    without,
 )
 
 Array = NDArray[Any]
@@ -33,9 +40,8 @@ Array = NDArray[Any]
 SKELETON = mannequin_skeleton()
 JOINT: dict[str, Array] = dict(zip(SKELETON.names, SKELETON.globals(SKELETON.rest)[1], strict=True))
 
-EYE_RADIUS = 0.0154
-LID_RADIUS = 0.0165
-MOUTH_Y, MOUTH_HALF = 1.5415, 0.0215  # the line between the lips and half its width
+EYE_RADIUS = 0.0166
+MOUTH_Y, MOUTH_HALF = 1.5415, 0.0225  # the line between the lips and half its width
 
 
 @dataclass(frozen=True)
@@ -58,108 +64,22 @@ def step(low: float, high: float, x: Array) -> Array:
 
 def mouth_line(x: Array) -> Array:
     """Height of the line between the lips: level, except for corners a hair above; a mood makes the smile."""
-    return np.asarray(MOUTH_Y + 0.0007 * np.minimum(np.abs(x) / MOUTH_HALF, 1.3) ** 2)
+    return np.asarray(MOUTH_Y + 0.0019 * np.minimum(np.abs(x) / MOUTH_HALF, 1.3) ** 2)
 
 
 # --- head
 
 
-def _skull() -> Field:
-    return ellipsoid((0, 1.634, -0.008), (0.0745, 0.0855, 0.0955))
-
-
-def _mouth_slit(p: Array) -> Array:
-    """The gap between the lips and a shallow pocket behind it."""
-    across = np.maximum(np.abs(p[:, 0]) - MOUTH_HALF, 0)
-    gap = np.hypot(np.abs(p[:, 1] - mouth_line(p[:, 0])), across) - 0.0009
-    gap = np.maximum(gap, 0.066 - p[:, 2])
-    pocket = ellipsoid((0, MOUTH_Y + 0.001, 0.058), (0.018, 0.0060, 0.0150))(p)
-    return np.asarray(np.minimum(gap, pocket))
-
-
-def face_form() -> Field:
-    """Head and neck without eyes, mouth opening and ears."""
-    form = union(
-        [
-            _skull(),
-            ellipsoid((0, 1.577, 0.024), (0.0580, 0.0740, 0.0610)),  # the mask of the face
-            ellipsoid((0, 1.5165, 0.0620), (0.0200, 0.0150, 0.0190)),  # chin
-            mirrored(cone((0.046, 1.556, 0.002), (0.013, 1.513, 0.058), 0.0140, 0.0130)),  # jaw
-            mirrored(ellipsoid((0.0340, 1.5700, 0.0570), (0.0230, 0.0230, 0.0215))),  # cheeks
-        ],
-        0.034,
-    )
-    form = without(
-        form,
-        mirrored(ellipsoid(JOINT["LeftEye"] + [0.0010, 0.0010, 0.0220], (0.0210, 0.0140, 0.0140))),
-        0.018,
-    )
-    nose = union(
-        [
-            cone((0, 1.6100, 0.0835), (0, 1.5765, 0.1005), 0.0046, 0.0078),
-            ellipsoid((0, 1.5735, 0.1005), (0.0088, 0.0080, 0.0082)),
-            mirrored(ellipsoid((0.0088, 1.5700, 0.0925), (0.0060, 0.0055, 0.0072))),
-        ],
-        0.012,
-    )
-    form = union([form, nose], 0.014)
-    neck = union(
-        [
-            cone((0, 1.395, -0.034), (0, 1.460, -0.025), 0.056, 0.0420),
-            cone((0, 1.460, -0.025), (0, 1.550, -0.012), 0.0420, 0.0410),
-        ],
-        0.02,
-    )
-    return union([form, neck], 0.024)
-
-
-def front(field: Field, x: float, y: float) -> float:
-    """Where a form's surface is in front of the head's middle, z in metres."""
-    low, high = 0.0, 0.14
-    for _ in range(24):
-        middle = (low + high) / 2
-        low, high = (middle, high) if field(np.array([[x, y, middle]]))[0] < 0 else (low, middle)
-    return low
-
-
 def head() -> Field:
-    form = face_form()
-
-    def lip(points: list[tuple[float, float]], radii: list[float], out: float) -> Field:
-        """A rod along (x, y) points, standing `out` metres out of the face."""
-        return mirrored(
-            rods(
-                [(x, y, front(form, x, y) - r + out) for (x, y), r in zip(points, radii, strict=True)],
-                radii,
-                0.002,
-            )
-        )
-
-    lips = union(
-        [
-            lip([(0.0, 1.5468), (0.0070, 1.5474), (0.0205, 1.5460)], [0.0050, 0.0050, 0.0030], 0.0022),
-            lip([(0.0, 1.5358), (0.0090, 1.5366), (0.0205, 1.5444)], [0.0058, 0.0054, 0.0030], 0.0024),
-        ],
-        0.005,
-    )
-    face = union([form, lips], 0.006)
-    ear = without(
-        ellipsoid((0.0770, 1.5965, -0.013), (0.0080, 0.0270, 0.0170), _turned(0.32, -0.10)),
-        ellipsoid((0.0860, 1.5985, -0.008), (0.0055, 0.0165, 0.0090), _turned(0.32, -0.10)),
-        0.008,
-    )
-    face = union([face, mirrored(ear)], 0.008)
-    # The lids' shells come through the face: their crease is cut by the depth buffer, crisper than by
-    # triangles.
-    return without(face, _mouth_slit, 0.003)
+    return face_form(ears=True)
 
 
 def hair() -> Field:
     """A short cap, fuller over the forehead."""
     cap = union(
         [
-            ellipsoid((0, 1.6400, -0.0160), (0.0815, 0.0910, 0.0965)),
-            ellipsoid((0.010, 1.6980, 0.0360), (0.0560, 0.0330, 0.0540), _turned(0.0, 0.12, -0.20)),
+            ellipsoid((0, 1.6470, -0.0140), (0.0830, 0.0900, 0.1000)),
+            ellipsoid((0.010, 1.7020, 0.0330), (0.0560, 0.0340, 0.0560), _turned(0.0, 0.12, -0.20)),
         ],
         0.030,
     )
@@ -268,61 +188,109 @@ def hand() -> Field:
 
 WAIST, HEM = 0.985, 0.912
 CUFF = JOINT["LeftHand"] - ARM * 0.008
-COLLAR_AT, COLLAR_UP = np.array([0, 1.4500, -0.0260]), np.array([0, 0.966, 0.259])
+COLLAR_AT, COLLAR_UP = np.array([0, 1.4560, -0.0290]), np.array([0, 0.966, 0.259])
 
 
 def torso() -> Field:
-    return union(
-        [
-            ellipsoid((0, 1.285, -0.014), (0.143, 0.165, 0.096)),
-            cone((-0.122, 1.374, -0.030), (0.122, 1.374, -0.030), 0.052, 0.052),
-            mirrored(cone((0.0, 1.440, -0.030), (0.130, 1.396, -0.030), 0.048, 0.040)),
-            mirrored(ellipsoid((0.060, 1.300, 0.028), (0.070, 0.062, 0.044))),
-            ellipsoid((0, 1.120, -0.006), (0.124, 0.170, 0.088)),
-            ellipsoid((0, 0.930, -0.004), (0.160, 0.150, 0.108)),
-        ],
-        0.075,
-    )
+    """The trunk in a sweater, from the seat to the pit of the neck."""
+    rows = [  # height, half breadth, depth ahead and behind of the middle, and where that is
+        (0.780, 0.150, 0.088, 0.100, -0.004),
+        (0.840, 0.178, 0.110, 0.124, -0.006),
+        (0.900, 0.184, 0.114, 0.126, -0.006),
+        (0.950, 0.181, 0.112, 0.122, -0.005),
+        (1.000, 0.168, 0.106, 0.110, -0.004),
+        (1.060, 0.151, 0.099, 0.095, -0.003),
+        (1.120, 0.141, 0.095, 0.087, -0.005),
+        (1.180, 0.142, 0.096, 0.090, -0.009),
+        (1.240, 0.151, 0.101, 0.098, -0.014),
+        (1.300, 0.158, 0.105, 0.104, -0.019),
+        (1.350, 0.156, 0.099, 0.103, -0.024),
+        (1.390, 0.142, 0.084, 0.096, -0.028),
+        (1.425, 0.110, 0.068, 0.082, -0.031),
+        (1.455, 0.072, 0.056, 0.064, -0.033),
+        (1.480, 0.052, 0.046, 0.050, -0.034),
+    ]
+    up, left, ahead = np.eye(3)[[1, 0, 2]]
+    body = loft((0, 0, 0), (up, left, ahead), [(y, w, w, f, b, 0.0, m) for y, w, f, b, m in rows], 2.3)
+    slope = mirrored(cone((0.034, 1.456, -0.046), (0.150, 1.402, -0.034), 0.0290, 0.0300))
+    chest = mirrored(ellipsoid((0.070, 1.310, 0.040), (0.072, 0.058, 0.046)))
+    blade = mirrored(ellipsoid((0.080, 1.330, -0.088), (0.060, 0.085, 0.036)))
+    return union([union([body, chest, blade], 0.045), slope], 0.040)
 
 
 def forearm() -> Field:
-    return cone(JOINT["LeftLowerArm"], JOINT["LeftHand"] + ARM * 0.03, 0.0410, 0.0325)
+    elbow, wrist = JOINT["LeftLowerArm"], JOINT["LeftHand"] + ARM * 0.03
+    rod = cone(elbow, wrist, 0.0390, 0.0310)
+    return union([rod, ellipsoid(elbow + ARM * 0.070, (0.0420, 0.0420, 0.0410))], 0.020)
 
 
 def sleeve(end: Array = CUFF) -> Field:
     """The left one, to a point on the arm. Its elbow stands out behind: skinning flattens what is bent."""
-    upper = cone(JOINT["LeftUpperArm"] + ARM * 0.004, JOINT["LeftLowerArm"], 0.0515, 0.0410)
-    elbow = ellipsoid(JOINT["LeftLowerArm"] + [0, 0, -0.0095], (0.0390, 0.0390, 0.0370))
+    start = JOINT["LeftUpperArm"] + [-0.004, -0.0075, 0.0]
+    upper = union(
+        [
+            cone(start, JOINT["LeftLowerArm"], 0.0470, 0.0400),
+            ellipsoid(start + ARM * 0.055, (0.0520, 0.0520, 0.0500)),
+        ],
+        0.020,
+    )
+    elbow = ellipsoid(JOINT["LeftLowerArm"] + [0, 0, -0.0095], (0.0385, 0.0385, 0.0370))
     arm = union([union([upper, forearm()], 0.008), elbow], 0.016)
     return common(arm, plane(end, ARM), 0.004)
 
 
-def sweater() -> Field:
-    body = common(torso(), plane((0, HEM, 0), (0, -1, 0)), 0.012)
+def folded(cloth: Field, *folds: Callable[[Array], Array]) -> Field:
+    """Return cloth with folds."""
+    return lambda p: np.asarray(cloth(p) - sum(f(p) for f in folds))
+
+
+def sweater(end: Array = CUFF, hem: float = HEM, bust: float = 0.0) -> Field:
+    """A knitted sweater. end: of its left sleeve. hem: its height. bust: metres it stands out in front."""
+    body = torso()
+    if bust:
+        breast = mirrored(ellipsoid((0.066, 1.280, 0.052), (0.062, 0.066, 0.040 + bust)))
+        body = union([body, breast], 0.060)
+    body = common(body, plane((0, hem, 0), (0, -1, 0)), 0.012)
     body = common(body, plane(COLLAR_AT + COLLAR_UP * 0.002, COLLAR_UP), 0.004)
-    return union([body, mirrored(sleeve())], 0.050)
+    whole = union([body, mirrored(sleeve(end))], 0.044)
+    return folded(whole, sleeve_folds, lambda p: body_folds(p, hem))
 
 
 def pelvis() -> Field:
-    body = union(
-        [
-            ellipsoid((0, 0.965, -0.004), (0.132, 0.100, 0.092)),
-            mirrored(ellipsoid((0.064, 0.900, -0.036), (0.070, 0.075, 0.062))),
-        ],
-        0.05,
-    )
-    return common(body, plane((0, WAIST, 0), (0, 1, 0)), 0.01)
+    rows = [  # height, half breadth, depth ahead and behind of the middle
+        (0.840, 0.120, 0.070, 0.080),
+        (0.880, 0.158, 0.092, 0.104),
+        (0.920, 0.165, 0.097, 0.108),
+        (0.960, 0.158, 0.095, 0.100),
+        (1.000, 0.146, 0.090, 0.090),
+        (1.030, 0.138, 0.086, 0.084),
+    ]
+    up, left, ahead = np.eye(3)[[1, 0, 2]]
+    body = loft((0, 0, 0), (up, left, ahead), [(y, w, w, f, b, 0.0, -0.005) for y, w, f, b in rows], 2.3)
+    seat = mirrored(ellipsoid((0.070, 0.895, -0.052), (0.076, 0.074, 0.062)))
+    return common(union([body, seat], 0.05), plane((0, WAIST, 0), (0, 1, 0)), 0.01)
 
 
 def leg() -> Field:
-    hip, knee, ankle = JOINT["LeftUpperLeg"], JOINT["LeftLowerLeg"], JOINT["LeftFoot"]
-    rod = rods(
-        [hip + [-0.008, 0.0, 0.0], knee + [0, 0, 0.002], ankle + [0, -0.03, 0.004]],
-        [0.0770, 0.0560, 0.0450],
-        0.010,
-    )
-    calf = ellipsoid(knee * 0.70 + ankle * 0.30 + [0.002, 0, -0.010], (0.050, 0.130, 0.053))
-    return common(union([rod, calf], 0.03), plane((0, 0.080, 0), (0, -1, 0.10)), 0.006)
+    """The left leg in trousers."""
+    rows = [  # height, outwards, inwards, ahead, behind of the middle, and where that is, across and ahead
+        (0.070, 0.047, 0.047, 0.052, 0.054, 0.1030, -0.014),
+        (0.150, 0.048, 0.047, 0.050, 0.057, 0.1020, -0.018),
+        (0.250, 0.053, 0.051, 0.051, 0.064, 0.1010, -0.019),
+        (0.330, 0.058, 0.055, 0.053, 0.071, 0.1000, -0.017),
+        (0.390, 0.059, 0.056, 0.054, 0.071, 0.1000, -0.013),
+        (0.450, 0.058, 0.055, 0.057, 0.063, 0.0990, -0.006),
+        (0.500, 0.058, 0.055, 0.061, 0.058, 0.0980, 0.002),
+        (0.560, 0.062, 0.059, 0.065, 0.064, 0.0970, 0.003),
+        (0.640, 0.071, 0.068, 0.074, 0.076, 0.0960, 0.002),
+        (0.720, 0.080, 0.076, 0.082, 0.086, 0.0950, 0.000),
+        (0.800, 0.087, 0.081, 0.089, 0.095, 0.0930, -0.002),
+        (0.860, 0.089, 0.082, 0.092, 0.100, 0.0910, -0.004),
+        (0.915, 0.083, 0.075, 0.086, 0.096, 0.0880, -0.006),
+        (0.960, 0.069, 0.060, 0.072, 0.080, 0.0850, -0.006),
+    ]
+    up, left, ahead = np.eye(3)[[1, 0, 2]]
+    return common(loft((0, 0, 0), (up, left, ahead), rows, 2.1), plane((0, 0.080, 0), (0, -1, 0.10)), 0.006)
 
 
 def trousers() -> Field:
@@ -334,20 +302,17 @@ def trousers() -> Field:
         joined = [union([lambda _, d=body: d, lambda _, d=side: d], 0.045)(p) for side in (left, right)]
         return np.asarray(union([lambda _: joined[0], lambda _: joined[1]], 0.012)(p))
 
-    return field
+    return folded(field, trouser_folds)
 
 
 def _last(p: Array) -> Array:
-    """The foot's form, floor not yet cut."""
-    ankle = JOINT["LeftFoot"]
+    """The foot's form in its shoe, floor not yet cut."""
     return union(
         [
-            cone((0.102, 0.110, -0.026), (0.102, 0.060, -0.030), 0.0400, 0.0400),
-            cone((0.102, 0.038, -0.042), (0.106, 0.034, 0.080), 0.0370, 0.0420),
-            cone((0.106, 0.030, 0.085), (0.111, 0.020, 0.136), 0.0420, 0.0350, flat=(1, 1.1, 1)),
-            cone(ankle + [0, -0.010, 0.02], (0.107, 0.042, 0.085), 0.0340, 0.0280),
+            lambda q: foot()(q - [0.006, 0.004, 0.0]) - 0.0045,
+            cone((0.102, 0.122, -0.030), (0.102, 0.070, -0.032), 0.0385, 0.0370),
         ],
-        0.030,
+        0.024,
     )(p)
 
 
@@ -371,10 +336,10 @@ def _head_size(p: Array) -> Array:
     mouth = np.linalg.norm((q - [0, MOUTH_Y, 0.082]) / [0.028, 0.013, 0.020], axis=1)
     eye = np.linalg.norm(q - JOINT["LeftEye"], axis=1) / 0.022
     nose = np.linalg.norm((q - [0, 1.573, 0.097]) / [0.017, 0.014, 0.02], axis=1)
-    ear = np.linalg.norm((q - [0.078, 1.5965, -0.013]) / [0.02, 0.034, 0.026], axis=1)
-    out = 0.0108 + 0.009 * step(0.03, -0.05, p[:, 2])
-    for near, fine in ((mouth, 0.0031), (eye, 0.0070), (nose, 0.0052), (ear, 0.0070)):
-        out = np.minimum(out, fine + (0.0108 - fine) * step(0.9, 2.8, near))
+    ear = np.linalg.norm((q - [0.074, 1.5975, -0.012]) / [0.014, 0.026, 0.020], axis=1)
+    out = 0.0115 + 0.009 * step(0.03, -0.05, p[:, 2])
+    for near, fine in ((mouth, 0.0050), (eye, 0.0052), (nose, 0.0040), (ear, 0.0042)):
+        out = np.minimum(out, fine + (0.0124 - fine) * step(0.9, 2.8, near))
     return np.asarray(out)
 
 
@@ -390,25 +355,34 @@ def elbow_size(p: Array, elsewhere: float) -> Array:
     return np.asarray(elsewhere - (elsewhere - 0.0125) * step(0.085, 0.040, along))
 
 
-def _sweater_size(p: Array) -> Array:
+def sweater_size(p: Array) -> Array:
+    """Fine where it folds: over the hem, at armpits, elbows and cuffs."""
     shoulder = JOINT["LeftUpperArm"]
     q = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], 1)
     edge = np.minimum(np.abs((q - CUFF) @ ARM) / 0.03, np.abs(p[:, 1] - HEM) / 0.03)
     edge = np.minimum(edge, np.linalg.norm((q - COLLAR_AT) / [0.07, 0.03, 0.07], axis=1))
-    out = 0.0320 - 0.0135 * step(1.2, 0.5, np.linalg.norm(q - shoulder, axis=1) / 0.09)
-    out = np.minimum(out, elbow_size(p, 0.0320))
+    out = 0.0290 - 0.0125 * step(1.2, 0.5, np.linalg.norm(q - shoulder, axis=1) / 0.10)
+    chest = np.linalg.norm((q - [0.065, 1.275, 0.10]) / [0.08, 0.08, 0.08], axis=1)
+    out = np.minimum(out, 0.0290 - 0.0090 * step(1.2, 0.7, chest))
+    out = np.minimum(out, elbow_size(p, 0.0290))
+    folds = np.exp(-(((p[:, 1] - HEM - 0.055) / 0.050) ** 2)) + 0.8 * np.exp(
+        -(np.linalg.norm((q - [0.120, 1.285, 0.0]) / [0.05, 0.07, 0.12], axis=1) ** 2)
+    )
+    out = out - (out - 0.0150) * np.clip(folds * (q[:, 0] < 0.22), 0, 1)
     return np.asarray(out - (out - 0.0165) * step(1.2, 0.6, edge))
 
 
 def _trouser_size(p: Array) -> Array:
     q = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], 1)
-    knee = np.linalg.norm(q - JOINT["LeftLowerLeg"], axis=1) / 0.09
-    crotch = np.linalg.norm((q - [0, 0.84, 0]) / [0.05, 0.06, 0.12], axis=1)
-    return np.asarray(0.0340 - 0.0160 * step(1.1, 0.6, knee) - 0.012 * step(1.3, 0.6, crotch))
+    knee = np.abs(p[:, 1] - JOINT["LeftLowerLeg"][1]) / 0.10
+    crotch = np.linalg.norm((q - [0.04, 0.85, 0.02]) / [0.09, 0.06, 0.12], axis=1)
+    shoe = np.abs(p[:, 1] - 0.125) / 0.06
+    fold = np.maximum(np.maximum(step(1.1, 0.5, knee), step(1.3, 0.6, crotch)), step(1.2, 0.6, shoe))
+    return np.asarray(0.0330 - 0.0165 * fold)
 
 
 def _shoe_size(p: Array) -> Array:
-    return np.full(len(p), 0.0170)
+    return np.full(len(p), 0.0150)
 
 
 def _hair_size(p: Array) -> Array:
@@ -417,10 +391,10 @@ def _hair_size(p: Array) -> Array:
 
 
 PARTS: tuple[Part, ...] = (
-    Part("head", head(), (-0.100, 1.405, -0.115), (0.100, 1.735, 0.120), 0.0016, _head_size),
+    Part("head", head(), (-0.100, 1.405, -0.120), (0.100, 1.740, 0.120), 0.0020, _head_size),
     Part("hair", hair(), (-0.095, 1.510, -0.125), (0.095, 1.750, 0.110), 0.0035, _hair_size),
     Part("palm", palm(), (0.490, 0.900, -0.095), (0.670, 1.110, 0.045), 0.0025, _palm_size),
-    Part("sweater", sweater(), (-0.580, 0.900, -0.140), (0.580, 1.480, 0.130), 0.0055, _sweater_size),
-    Part("trousers", trousers(), (-0.210, 0.060, -0.135), (0.210, 1.010, 0.130), 0.0065, _trouser_size),
+    Part("sweater", sweater(), (-0.580, 0.890, -0.150), (0.580, 1.490, 0.140), 0.0055, sweater_size),
+    Part("trousers", trousers(), (-0.210, 0.060, -0.145), (0.210, 1.010, 0.130), 0.0065, _trouser_size),
     Part("shoe", shoe(), (0.045, -0.010, -0.100), (0.170, 0.140, 0.185), 0.0035, _shoe_size),
 )

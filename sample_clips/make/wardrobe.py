@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sample_clips.make import shapes
+from sample_clips.make.face import face_form, front, skull
+from sample_clips.make.folds import body_folds, sleeve_folds
 from sample_clips.make.looks import Look
 from sample_clips.make.mannequin_skeleton import ARM
+from sample_clips.make.mannequin_weights import sweater_weights
+from sample_clips.make.pieces import Piece, rigid
 from sample_clips.make.sculpt import (
     Field,
     common,
@@ -23,7 +28,7 @@ from sample_clips.make.sculpt import (
     union,
     without,
 )
-from sample_clips.make.shapes import CUFF, HEM, JOINT, Part, step
+from sample_clips.make.shapes import CUFF, JOINT, Part, step
 
 Array = NDArray[Any]
 
@@ -48,57 +53,58 @@ def _short() -> Field:
 
 
 def _bob() -> Field:
-    """To the chin, parted on the side, behind the ears."""
+    """What lies under the locks: a cap from the hairline to the nape."""
     whole = union(
         [
-            ellipsoid((0, 1.6420, -0.0170), (0.0895, 0.0945, 0.1030)),
-            mirrored(cone((0.0720, 1.6350, -0.0160), (0.0770, 1.5260, -0.0260), 0.0260, 0.0240)),
-            ellipsoid((0, 1.5750, -0.0620), (0.0820, 0.0850, 0.0480)),
-            cone((0.028, 1.7060, 0.045), (-0.058, 1.6500, 0.060), 0.026, 0.016),
-            cone((0.028, 1.7060, 0.045), (0.066, 1.6600, 0.046), 0.022, 0.015),
+            grown(skull(), 0.0085),
+            mirrored(cone((0.0660, 1.6300, -0.0250), (0.0660, 1.5300, -0.0350), 0.0190, 0.0160)),
+            ellipsoid((0, 1.5750, -0.0560), (0.0780, 0.0720, 0.0430)),
         ],
-        0.030,
+        0.026,
     )
-    face = union(
-        [
-            ellipsoid((0.0, 1.5800, 0.1000), (0.0640, 0.0980, 0.0900)),
-            ellipsoid((0.018, 1.6500, 0.1050), (0.0300, 0.0330, 0.0420)),
-            cone((0, 1.500, 0.02), (0, 1.440, 0.02), 0.062, 0.062),
-        ],
-        0.016,
+    return common(whole, _hairline, 0.006)
+
+
+def _hairline(p: Array) -> Array:
+    """Positive where no hair grows: the face, from the forehead past the temples to before the ears."""
+    x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+    edge = np.interp(
+        y,
+        [1.500, 1.560, 1.605, 1.640, 1.665, 1.690, 1.720],
+        [-0.022, -0.012, 0.010, 0.034, 0.050, 0.064, 0.090],
     )
-    hair = without(whole, face, 0.010)
-    hair = common(hair, plane((0, 1.508, -0.02), (0, -1.0, 0.16)), 0.010)
-    return _strands(hair, 19, 0.0010)
+    edge = edge + 0.35 * np.maximum(0.050 - x, 0) * step(1.630, 1.680, y)
+    return np.asarray(0.8 * (z - edge))
 
 
 def _receding() -> Field:
-    """Short, thin, far back at the temples."""
-    cap = ellipsoid((0, 1.6375, -0.0185), (0.0790, 0.0885, 0.0950))
-    sides = mirrored(ellipsoid((0.052, 1.625, -0.020), (0.0300, 0.0520, 0.0640)))
+    """What lies under short hair on the sides and the back: it ends flat on the skin."""
 
     def bare(p: Array) -> Array:
-        forehead = plane((0, 1.6960, 0.050), (0, -0.45, 1.0))(p)
-        temple = mirrored(plane((0.030, 1.66, 0.030), (0.75, 0.30, 1.0)))(p)
-        ear = plane((0, 1.60, 0.008), (0, 0.10, 1.0))(p)
-        nape = plane((0, 1.5640, -0.060), (0, -1.0, 0.62))(p)
-        front = np.maximum(np.minimum(forehead, ear + 0.05), np.minimum(temple, ear + 0.02))
-        return np.asarray(np.maximum(np.maximum(np.where(p[:, 1] > 1.640, front, ear), nape), -0.02))
+        x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
+        edge = np.interp(
+            y, [1.555, 1.580, 1.605, 1.640, 1.660, 1.690], [-0.070, -0.034, 0.004, 0.006, -0.030, -0.080]
+        )
+        return np.asarray(0.7 * (z - edge) + 0.0 * x)
 
-    return _strands(common(union([cap, sides], 0.02), bare, 0.010), 19, 0.0004)
+    return common(grown(skull(), 0.0026), bare, 0.012)
 
 
 def _beard() -> Field:
-    """Short, on jaw, chin and upper lip; round the mouth it leaves the lips free."""
-    skin = shapes.face_form()
-    cheek = mirrored(plane((0.046, 1.556, 0.050), (0.30, 1.0, -0.28)))
-    mouth = ellipsoid((0, shapes.MOUTH_Y + 0.0005, 0.090), (0.0265, 0.0098, 0.050))
-    neck = plane((0, 1.490, 0.030), (0, -1.0, -0.45))
-    ear = mirrored(plane((0.0, 1.560, 0.012), (0.0, 0.20, -1.0)))
+    """What lies under a short beard on jaw, chin and upper lip; it leaves the lips free."""
+    mouth = ellipsoid((0, shapes.MOUTH_Y - 0.001, 0.090), (0.0265, 0.0098, 0.050))
+    ear = mirrored(plane((0.0, 1.560, 0.008), (0.0, 0.20, -1.0)))
 
-    out = common(grown(skin, 0.0042), cheek, 0.006)
-    out = without(out, mouth, 0.003)
-    return common(common(out, neck, 0.006), ear, 0.006)
+    def cheek(p: Array) -> Array:
+        x, y = np.abs(p[:, 0]), p[:, 1]
+        top = np.interp(
+            x, [0, 0.012, 0.026, 0.034, 0.048, 0.060], [1.5570, 1.5580, 1.5540, 1.5500, 1.5560, 1.5760]
+        )
+        low = np.interp(x, [0, 0.020, 0.045, 0.060], [1.4960, 1.4980, 1.5120, 1.5300])
+        return np.asarray(np.maximum(0.7 * (y - top), 0.7 * (low - y)))
+
+    out = common(grown(face_form(), 0.0016), cheek, 0.004)
+    return common(without(out, mouth, 0.003), ear, 0.006)
 
 
 def _opening(p: Array) -> Array:
@@ -107,28 +113,23 @@ def _opening(p: Array) -> Array:
     return np.interp(p[:, 1], height, (0.060, 0.034, 0.018, 0.020, 0.036, 0.054, 0.062))
 
 
-def _coat() -> Field:
-    """Open in front, with lapels, over the hips."""
-    hips = ellipsoid((0, 0.900, -0.010), (0.160, 0.150, 0.110))
+def _coat(opened: bool = True) -> Field:
+    """Open in front, over the hips. opened: else as if it were closed."""
+    hips = ellipsoid((0, 0.900, -0.010), (0.166, 0.150, 0.114))
     body = union([shapes.torso(), hips], 0.05)
     body = common(body, plane((0, COAT_HEM, 0), (0, -1, 0)), 0.010)
     body = common(body, plane(shapes.COLLAR_AT + shapes.COLLAR_UP * -0.006, shapes.COLLAR_UP), 0.004)
     whole = union([body, mirrored(shapes.sleeve(CUFF - ARM * 0.012))], 0.050)
+    whole = shapes.folded(whole, sleeve_folds, lambda p: 0.6 * body_folds(p, COAT_HEM))
 
     def field(p: Array) -> Array:
-        x, half = np.abs(p[:, 0]), _opening(p)
-        lapel = step(0.054, 0.034, x - half) * step(1.10, 1.15, p[:, 1]) * step(0.0, 0.03, p[:, 2])
-        cloth = whole(p) - CLOTH - 0.0050 * lapel
-        gap = np.maximum(x - half, 0.010 - p[:, 2])  # negative in the gap
-        return np.asarray(-smooth_min(-cloth, gap, 0.008))
+        cloth = whole(p) - CLOTH
+        if not opened:
+            return np.asarray(cloth)
+        gap = np.maximum(np.abs(p[:, 0]) - _opening(p), 0.010 - p[:, 2])  # negative in the gap
+        return np.asarray(-smooth_min(-cloth, gap, 0.006))
 
     return field
-
-
-def _sweater(sleeve: float) -> Field:
-    body = common(shapes.torso(), plane((0, HEM, 0), (0, -1, 0)), 0.012)
-    body = common(body, plane(shapes.COLLAR_AT + shapes.COLLAR_UP * 0.002, shapes.COLLAR_UP), 0.004)
-    return union([body, mirrored(shapes.sleeve(CUFF - ARM * sleeve))], 0.050)
 
 
 def _forearm() -> Field:
@@ -137,7 +138,7 @@ def _forearm() -> Field:
     return common(
         union(
             [
-                cone(elbow + ARM * 0.11, wrist + ARM * 0.002, 0.0305, 0.0222, flat=(1, 1.0, 0.97)),
+                cone(elbow + ARM * 0.11, wrist + ARM * 0.002, 0.0315, 0.0205, flat=(1, 1.0, 0.95)),
             ],
             0.02,
         ),
@@ -146,17 +147,69 @@ def _forearm() -> Field:
     )
 
 
+def bare_arm() -> Field:
+    """The left hand and forearm as one form, whose normals both take."""
+    return union([shapes.hand(), _forearm()], 0.020)
+
+
 def _coat_size(p: Array) -> Array:
-    """Fine along the edges of the opening and of the lapels, and round the elbows."""
+    """Fine along the edges of the opening, at the hem and round the elbows."""
     x = np.abs(p[:, 0])
-    edge = np.minimum(np.abs(x - _opening(p)), np.abs(x - _opening(p) - 0.043))
-    front = step(0.0, 0.02, p[:, 2]) * step(0.024, 0.008, edge)
+    front = step(0.0, 0.02, p[:, 2]) * step(0.020, 0.006, np.abs(x - _opening(p)))
     hem = step(0.03, 0.01, np.abs(p[:, 1] - COAT_HEM))
-    return np.minimum(0.026 - 0.0175 * np.maximum(front, 0.5 * hem), shapes.elbow_size(p, 0.026))
+    return np.minimum(0.0330 - 0.0190 * np.maximum(front, 0.5 * hem), shapes.elbow_size(p, 0.033) * 1.2)
+
+
+def lapels(look: Look) -> list[Piece]:
+    """The left edge of a coat turned back: a lapel from the neck to the waist, and a facing below it."""
+    if not look.coat:
+        return []
+    coat = _coat(opened=False)
+    heights = np.array(
+        [0.850, 0.90, 0.96, 1.02, 1.08, 1.12, 1.15, 1.19, 1.24, 1.29, 1.34, 1.375, 1.40, 1.43, 1.452]
+    )
+    broad = np.interp(
+        heights,
+        [0.84, 1.10, 1.13, 1.36, 1.375, 1.39, 1.46],
+        [0.011, 0.012, 0.020, 0.060, 0.062, 0.044, 0.032],
+    )
+    at = np.stack([np.zeros(len(heights)), heights, np.zeros(len(heights))], 1)
+    inner = _opening(at) - 0.0015
+    columns = []
+    for share, off in (
+        (0.0, -0.010),
+        (0.0, 0.0022),
+        (0.12, 0.0040),
+        (0.5, 0.0046),
+        (0.92, 0.0040),
+        (1.0, 0.0022),
+        (1.0, -0.003),
+    ):
+        xy = np.stack([inner + share * broad, heights + (0.012 * share if off > -0.005 else 0.0)], 1)
+        z = front(coat, xy)
+        columns.append(np.concatenate([xy, (z + off)[:, None]], 1))
+    grid = np.stack(columns)
+    across, along = np.gradient(grid, axis=0), np.gradient(grid, axis=1)
+    normals = np.cross(across, along)
+    normals /= np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-9)
+    rows, count = grid.shape[:2]
+    i, j = np.meshgrid(np.arange(rows - 1), np.arange(count - 1), indexing="ij")
+    a = (i * count + j).ravel()
+    triangles = np.concatenate(
+        [np.stack([a, a + count, a + count + 1], -1), np.stack([a, a + count + 1, a + 1], -1)]
+    )
+    flat = grid.reshape(-1, 3)
+    made = rigid((flat, normals.reshape(-1, 3), triangles), "Hips", "coat")
+    return [replace(made, weights=sweater_weights(flat))]
+
+
+def _plain(p: Array) -> Array:
+    """Less fine: a coat hides most of it."""
+    return shapes.sweater_size(p) * 1.35
 
 
 def _hair_size(p: Array) -> Array:
-    return np.full(len(p), 0.0085)
+    return np.full(len(p), 0.0165)
 
 
 HAIR: dict[str, Callable[[], Field]] = {"short": _short, "bob": _bob, "receding": _receding}
@@ -170,7 +223,16 @@ def parts(look: Look) -> tuple[Part, ...]:
     box = ((-0.110, 1.480, -0.135), (0.110, 1.755, 0.120))
     out = [known["head"], Part("hair", HAIR[look.hair](), *box, 0.0028, _hair_size), known["palm"]]
     cloth = known["sweater"]
-    out.append(Part("sweater", _sweater(look.sleeve), cloth.low, cloth.high, cloth.cell, cloth.size))
+    out.append(
+        Part(
+            "sweater",
+            shapes.sweater(CUFF - ARM * look.sleeve, bust=look.build.bust),
+            cloth.low,
+            cloth.high,
+            cloth.cell,
+            _plain if look.coat else cloth.size,
+        )
+    )
     out += [known["trousers"], known["shoe"]]
     if look.sleeve > 0:
         out.append(
@@ -189,9 +251,9 @@ def parts(look: Look) -> tuple[Part, ...]:
                 "beard",
                 _beard(),
                 (-0.080, 1.480, -0.030),
-                (0.080, 1.575, 0.110),
+                (0.080, 1.585, 0.110),
                 0.0022,
-                lambda p: np.full(len(p), 0.0052),
+                lambda p: np.full(len(p), 0.0110),
             )
         )
     if look.coat:

@@ -43,8 +43,8 @@ def test_each_is_on_the_one_skeleton_whole_and_light_enough(look: Any) -> None:
     assert made.skeleton == mannequin_skeleton()
     assert explain_no_character(made) is None
     assert np.isfinite(made.positions).all() and np.allclose(made.weights.sum(1), 1, atol=0.01)
-    assert len(made.triangles) < 26_000
-    assert (FOLDER / look.file).stat().st_size < 1_400_000
+    assert len(made.triangles) <= 25_000
+    assert (FOLDER / look.file).stat().st_size < 2_500_000
     assert made.positions[:, 1].min() == pytest.approx(0, abs=0.004)
     assert made.morphs == (tuple(face_targets.TARGETS) if look.targets else ())
 
@@ -94,8 +94,8 @@ def test_smiles_raise_the_corners_and_frowns_lower_them_each_on_its_side(faced: 
 
 
 def test_the_jaw_opens_downwards_and_leaves_the_upper_lip(faced: Any) -> None:
-    assert moved(faced, "jawOpen", (0, 1.512, 0.075), 0.012)[1] < -0.012
-    assert abs(moved(faced, "jawOpen", (0, 1.552, 0.085), 0.005)[1]) < 0.002
+    assert moved(faced, "jawOpen", (0, 1.512, 0.087), 0.012)[1] < -0.012
+    assert abs(moved(faced, "jawOpen", (0, 1.550, 0.092), 0.006)[1]) < 0.002
 
 
 def test_brows_rise_inside_and_outside(faced: Any) -> None:

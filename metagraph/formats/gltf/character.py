@@ -28,6 +28,7 @@ class _Part:
     positions: Array
     normals: Array
     uvs: Array
+    grain_uvs: Array | None
     joints: Array
     weights: Array
     mirrored: bool
@@ -112,7 +113,14 @@ def read_character_mesh(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
         morphs,
         tuple(dict.fromkeys(notes)),
         tuple(names_of),
+        _second_coordinates(parts) if any(m.grain is not None for m in materials) else None,
     )
+
+
+def _second_coordinates(parts: list[_Part]) -> Array:
+    """Return the second texture coordinates of all parts `[V, 2]`, 0 where a part has none."""
+    held = [np.zeros_like(p.uvs) if p.grain_uvs is None else p.grain_uvs for p in parts]
+    return np.concatenate(held).astype(np.float32)
 
 
 def _free(name: str, taken: Container[str]) -> str:
@@ -159,6 +167,11 @@ def _part(
         if "TEXCOORD_0" in attributes
         else np.zeros((count, 2))
     )
+    grain_uvs = (
+        _floats(gltf, attributes["TEXCOORD_1"], "VEC2", count, where) if "TEXCOORD_1" in attributes else None
+    )
+    if grain_uvs is not None and not np.isfinite(grain_uvs).all():
+        grain_uvs = None
     skin, held = gltf.json.nodes[node].skin, -1
     if skin is not None and "JOINTS_0" in attributes and "WEIGHTS_0" in attributes:
         matrices, joints, weights = _skinned(gltf, rig, skin, attributes, count, where)
@@ -195,7 +208,7 @@ def _part(
         or np.abs(moved).max() > 1e9
     ):
         gltf.fail("it holds a value that is not a sensible number", where)
-    return _Part(moved, normals, uvs, joints, weights, mirrored, morphs, held)
+    return _Part(moved, normals, uvs, grain_uvs, joints, weights, mirrored, morphs, held)
 
 
 def _floats(gltf: Gltf, accessor: int, kind: str, count: int | None, where: str) -> Array:
@@ -317,15 +330,17 @@ def _materials(
         if pbr is None:
             out.append(MeshMaterial(name, (1.0, 1.0, 1.0, 1.0), None, 1.0, value.double_sided))
             continue
-        image = None
-        if pbr.base_color_texture is not None:
-            texture = gltf.item(
-                gltf.json.textures, pbr.base_color_texture.index, "texture", f"material '{name}'"
-            )
+        maps: list[bytes | None] = []
+        grain = value.normal_texture
+        for info in (pbr.base_color_texture, grain if grain is not None and grain.tex_coord == 1 else None):
+            maps.append(None)
+            if info is None:
+                continue
+            texture = gltf.item(gltf.json.textures, info.index, "texture", f"material '{name}'")
             if texture.source is not None:
                 if texture.source not in images:
                     images[texture.source] = _image(gltf, texture.source, notes)
-                image = images[texture.source]
+                maps[-1] = images[texture.source]
             else:
                 notes.append(f"the texture of material '{name}' is in a format that is not read")
         color = tuple(float(np.clip(c, 0, 1)) for c in pbr.base_color_factor)
@@ -333,9 +348,10 @@ def _materials(
             MeshMaterial(
                 name,
                 (color[0], color[1], color[2], color[3]),
-                image,
+                maps[0],
                 float(np.clip(pbr.roughness_factor, 0, 1)),
                 value.double_sided,
+                maps[1],
             )
         )
     return tuple(out), places

@@ -138,6 +138,7 @@ class Mesh(_Value):
 
 class TextureInfo(_Value):
     index: Index
+    tex_coord: int = 0
 
 
 class Pbr(_Value):
@@ -150,6 +151,7 @@ class MaterialValue(_Value):
     name: str = ""
     pbr_metallic_roughness: Pbr | None = None
     double_sided: bool = False
+    normal_texture: TextureInfo | None = None
 
 
 class Texture(_Value):

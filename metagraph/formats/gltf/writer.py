@@ -223,6 +223,7 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
         "POSITION": body.array(character.positions, FLOAT, target=ARRAY_BUFFER, bounds=True, packing=PLACES),
         "NORMAL": _normals(body, normals),
         "TEXCOORD_0": body.array(character.uvs, FLOAT, target=ARRAY_BUFFER, packing=COORDINATES),
+        **_second_coordinates(body, character),
         "JOINTS_0": body.array(
             joints,
             UBYTE if len(character.skeleton) <= 255 else USHORT,
@@ -262,6 +263,14 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
     images: list[dict[str, Any]] = []
     known: dict[bytes, int] = {}
     materials = []
+
+    def texture(image: bytes) -> int:
+        if image not in known:
+            known[image] = len(images)
+            kind = "image/png" if image[:4] == b"\x89PNG" else "image/jpeg"
+            images.append({"bufferView": body.view(image), "mimeType": kind})
+        return known[image]
+
     for material in character.materials:
         pbr: dict[str, Any] = {
             "baseColorFactor": list(material.color),
@@ -269,12 +278,10 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
             "roughnessFactor": material.roughness,
         }
         if material.image is not None:
-            if material.image not in known:
-                known[material.image] = len(images)
-                kind = "image/png" if material.image[:4] == b"\x89PNG" else "image/jpeg"
-                images.append({"bufferView": body.view(material.image), "mimeType": kind})
-            pbr["baseColorTexture"] = {"index": known[material.image]}
+            pbr["baseColorTexture"] = {"index": texture(material.image)}
         value: dict[str, Any] = {"name": material.name, "pbrMetallicRoughness": pbr}
+        if material.grain is not None and character.grain_uvs is not None:
+            value["normalTexture"] = {"index": texture(material.grain), "texCoord": 1}
         if material.double_sided:
             value["doubleSided"] = True
         materials.append(value)
@@ -286,6 +293,13 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
     document["meshes"] = [mesh]
     document["nodes"].append({"name": character.name, "mesh": 0, "skin": 0})
     return len(document["nodes"]) - 1
+
+
+def _second_coordinates(body: BinaryChunk, character: CharacterMesh) -> dict[str, int]:
+    """Add the second texture coordinates, if the character has any."""
+    if character.grain_uvs is None:
+        return {}
+    return {"TEXCOORD_1": body.array(character.grain_uvs, FLOAT, target=ARRAY_BUFFER, packing=COORDINATES)}
 
 
 def _normals(body: BinaryChunk, normals: Array) -> int:

@@ -55,7 +55,7 @@ def loft(
     along, u, v = (np.asarray(a, float) / np.linalg.norm(a) for a in axes)
     rows = np.array(sections, float)
     fine = np.linspace(rows[0, 0], rows[-1, 0], 240)
-    table = np.stack([_through(rows[:, 0], rows[:, k], fine) for k in range(1, 7)], 1)
+    table = np.stack([spline(rows[:, 0], rows[:, k], fine) for k in range(1, 7)], 1)
 
     def field(p: Array) -> Array:
         q = p - np.asarray(start, float)
@@ -76,7 +76,7 @@ def loft(
     return field
 
 
-def _through(x: Array, y: Array, at: Array) -> Array:
+def spline(x: Array, y: Array, at: Array) -> Array:
     """Return the natural cubic spline through points, `[N]`."""
     h, count = np.diff(x), len(x)
     system, right = np.eye(count), np.zeros(count)
