@@ -396,7 +396,7 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
             total = weights.sum(1, keepdims=True)
             v["weights"] = np.where(total > 1e-6, weights / np.maximum(total, 1e-6), [1.0, 0, 0, 0])
             v["bones"] = character.joints[used]
-            v["color"] = (*_srgb8(material.color[:3]), shininess(material))
+            v["color"] = (*_srgb8(material.color[:3]), encode_shininess(material))
             vertices.append(v)
             triangles.append(corners.reshape(-1, 3) + count)
             origins.append(used)
@@ -419,7 +419,7 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
     )
 
 
-def shininess(material: MeshMaterial) -> int:
+def encode_shininess(material: MeshMaterial) -> int:
     """Return how shiny a material is, 0..255: odd for skin, which light goes into, even for all else."""
     shiny = 2 * round(127 * (1 - min(1.0, max(0.0, material.roughness))))
     return shiny + (SKIN.search(material.name) is not None)

@@ -49,7 +49,7 @@ class Surface:
 @dataclass(frozen=True, eq=False)
 class CharacterMesh:
     """positions, normals `[V, 3]` in model space in the skeleton's rest pose, metres; uvs `[V, 2]`;
-    grain_uvs `[V, 2]` are the second texture coordinates, None where no material has a grain;
+    grain_uvs `[V, 2]` are the second texture coordinates, None if no material has a grain;
     joints `[V, 4]` and weights `[V, 4]` summing to 1; triangles `[N, 3]`;
     morph_positions `[K, V, 3]` are offsets for the morph targets named in `morphs`. meshes: the names of all
     its meshes, of those that were left out, too.

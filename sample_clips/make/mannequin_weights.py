@@ -124,7 +124,7 @@ def hand_weights(p: Array, fingers: tuple[str, ...] = FINGERS) -> Weights:
 
 def head_weights(p: Array, lower: Array | None = None, across: Array | None = None) -> Weights:
     """lower: whether points `[V]` are of the lower lip, else of the upper; across `[V]`: where between the
-    corners of the mouth they belong. By default both are told from where the points are.
+    corners of the mouth they belong. By default both follow from where the points are.
     """
     out = chain(
         p,
