@@ -146,9 +146,9 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str
 
 def _words_beside(sound: Path) -> list[Path]:
     """Return the transcript that has a sound's name, if there is one."""
-    from metagraph.formats.transcripts.words import SUFFIXES
+    from metagraph.formats.transcripts.registry import TRANSCRIPT_SUFFIXES
 
-    known = {s.lower() for s in SUFFIXES}
+    known = {s.lower() for s in TRANSCRIPT_SUFFIXES}
     beside = sorted(sound.parent.glob("*"))
     return [p for p in beside if p.suffix.lower() in known and p.stem == sound.stem][:1]
 

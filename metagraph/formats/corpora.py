@@ -25,7 +25,7 @@ from metagraph.common.files import unforeseen_error
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
-from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
+from metagraph.formats.transcripts.registry import TRANSCRIPT_SUFFIXES
 from metagraph.graph.conversation.model import Conversation
 from metagraph.motion.clip import Clip
 
@@ -42,7 +42,7 @@ _MARK = re.compile(
 )
 RATES = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 90.0, 100.0, 120.0, 240.0)  # frames a second
 UNEVEN = 3.0  # seconds by which motion and sound may differ in length without a word
-_WORDS = [s.lower() for s in TRANSCRIPTS]  # of several, the first counts
+_WORDS = [s.lower() for s in TRANSCRIPT_SUFFIXES]  # of several, the first counts
 UNREAD = {".npz": "SMPL-X parameters (BEAT2)", ".c3d": "markers", ".asf": "Acclaim", ".amc": "Acclaim"}
 
 
