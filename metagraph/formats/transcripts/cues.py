@@ -56,7 +56,7 @@ def read_cues(source: TranscriptSource) -> Transcript:
     names.tell(out)
     speaker = ""
     for cue in shown:
-        for n, (start, end, part) in enumerate(_shared(cue)):
+        for n, (start, end, part) in enumerate(_shared(cue, names)):
             for who, said in _voices(part, names):
                 speaker = who if who is not None else speaker
                 _add(out, speaker, said, start, end, f"line {cue.line + 1 + n}")
@@ -117,13 +117,16 @@ def _shown(cue: _Cue) -> ShownText:
     return ShownText(cue.line, cue.start, cue.end, lines, tuple(map(_plain, lines)), timed)
 
 
-def _shared(cue: ShownText) -> list[tuple[float, float, str]]:
-    """Return the lines of a cue, each with its share of the cue's time by its letters; lines with times
-    inside go on from those.
+def _shared(cue: ShownText, names: SpeakerNames) -> list[tuple[float, float, str]]:
+    """Return the lines of a cue, each with its share of the cue's time by its letters without the speaker's
+    name; lines with times inside go on from those.
     """
     if any(cue.timed) or len(cue.text) < 2:
         return [(cue.start, cue.end, "\n".join(cue.text))] if cue.text else []
-    sizes = [len(x) + 1 for x in cue.plain]
+    said = [names.part(x) or ("", x) for x in cue.plain]
+    sizes = [len(rest) + 1 if rest.strip() else 0 for _, rest in said]
+    if not any(sizes):
+        return [(cue.start, cue.end, "\n".join(cue.text))]
     out, at = [], cue.start
     for line, size in zip(cue.text, sizes, strict=True):
         end = at + (cue.end - cue.start) * size / sum(sizes)

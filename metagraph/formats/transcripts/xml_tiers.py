@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from xml.etree.ElementTree import Element
 
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -105,24 +105,19 @@ def _timeline(out: Collected, points: Sequence[Element]) -> dict[str, float]:
         raise out.fail(
             phrase("its timeline has no times"), "", phrase("In EXMARaLDA, align it with its recording.")
         )
-    times: list[float] = []
-    for n, time in enumerate(known):
-        if time is not None:
-            times.append(time)
-            continue
-        before = max((m for m in places if m < n), default=None)
-        behind = min((m for m in places if m > n), default=None)
-        first = known[before] if before is not None else 0.0
-        last = known[behind] if behind is not None else first
-        low = before if before is not None else -1
-        share = (n - low) / ((behind if behind is not None else len(known)) - low)
-        times.append((first or 0.0) + share * ((last or 0.0) - (first or 0.0)))
+    times = [0.0 if t is None else t for t in known]
+    for first, last in pairwise([-1, *places, len(known)]):
+        low = times[first] if first >= 0 else 0.0
+        high = times[last] if last < len(known) else low
+        for n in range(first + 1, last):
+            times[n] = low + (high - low) * (n - first) / (last - first)
     missing = sum(t is None for t in known)
     if missing:
         out.notes.append(
-            phrase(
-                "{missing} points of its timeline have no time; they lie evenly between the others",
-                missing=missing,
+            plural_phrase(
+                "{count:,} point of its timeline has no time; it lies evenly between the others",
+                "{count:,} points of its timeline have no time; they lie evenly between the others",
+                missing,
             )
         )
     return {p.get("id", ""): t for p, t in zip(points, times, strict=True)}

@@ -14,6 +14,7 @@ from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
 _ALIGNED = ("alignment", "normalized_alignment", "normalizedAlignment")
+_PAUSE = 0.04  # seconds between two parts of a stream that end a word
 _CHARACTERS = ("characters", "chars")
 
 
@@ -55,6 +56,8 @@ def read_elevenlabs(source: TranscriptSource) -> Transcript:
     for n, part in enumerate(parts):
         own = list(_characters(out, part, f"alignment {n + 1}"))
         late = before if characters and own and own[0][1] < characters[-1][1] else 0.0
+        if characters and own and own[0][1] + late > characters[-1][2] + _PAUSE:
+            characters.append((" ", own[0][1] + late, own[0][1] + late))
         characters += [(c, start + late, end + late) for c, start, end in own]
         before = max(before, characters[-1][2]) if characters else before
     held: list[tuple[str, float, float]] = []
