@@ -116,6 +116,13 @@ def _only(*endings: str) -> Callable[[], dict[str, bytes]]:
     return lambda: {n: d for n, d in _talks().items() if Path(n).suffix in endings}
 
 
+def _services(*endings: str) -> Callable[[], dict[str, bytes]]:
+    from tests.formats.transcripts.made_transcripts import made_transcripts
+
+    files = {f"{n}{Path(name).suffix}": text for n, (name, text) in enumerate(made_transcripts().values())}
+    return lambda: {n: text.encode() for n, text in files.items() if Path(n).suffix in endings}
+
+
 def _wav() -> dict[str, bytes]:
     import io
 
@@ -294,6 +301,8 @@ def every_reader() -> dict[str, Fuzzed]:
         "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),
         "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm", ".tsv"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
+        "services": Fuzzed(read_transcript, _services(".json"), JSON, spoilt_json),
+        "transcribers": Fuzzed(read_transcript, _services(".trs", ".exb", ".cha", ".par", ".csv", ".tsv", ".ctm", ".marks"), XML, spoilt_words),
         "words": Fuzzed(read_pack, _fixed(sv_yaml=b"code: sv\nname: x\nresponses: [ja, 'n\xc3\xa5']\nsmall: i, den\n"), (b"&a", b"{", b"- ", b", "), spoilt_words),
         "sound": Fuzzed(read_line_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),
         "keypoints": Fuzzed(read_keypoints, _keypoints, JSON, spoilt_json),
