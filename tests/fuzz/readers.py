@@ -123,6 +123,15 @@ def _services(*endings: str) -> Callable[[], dict[str, bytes]]:
     return lambda: {n: text.encode() for n, text in files.items() if Path(n).suffix in endings}
 
 
+def _mouths(json_files: bool) -> Callable[[], dict[str, bytes]]:
+    from tests.speech.mouth_files.made_mouths import MADE_MOUTHS
+
+    files = {f"{n}{Path(name).suffix}": text.encode() for n, (name, text) in enumerate(MADE_MOUTHS.values())}
+    return lambda: {
+        n: text for n, text in files.items() if (Path(n).suffix in (".json", ".pg2")) == json_files
+    }
+
+
 def _wav() -> dict[str, bytes]:
     import io
 
@@ -233,6 +242,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.research.study.perceive.perceive_plan import read_perceive_plan
     from metagraph.research.study.study_plan import read_study
     from metagraph.speech.lines import read_line_voice, voice_from_phones
+    from metagraph.speech.mouth_files.registry import read_mouth_file
 
     def drawn(path: Path) -> None:
         for read in (read_character, read_vrm_roles, morph_targets, has_skinned_mesh):
@@ -303,6 +313,8 @@ def every_reader() -> dict[str, Fuzzed]:
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
         "services": Fuzzed(read_transcript, _services(".json"), JSON, spoilt_json),
         "transcribers": Fuzzed(read_transcript, _services(".trs", ".exb", ".cha", ".par", ".csv", ".tsv", ".ctm", ".marks"), XML, spoilt_words),
+        "mouths": Fuzzed(read_mouth_file, _mouths(False), XML, spoilt_words),
+        "mouth lists": Fuzzed(read_mouth_file, _mouths(True), JSON, spoilt_json),
         "words": Fuzzed(read_pack, _fixed(sv_yaml=b"code: sv\nname: x\nresponses: [ja, 'n\xc3\xa5']\nsmall: i, den\n"), (b"&a", b"{", b"- ", b", "), spoilt_words),
         "sound": Fuzzed(read_line_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),
         "keypoints": Fuzzed(read_keypoints, _keypoints, JSON, spoilt_json),
