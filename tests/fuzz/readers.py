@@ -123,6 +123,13 @@ def _services(*endings: str) -> Callable[[], dict[str, bytes]]:
     return lambda: {n: text.encode() for n, text in files.items() if Path(n).suffix in endings}
 
 
+def _faces() -> dict[str, bytes]:
+    from tests.formats.test_face_exports import audio2face, azure, table
+
+    found = {"a.csv": table(), "b.json": json.dumps(audio2face()), "c.json": json.dumps(azure())}
+    return {name: text.encode() for name, text in found.items()}
+
+
 def _mouths(json_files: bool) -> Callable[[], dict[str, bytes]]:
     from tests.speech.mouth_files.made_mouths import MADE_MOUTHS
 
@@ -305,6 +312,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "fbx": Fuzzed(read_fbx_clips, _fixed(a_fbx=ascii_fbx()), (b"{", b"}", b"*9", b"Model:", b'"'), spoilt_words),
         "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
+        "faces": Fuzzed(read_clips, _faces, JSON, spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),

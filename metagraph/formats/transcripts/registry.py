@@ -236,8 +236,9 @@ TRANSCRIPT_READERS: tuple[TranscriptReader, ...] = (
 )
 # Files that are looked for beside a sound. Tables with commas and plain texts are mostly something else.
 _ASIDE = (".csv", ".txt")
+_FIRST = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")  # of several beside a sound
 TRANSCRIPT_SUFFIXES = tuple(
-    dict.fromkeys(s for one in TRANSCRIPT_READERS for s in one.endings if s not in _ASIDE)
+    dict.fromkeys((*_FIRST, *(s for one in TRANSCRIPT_READERS for s in one.endings if s not in _ASIDE)))
 )
 
 

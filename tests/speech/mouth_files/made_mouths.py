@@ -40,7 +40,7 @@ MADE_MOUTHS: dict[str, tuple[str, str]] = {
     "moho, preston blair": ("a.dat", "MohoSwitch1\n1 rest\n13 AI\n25 MBP\n37 rest\n49 rest\n"),
     "papagayo": ("a.pgo", "lipsync version 1\na.wav\n24\n48\n2\n\tAnn\n\tma|\n\t1\n\t\tma\n\t\t12\n\t\t48\n\t\t1\n\t\t\tma 12 48 3\n\t\t\t\t12 AI\n\t\t\t\t24 MBP\n\t\t\t\t36 rest\n\tBen\n\tno|\n\t1\n\t\tno\n\t\t2\n\t\t48\n\t\t1\n\t\t\tno 2 48 1\n\t\t\t\t2 O\n"),
     "papagayo-ng": ("a.pg2", json.dumps({"version": 2, "fps": 24, "sound_duration": 48, "num_voices": 1, "voices": [{"name": "Ann", "phrases": [{"text": "ma", "words": _WORDS}]}]})),
-    "polly": ("a.json", "".join(json.dumps(x) + "\n" for x in [{"time": 0, "type": "sentence", "start": 0, "end": 2, "value": "ma"}, {"time": 400, "type": "word", "value": "ma"}, *({"time": t, "type": "viseme", "value": v} for t, v in ((0, "sil"), (500, "a"), (1000, "p"), (1500, "sil")))])),
+    "polly": ("a.marks", "".join(json.dumps(x) + "\n" for x in [{"time": 0, "type": "sentence", "start": 0, "end": 2, "value": "ma"}, {"time": 400, "type": "word", "value": "ma"}, *({"time": t, "type": "viseme", "value": v} for t, v in ((0, "sil"), (500, "a"), (1000, "p"), (1500, "sil")))])),
     "azure ticks": ("a.json", json.dumps([{"audioOffset": round(t * 1e7), "visemeId": v} for t, v in ((0, 0), (0.5, 2), (1.0, 21), (1.5, 0))])),
     "azure milliseconds": ("a.json", json.dumps([{"AudioOffset": round(t * 1e3), "VisemeId": v} for t, v in ((0, 0), (0.5, 2), (1.0, 21), (1.5, 0))])),
     "oculus pairs": ("a.json", json.dumps([[0, "sil"], [0.5, "aa"], [1.0, "PP"], [1.5, "sil"]])),
