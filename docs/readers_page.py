@@ -1,4 +1,4 @@
-"""Write the page of what is read from which tool, from the readers' registries: `python docs/readers_page.py`."""
+"""Write the page of what is read, from the registries of readers: `python docs/readers_page.py`."""
 
 from __future__ import annotations
 

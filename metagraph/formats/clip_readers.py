@@ -56,6 +56,12 @@ def _read_live_link(path: Path, as_is: Collection[str]) -> list[Clip]:
     return [read_live_link(path)]
 
 
+def _read_smpl(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.smpl import read_smpl
+
+    return [read_smpl(path)]
+
+
 def _read_face_export(path: Path, as_is: Collection[str]) -> list[Clip]:
     from metagraph.formats.face_exports import read_face_export
 
@@ -96,6 +102,12 @@ READERS = [
     ClipReader(phrase("an FBX file"), (".fbx",), _is_fbx, _read_fbx),
     LIVE_LINK,
     FACE_TABLE,
+    ClipReader(
+        phrase("SMPL parameters (AMASS, BEAT2)"),
+        (".npz",),
+        lambda head, text: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
+        _read_smpl,
+    ),
 ]
 
 
@@ -111,5 +123,7 @@ def reader_for(suffix: str) -> ClipReader | None:
 
 
 def clip_suffixes() -> tuple[str, ...]:
-    """Return the extensions of clip files, in lower case."""
-    return tuple(dict.fromkeys(suffix for reader in READERS for suffix in reader.suffixes))
+    """Return the extensions of clip files, in lower case; without .json, which most often is something else:
+    there only the content tells.
+    """
+    return tuple(dict.fromkeys(s for reader in READERS if reader is not FACE_JSON for s in reader.suffixes))

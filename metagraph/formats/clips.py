@@ -140,7 +140,7 @@ def find_clip_files(folder: str | Path) -> list[Path]:
     """Return every clip file in a folder and below, sorted by path ignoring case. Hidden files and folders
     are skipped.
     """
-    folder, endings = Path(folder), clip_suffixes()
+    folder, endings = Path(folder), (*clip_suffixes(), ".json")
     found = [
         p
         for p in folder.rglob("*")

@@ -43,7 +43,7 @@ _MARK = re.compile(
 RATES = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 90.0, 100.0, 120.0, 240.0)  # frames a second
 UNEVEN = 3.0  # seconds by which motion and sound may differ in length without a word
 _WORDS = [s.lower() for s in TRANSCRIPT_SUFFIXES]  # of several, the first counts
-UNREAD = {".npz": "SMPL-X parameters (BEAT2)", ".c3d": "markers", ".asf": "Acclaim", ".amc": "Acclaim"}
+UNREAD = {".c3d": "markers", ".asf": "Acclaim", ".amc": "Acclaim"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,9 @@ def read_corpus(
     clips = find_clip_files(folder)
     if not clips:
         raise FileError(
-            folder, f"it holds no motion that can be read{_unread(folder)}", remedy="Give BVH, FBX or glTF."
+            folder,
+            f"it holds no motion that can be read{_unread(folder)}",
+            remedy="Give BVH, FBX, glTF or SMPL's .npz.",
         )
     layout = _layout(clips) if layout is None else layout
     found = _grouped(folder, clips, layout)

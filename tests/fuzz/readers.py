@@ -130,6 +130,13 @@ def _faces() -> dict[str, bytes]:
     return {name: text.encode() for name, text in found.items()}
 
 
+def _smpl() -> dict[str, bytes]:
+    from tests.formats.test_smpl import amass
+
+    with tempfile.TemporaryDirectory() as folder:
+        return {"a.npz": amass(Path(folder) / "a.npz", 24).read_bytes()}
+
+
 def _mouths(json_files: bool) -> Callable[[], dict[str, bytes]]:
     from tests.speech.mouth_files.made_mouths import MADE_MOUTHS
 
@@ -313,6 +320,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
         "faces": Fuzzed(read_clips, _faces, JSON, spoilt_words),
+        "smpl": Fuzzed(read_clips, _smpl, (b"PK", b"NUMPY", b"poses.npy", b"<f8"), spoilt_archive),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
