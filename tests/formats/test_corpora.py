@@ -87,8 +87,8 @@ def test_no_folder_and_no_motion_say_so(tmp_path: Path) -> None:
         read_corpus(tmp_path / "gone")
     with pytest.raises(FileError, match="it holds no motion"):
         read_corpus(tmp_path)
-    text(tmp_path / "1_wayne_0_1_1.npz", "x")
-    with pytest.raises(FileError, match="SMPL-X parameters"):
+    text(tmp_path / "1_wayne_0_1_1.c3d", "x")
+    with pytest.raises(FileError, match="it has markers"):
         read_corpus(tmp_path)
 
 
