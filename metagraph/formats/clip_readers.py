@@ -62,6 +62,12 @@ def _read_smpl(path: Path, as_is: Collection[str]) -> list[Clip]:
     return [read_smpl(path)]
 
 
+def _read_amc(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.acclaim import read_amc
+
+    return [read_amc(path)]
+
+
 def _read_face_export(path: Path, as_is: Collection[str]) -> list[Clip]:
     from metagraph.formats.face_exports import read_face_export
 
@@ -102,6 +108,12 @@ READERS = [
     ClipReader(phrase("an FBX file"), (".fbx",), _is_fbx, _read_fbx),
     LIVE_LINK,
     FACE_TABLE,
+    ClipReader(
+        phrase("an AMC file"),
+        (".amc",),
+        lambda head, text: b":FULLY-SPECIFIED" in head.upper() or text.startswith(b"#!OML:ASF"),
+        _read_amc,
+    ),
     ClipReader(
         phrase("SMPL parameters (AMASS, BEAT2)"),
         (".npz",),

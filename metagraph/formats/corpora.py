@@ -59,7 +59,7 @@ RATES = (
 CAPTURED = (30.0, 60.0, 120.0)  # at which most corpora are: these need not fit as closely
 UNEVEN = 3.0  # seconds by which motion and sound may differ in length without a word
 _WORDS = [s.lower() for s in TRANSCRIPT_SUFFIXES]  # of several, the first counts
-UNREAD = {".c3d": "markers", ".asf": "Acclaim", ".amc": "Acclaim"}
+UNREAD = {".c3d": "markers", ".trc": "markers"}
 
 
 @dataclass(frozen=True, eq=False)

@@ -60,7 +60,9 @@ def read_smpl(path: str | Path) -> Clip:
     frames, joints = poses.shape[:2]
     if not 0 < frames <= FRAMES:
         raise FileError(path, phrase("it has no frames, or too many"), "'poses'", _REMEDY)
-    notes = [phrase("read as {model}, without the model's file: its figure is ours", model=_MODELS[joints])]
+    notes: list[str] = [
+        phrase("read as {model}, without the model's file: its figure is ours", model=_MODELS[joints])
+    ]
     rate = _rate(path, arrays, notes)
     if frames / rate > CLIP_SECONDS:
         raise FileError(path, phrase("it is longer than six hours"), "'poses'", phrase("Cut it into pieces."))

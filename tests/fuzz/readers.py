@@ -137,6 +137,12 @@ def _smpl() -> dict[str, bytes]:
         return {"a.npz": amass(Path(folder) / "a.npz", 24).read_bytes()}
 
 
+def _acclaim() -> dict[str, bytes]:
+    from tests.formats.test_acclaim import amc, asf
+
+    return {"a.amc": amc().encode(), "b.asf": asf().encode()}
+
+
 def _mouths(json_files: bool) -> Callable[[], dict[str, bytes]]:
     from tests.speech.mouth_files.made_mouths import MADE_MOUTHS
 
@@ -262,6 +268,14 @@ def every_reader() -> dict[str, Fuzzed]:
         for read in (read_character, read_vrm_roles, morph_targets, has_skinned_mesh):
             survives(read, path)
 
+    def acclaim(path: Path) -> None:
+        """Read a broken motion on a sound skeleton, or a sound motion on a broken one."""
+        whole = _acclaim()
+        for other in (path.with_suffix(".asf"), path.with_suffix(".amc")):
+            if other != path:
+                other.write_bytes(whole["a.amc" if other.suffix == ".amc" else "b.asf"])
+        read_clips(path.with_suffix(".amc"))
+
     def listed(path: Path) -> None:
         read_lines([path], path.parent)
 
@@ -321,6 +335,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
         "faces": Fuzzed(read_clips, _faces, JSON, spoilt_words),
         "smpl": Fuzzed(read_clips, _smpl, (b"PK", b"NUMPY", b"poses.npy", b"<f8"), spoilt_archive),
+        "acclaim": Fuzzed(acclaim, _acclaim, (b":bonedata", b"begin", b"dof rx", b"root", b"length"), spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
