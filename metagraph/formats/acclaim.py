@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -178,7 +178,7 @@ def _bone_line(path: Path, figure: _Figure, bone: _Bone, cells: list[str], n: in
     if key == "begin":
         return _Bone("")
     if key == "name" and len(cells) > 1:
-        bone.name = cells[1]
+        bone = replace(bone, name=cells[1])  # a bone of its own, also where 'begin' is missing
         figure.bones[bone.name] = bone
     elif key == "direction" and len(cells) > 3:
         bone.direction = np.array(_numbers(path, cells[1:4], n))
