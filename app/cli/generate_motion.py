@@ -44,7 +44,8 @@ def add_heard_arguments(parser: ArgumentParser, needed: bool) -> None:
         type=Path,
         nargs="+",
         metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: as the sound is called, "
+        help="what is said: TextGrid, ELAN, subtitles, JSON of a speech service and others "
+        "(default: as the sound is called, "
         "else by loudness)",
     )
     add_language_arguments(parser)

@@ -39,8 +39,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one for each "
-        "(default: loudness tells)",
+        help="what is said: TextGrid, ELAN, subtitles, JSON of a speech service and others; one for all, or "
+        "one for each (default: loudness tells)",
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
     add_language_arguments(parser, "as the project is set to, else auto")
