@@ -235,7 +235,23 @@ def _perceive() -> dict[str, bytes]:
 def _keypoints() -> dict[str, bytes]:
     rows = [{"t": n / 30, "keypoints": [[100 + k, 50 + 9 * k + n, 0.9] for k in range(17)]} for n in range(3)]
     people = {"frames": [{"people": [{"pose_keypoints_2d": [1.0, 2.0, 0.5] * 25}]}] * 2, "fps": 30}
-    return {"a.json": json.dumps(rows).encode(), "b.json": json.dumps(people).encode()}
+    one = {
+        "keypoints": [[100 + k, 50 + 9 * k] for k in range(17)],
+        "keypoint_scores": [0.9] * 17,
+        "bbox": [[0, 0, 9, 9]],
+    }
+    mmpose = {
+        "meta_info": {"dataset_name": "h36m"},
+        "instance_info": [{"frame_id": n, "instances": [one]} for n in range(2)],
+    }
+    old = {
+        "frames": [
+            {"people": [{"pose_keypoints": [1.0, 2.0, 0.5] * 18}]},
+            {"bodies": [{"joints": [1.0, 2.0, 0.5] * 18}]},
+        ]
+    }
+    found = {"a.json": rows, "b.json": people, "c.json": mmpose, "d.json": old, "e.json": [one, one]}
+    return {name: json.dumps(data).encode() for name, data in found.items()}
 
 
 def every_reader() -> dict[str, Fuzzed]:
