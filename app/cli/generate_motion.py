@@ -44,8 +44,8 @@ def add_heard_arguments(parser: ArgumentParser, needed: bool) -> None:
         type=Path,
         nargs="+",
         metavar="FILE",
-        help="transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: a file named "
-        "like the sound, else loudness)",
+        help="transcripts with times: TextGrid, ELAN, subtitles, JSON of a speech service and others "
+        "(default: a file named like the sound, else loudness)",
     )
     add_language_arguments(parser)
     parser.add_argument(
@@ -157,9 +157,9 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str
 
 def _words_beside(sound: Path) -> list[Path]:
     """Return the transcript that has a sound's name, if there is one."""
-    from metagraph.formats.transcripts.words import SUFFIXES
+    from metagraph.formats.transcripts.registry import TRANSCRIPT_SUFFIXES
 
-    known = {s.lower() for s in SUFFIXES}
+    known = {s.lower() for s in TRANSCRIPT_SUFFIXES}
     beside = sorted(sound.parent.glob("*"))
     return [p for p in beside if p.suffix.lower() in known and p.stem == sound.stem][:1]
 

@@ -39,8 +39,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="transcripts with times: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one "
-        "per speaker (default: use loudness)",
+        help="transcripts with times: TextGrid, ELAN, subtitles, JSON of a speech service and others; one "
+        "for all, or one per speaker (default: use loudness)",
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
     add_language_arguments(parser, "the project's language, else auto")

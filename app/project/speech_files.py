@@ -8,13 +8,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.translation import tr_plural
+from metagraph.formats.transcripts.registry import TRANSCRIPT_SUFFIXES
 from metagraph.graph.conversation.model import MOST_SPEAKERS
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
 # Three sounds or more belong to one conversation if they differ in length by at most this many seconds, and
 # are longer than lines of dialogue, which may have equal lengths by chance.
 UNLIKE, LONG = 0.5, 10.0
-TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
+TRANSCRIPTS = tuple(
+    suffix.lower() for suffix in TRANSCRIPT_SUFFIXES
+)  # of several beside a sound, the first counts
 
 
 def sort_speech_files(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]:

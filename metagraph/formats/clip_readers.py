@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from metagraph.common.wording import phrase
+from metagraph.formats.face_exports import is_face_json, is_face_table
 from metagraph.formats.live_link_face import is_live_link
 from metagraph.motion.clip import Clip
 
@@ -55,6 +56,24 @@ def _read_live_link(path: Path, as_is: Collection[str]) -> list[Clip]:
     return [read_live_link(path)]
 
 
+def _read_smpl(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.smpl import read_smpl
+
+    return [read_smpl(path)]
+
+
+def _read_amc(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.acclaim import read_amc
+
+    return [read_amc(path)]
+
+
+def _read_face_export(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.face_exports import read_face_export
+
+    return [read_face_export(path)]
+
+
 def _is_fbx(head: bytes, text: bytes) -> bool:
     return (
         head.startswith(b"Kaydara FBX Binary") or text.startswith(b"; FBX") or b"FBXHeaderExtension" in head
@@ -64,11 +83,22 @@ def _is_fbx(head: bytes, text: bytes) -> bool:
 LIVE_LINK = ClipReader(
     phrase("a recording of Live Link Face"), (".csv",), lambda head, text: is_live_link(head), _read_live_link
 )
+FACE_TABLE = ClipReader(
+    phrase("a face of Audio2Face"), (".csv",), lambda head, text: is_face_table(head), _read_face_export
+)
+FACE_JSON = ClipReader(
+    phrase("a face of Audio2Face or Azure"),
+    (".json",),
+    lambda head, text: is_face_json(head),
+    _read_face_export,
+)
+FACE_READERS = (LIVE_LINK, FACE_TABLE, FACE_JSON)
 # The first reader that recognises the beginning of a file reads it.
 READERS = [
     ClipReader(
         phrase("a BVH file"), (".bvh",), lambda head, text: text[:9].upper() == b"HIERARCHY", _read_bvh
     ),
+    FACE_JSON,
     ClipReader(
         phrase("a glTF file"),
         (".glb", ".gltf", ".vrm", ".vrma"),
@@ -77,6 +107,19 @@ READERS = [
     ),
     ClipReader(phrase("an FBX file"), (".fbx",), _is_fbx, _read_fbx),
     LIVE_LINK,
+    FACE_TABLE,
+    ClipReader(
+        phrase("an AMC file"),
+        (".amc",),
+        lambda head, text: b":FULLY-SPECIFIED" in head.upper() or text.startswith(b"#!OML:ASF"),
+        _read_amc,
+    ),
+    ClipReader(
+        phrase("SMPL parameters (AMASS, BEAT2)"),
+        (".npz",),
+        lambda head, text: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
+        _read_smpl,
+    ),
 ]
 
 
@@ -92,5 +135,7 @@ def find_reader_for(suffix: str) -> ClipReader | None:
 
 
 def clip_suffixes() -> tuple[str, ...]:
-    """Return the extensions of clip files, in lower case."""
-    return tuple(suffix for reader in READERS for suffix in reader.suffixes)
+    """Return the extensions of clip files, in lower case; without .json, which most often is something else:
+    there only the content tells.
+    """
+    return tuple(dict.fromkeys(s for reader in READERS if reader is not FACE_JSON for s in reader.suffixes))

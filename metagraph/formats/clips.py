@@ -15,8 +15,8 @@ from metagraph.common.files import guard_reader, open_file, unforeseen_error
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.clip_readers import (
+    FACE_READERS,
     HEAD,
-    LIVE_LINK,
     ClipReader,
     clip_suffixes,
     find_reader,
@@ -64,7 +64,7 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     if isinstance(found, str):
         cause = phrase("it is {kind}, not {names}", kind=found, names=wanted.name)
         raise FileError(path, cause, phrase("its first bytes"), remedy)
-    if found is not wanted:
+    if path.suffix.lower() not in found.suffixes:
         raise FileError(
             path,
             phrase("it is {names} despite its extension", names=found.name),
@@ -72,7 +72,7 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
             phrase("Rename it to match its content."),
         )
     try:
-        clips = wanted.read(path, as_is)
+        clips = found.read(path, as_is)
     except ClipError as error:
         raise FileError(path, str(error), phrase("its motion"), phrase("Export it again.")) from error
     return _without_junk(clips, as_is)
@@ -129,9 +129,9 @@ def _reader(path: Path) -> ClipReader | str:
 
 
 def is_face_recording(path: Path) -> bool:
-    """Return whether a table is a recording of Live Link Face."""
+    """Return whether a table or a JSON file is a recording of a face, as of Live Link Face."""
     try:
-        return _reader(path) is LIVE_LINK
+        return _reader(path) in FACE_READERS
     except FileError:
         return False
 
@@ -140,14 +140,15 @@ def find_clip_files(folder: str | Path) -> list[Path]:
     """Return every clip file in a folder and below, sorted by path ignoring case. Hidden files and folders
     are skipped.
     """
-    folder, endings = Path(folder), clip_suffixes()
+    folder, endings = Path(folder), (*clip_suffixes(), ".json")
     found = [
         p
         for p in folder.rglob("*")
         if p.suffix.lower() in endings
         and p.is_file()
         and not any(part.startswith(".") for part in p.relative_to(folder).parts)
-        and (p.suffix.lower() != ".csv" or is_face_recording(p))  # most tables are something else
+        # Most tables and most JSON are something else.
+        and (p.suffix.lower() not in (".csv", ".json") or is_face_recording(p))
     ]
     return sorted(found, key=lambda p: (str(p).casefold(), str(p)))
 

@@ -25,7 +25,7 @@ from metagraph.common.files import unforeseen_error
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
-from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
+from metagraph.formats.transcripts.registry import TRANSCRIPT_SUFFIXES
 from metagraph.graph.conversation.model import Conversation
 from metagraph.motion.clip import Clip
 
@@ -40,10 +40,26 @@ _BEAT = re.compile(r"\d+_[a-z]+_\d+_\d+_\d+", re.I)
 _MARK = re.compile(
     r"[ ._-]+((?:speaker|actor|person|side)?[ ._-]?[12ab]|left|right|male|female)$|(?<=\D)[12]$", re.I
 )
-RATES = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 90.0, 100.0, 120.0, 240.0)  # frames a second
+RATES = (
+    12.0,
+    15.0,
+    20.0,
+    24.0,
+    25.0,
+    30.0,
+    48.0,
+    50.0,
+    60.0,
+    72.0,
+    90.0,
+    100.0,
+    120.0,
+    240.0,
+)  # frames a second
+CAPTURED = (30.0, 60.0, 120.0)  # at which most corpora are: these need not fit as closely
 UNEVEN = 3.0  # seconds by which motion and sound may differ in length without a word
-_WORDS = [s.lower() for s in TRANSCRIPTS]  # of several, the first counts
-UNREAD = {".npz": "SMPL-X parameters (BEAT2)", ".c3d": "markers", ".asf": "Acclaim", ".amc": "Acclaim"}
+_WORDS = [s.lower() for s in TRANSCRIPT_SUFFIXES]  # of several, the first counts
+UNREAD = {".c3d": "markers", ".trc": "markers"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +116,9 @@ def read_corpus(
     clips = find_clip_files(folder)
     if not clips:
         raise FileError(
-            folder, f"it holds no motion that can be read{_unread(folder)}", remedy="Give BVH, FBX or glTF."
+            folder,
+            f"it holds no motion that can be read{_unread(folder)}",
+            remedy="Give BVH, FBX, glTF or SMPL's .npz.",
         )
     layout = _layout(clips) if layout is None else layout
     found = _grouped(folder, clips, layout)
@@ -249,9 +267,22 @@ def _read(name: str, files: _Found) -> Recorded:
         clip, odd = _as_long(max(read_clips(path), key=lambda c: c.frames), read.conversation.length)
         clips[side] = clip
         notes += [f"{path.name}: {words}" for words in odd]
-    if not told:
+    if told:
+        notes += _early_words(read.conversation)
+    else:
         notes.append("no words are beside it: loudness tells clauses, hesitations are not found")
     return Recorded(name, (clips[0], clips[1]), read.conversation, None, (*notes, *read.notes), files.files)
+
+
+def _early_words(conversation: Conversation) -> list[str]:
+    """Return what there is to say of words that end long before their sound does."""
+    last = max((w.end for side in conversation.sides for w in side.words), default=0.0)
+    if not last or conversation.length - last <= max(2 * UNEVEN, 0.4 * conversation.length):
+        return []
+    return [
+        f"its words end at {last:.0f} s, its sound lasts {conversation.length:.0f} s: check that they belong "
+        "together"
+    ]
 
 
 def _as_long(clip: Clip, seconds: float) -> tuple[Clip, list[str]]:
@@ -262,8 +293,12 @@ def _as_long(clip: Clip, seconds: float) -> tuple[Clip, list[str]]:
     if seconds <= 0 or abs(length - seconds) <= max(UNEVEN, 0.1 * seconds):
         return clip, []
     rate = min(RATES, key=lambda fps: abs(clip.frames / fps - seconds))
+    near = min(CAPTURED, key=lambda fps: abs(clip.frames / fps - seconds))
+    if abs(clip.frames / near - seconds) <= max(UNEVEN, 0.1 * seconds):
+        rate = near
     told = f"its motion lasts {length:.0f} s at {clip.fps:.4g} frames a second, its sound {seconds:.0f} s"
-    if abs(clip.frames / rate - seconds) <= max(0.5, 0.01 * seconds):
+    allowed = max(UNEVEN, 0.1 * seconds) if rate == near else max(0.5, 0.01 * seconds)
+    if abs(clip.frames / rate - seconds) <= allowed:
         return replace(clip, fps=rate), [
             f"{told}: read at {rate:.4g} frames a second, at which it is as long"
         ]

@@ -43,6 +43,18 @@ class _Mark:
     text: str = ""
 
 
+@dataclass(frozen=True)
+class _Medium:
+    """url: as the file names it; of: the URL of what it was extracted from. origin: seconds, None if it has
+    none.
+    """
+
+    name: str
+    url: str
+    of: str
+    origin: float | None
+
+
 @dataclass
 class _Tier:
     name: str
@@ -65,7 +77,7 @@ class _Reader:
         self.slots: dict[str, float | None] = {}  # seconds, in the file's order
         self.tiers: dict[str, _Tier] = {}
         self.marks: dict[str, _Mark] = {}
-        self.media: list[str] = []
+        self.media: list[_Medium] = []
         self.old_media = ""  # where format 2.0 named it
         self.vocabularies: dict[str, list[str]] = {}
         self.unit = UNITS["milliseconds"]
@@ -113,7 +125,7 @@ class _Reader:
             self.unit = UNITS[unit]
             self.old_media = at.get("MEDIA_FILE", "")
         elif name == "MEDIA_DESCRIPTOR":
-            self.media.append(at.get("RELATIVE_MEDIA_URL") or at.get("MEDIA_URL", ""))
+            self._medium(at)
         elif name == "TIME_SLOT":
             self._slot(at)
         elif name == "TIER":
@@ -131,6 +143,30 @@ class _Reader:
         if not at.get(key):
             raise self.fail(phrase("a {element} has no {key}", element=element, key=key))
         return at[key]
+
+    def _medium(self, at: Mapping[str, str]) -> None:
+        """Keep a medium and its origin: the time in it, milliseconds, at which the annotation's time is 0."""
+        text = at.get("TIME_ORIGIN", "").strip()
+        origin = None
+        if text:
+            try:
+                origin = int(text[:40]) / 1000
+            except ValueError:
+                raise self.fail(
+                    phrase("a time origin is '{text}', not a whole number of milliseconds", text=text[:40])
+                ) from None
+            if not abs(origin) <= LONGEST:
+                raise self.fail(
+                    phrase(
+                        "a time origin of {origin:g} s is not between 0 and {most:g}",
+                        origin=origin,
+                        most=LONGEST,
+                    )
+                )
+        url = at.get("MEDIA_URL", "")
+        self.media.append(
+            _Medium(at.get("RELATIVE_MEDIA_URL") or url, url, at.get("EXTRACTED_FROM", ""), origin)
+        )
 
     def _slot(self, at: Mapping[str, str]) -> None:
         ident, text = self._need(at, "TIME_SLOT_ID", "TIME_SLOT"), at.get("TIME_VALUE")
@@ -280,12 +316,27 @@ def _annotation(reader: _Reader) -> Annotation:
         for x, n in lost.items()
     ]
     vocabularies = {name: tuple(dict.fromkeys(words)) for name, words in reader.vocabularies.items()}
+    origins = _origins(reader)
     return Annotation(
         tuple(tiers),
-        tuple(dict.fromkeys(m for m in reader.media or [reader.old_media] if m)),
+        tuple(origins) or ((reader.old_media,) if reader.old_media else ()),
         vocabularies,
         tuple(notes),
+        tuple(origins.values()) if any(origins.values()) else (),
     )
+
+
+def _origins(reader: _Reader) -> dict[str, float]:
+    """Return the time origin of each medium, seconds. One that says none has that of the medium it was
+    extracted from.
+    """
+    said = {m.url: m.origin for m in reader.media if m.origin is not None}
+    out: dict[str, float] = {}
+    for medium in reader.media:
+        if medium.name:
+            origin = medium.origin if medium.origin is not None else said.get(medium.of, 0.0)
+            out.setdefault(medium.name, origin)
+    return out
 
 
 def _aligned(reader: _Reader) -> dict[str, float]:

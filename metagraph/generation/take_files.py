@@ -24,7 +24,7 @@ from metagraph.errors import FileError
 from metagraph.formats.clips import digest, find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
 from metagraph.formats.conversations.languages import Speaking
-from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
+from metagraph.formats.transcripts.registry import TRANSCRIPT_SUFFIXES
 from metagraph.generation.features import RATE, resample_for_features
 from metagraph.generation.poses import PoseError, PoseRig, find_rig
 from metagraph.generation.takes import Take, TakeError, TakeSound, TakeSource, make_take
@@ -37,7 +37,7 @@ Array = NDArray[Any]
 _SIDE = re.compile(r"(?i)[ ._-]*(1|2|a|b|left|right)$")
 _LICENCE = re.compile(r"(?i)(licen[cs]e|copying)([ ._-].*)?")
 UNLICENSED = "no licence found beside it"
-_WORDS = {s.lower() for s in TRANSCRIPTS}
+_WORDS = {s.lower() for s in TRANSCRIPT_SUFFIXES}
 
 
 @dataclass(frozen=True)

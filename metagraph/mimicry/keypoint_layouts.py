@@ -28,7 +28,14 @@ def _named(text: str) -> tuple[str, ...]:
     return tuple(f"{long[w[0]]}_{w[2:]}" if w[1:2] == "." else w for w in text.split())
 
 
-# Layout -> what each of its points is called. OpenPose writes BODY_25 and COCO (18 points), MediaPipe 33.
+_HALPE = "head neck hips l.big_toe r.big_toe l.small_toe r.small_toe l.heel r.heel"  # after COCO's 17
+_WHOLE_FEET = "l.big_toe l.small_toe l.heel r.big_toe r.small_toe r.heel"  # after COCO's 17
+_H36M = (
+    "hips r.hip r.knee r.ankle l.hip l.knee l.ankle spine neck nose head l.shoulder l.elbow l.wrist "
+    "r.shoulder r.elbow r.wrist"
+)
+# Layout -> what each of its points is called. OpenPose writes BODY_25, COCO (18 points) and MPI (15),
+# MediaPipe 33; MMPose also Halpe's 26 (AlphaPose, too) and the 133 of a whole body.
 LAYOUTS: Mapping[str, tuple[str, ...]] = {
     "coco": POINTS,
     "openpose coco": _named(
@@ -40,6 +47,18 @@ LAYOUTS: Mapping[str, tuple[str, ...]] = {
         "l.knee l.ankle"
         " r.eye l.eye r.ear l.ear l.big_toe l.small_toe l.heel r.big_toe r.small_toe r.heel"
     ),
+    "openpose mpi": _named(
+        "head neck r.shoulder r.elbow r.wrist l.shoulder l.elbow l.wrist r.hip r.knee r.ankle l.hip l.knee "
+        "l.ankle chest"
+    ),
+    "halpe": (*POINTS, *_named(_HALPE)),
+    "coco whole body": (
+        *POINTS,
+        *_named(_WHOLE_FEET),
+        *(f"face_{n}" for n in range(68)),
+        *(f"left_hand_{n}" for n in range(21)),
+        *(f"right_hand_{n}" for n in range(21)),
+    ),
     "mediapipe": _named(
         "nose l.eye_inner l.eye l.eye_outer r.eye_inner r.eye r.eye_outer l.ear r.ear l.mouth r.mouth "
         "l.shoulder r.shoulder"
@@ -48,9 +67,11 @@ LAYOUTS: Mapping[str, tuple[str, ...]] = {
         " l.heel r.heel l.toes r.toes"
     ),
 }
+# Human3.6M's 17 points, which only a name in the file tells from COCO's.
+H36M: tuple[str, ...] = _named(_H36M)
 BY_COUNT: Mapping[int, str] = {len(names): layout for layout, names in LAYOUTS.items()}
 _CHOSEN: Mapping[int, Array] = {
-    len(names): np.array([names.index(p) for p in POINTS]) for names in LAYOUTS.values()
+    len(names): np.array([names.index(p) if p in names else -1 for p in POINTS]) for names in LAYOUTS.values()
 }
 
 
@@ -107,7 +128,7 @@ def choose_points(points: Array, confidence: Array) -> tuple[Array, Array]:
     order = _CHOSEN.get(len(points))
     if order is None:
         raise ValueError(f"{len(points)} points are none of the layouts that are known: {describe_layouts()}")
-    return points[order], confidence[order]
+    return points[order], np.where(order < 0, 0.0, confidence[order])  # what a layout has not is not seen
 
 
 def swap(points: Array, confidence: Array) -> tuple[Array, Array]:

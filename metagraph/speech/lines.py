@@ -19,9 +19,11 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.playback.life.voice import Voice, make_voice, silent
+from metagraph.speech.mouth_files.model import MouthShapes
+from metagraph.speech.mouth_files.registry import read_mouth_file
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import analyse_sound, guess_mouth_shapes, read_sound, syllables
-from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid, read_textgrid
+from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid
 
 Array = NDArray[Any]
 
@@ -29,13 +31,44 @@ FINE = 24000  # samples a second from which the mouth is read
 _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
 
-def read_line_voice(audio: str | Path, phones: str | Path | None = None, channel: int | None = None) -> Voice:
-    """Read a line's sound and, if there are any, its phones or words from a Praat TextGrid. `channel` is the
-    line's channel in the sound, from 0; None mixes all. Raises FileError.
+def read_line_voice(
+    audio: str | Path,
+    phones: str | Path | None = None,
+    channel: int | None = None,
+    notes: list[str] | None = None,
+) -> Voice:
+    """Read a line's sound and, if there are any, its phones, words or mouth shapes from a file beside it.
+    `channel` is the line's channel in the sound, from 0; None mixes all. notes: gets what was inferred from
+    that file. Raises FileError.
     """
-    return _voice(
-        *read_sound(audio, channel), pieces_of(read_textgrid(phones)) if phones is not None else None
+    samples, rate = read_sound(audio, channel)
+    if phones is None:
+        return _voice(samples, rate, None)
+    told = read_mouth_file(phones, len(samples) / rate)
+    _tell(notes, phones, told)
+    if told.weights is None or told.times is None:
+        return _voice(samples, rate, list(told.pieces))
+    heard = analyse_sound(samples, rate)
+    return Voice(heard.duration, *_track(told, heard.duration, *syllables(heard)))
+
+
+def _tell(notes: list[str] | None, path: str | Path, told: MouthShapes) -> None:
+    if notes is not None:
+        notes += [phrase("{name}: {note}", name=Path(path).name, note=note) for note in told.notes]
+
+
+def _track(told: MouthShapes, duration: float, peaks: Array, strengths: Array) -> tuple[Array, ...]:
+    """Return peaks, times, weights and strengths of a voice whose mouth is given frame by frame; shut at both
+    ends.
+    """
+    assert told.times is not None and told.weights is not None
+    kept = told.times < duration
+    times, weights = told.times[kept], told.weights[kept]
+    rest = np.eye(1, weights.shape[1], dtype=np.float32)
+    times = np.concatenate(
+        [[-1e-3], times, [max(duration, float(times[-1]) + 1e-3) if len(times) else duration]]
     )
+    return peaks, np.maximum(times, 0.0), np.concatenate([rest, weights, rest]), strengths
 
 
 def read_spoken_voice(audio: str | Path, channel: int | None = None, words: Sequence[Word] = ()) -> Voice:
@@ -65,10 +98,12 @@ def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
 
 
 def make_voice_from_phones(phones: str | Path) -> Voice:
-    """Read a line without sound from its TextGrid alone; every vowel is a syllable. Raises FileError."""
-    grid = read_textgrid(phones)
-    pieces = [p for p in pieces_of(grid) if p.start >= 0]
-    duration = max([grid.end, *(p.end for p in pieces)])
+    """Read a line without sound from its phones or mouth shapes alone; every vowel is a syllable. Raises
+    FileError.
+    """
+    told = read_mouth_file(phones)
+    pieces = [p for p in told.pieces if p.start >= 0]
+    duration = max([told.end, *(p.end for p in pieces)])
     if duration > LINE_SECONDS:
         why = phrase(
             "lasts {duration:.0f} s, but a line can last at most {most:.0f} s",
@@ -76,6 +111,8 @@ def make_voice_from_phones(phones: str | Path) -> Voice:
             most=LINE_SECONDS,
         )
         raise FileError(phones, why, phrase("its end"), phrase("Cut it into shorter lines."))
+    if told.weights is not None:
+        return Voice(max(duration, 0.0), *_track(told, duration, np.zeros(0), np.zeros(0)))
     if not pieces:
         return silent(max(duration, 0.0))
     vowels = [
@@ -90,14 +127,13 @@ def make_voice_from_phones(phones: str | Path) -> Voice:
     return make_voice(pieces, duration, peaks, long)
 
 
-def read_line(line: Line, folder: Path) -> Voice | None:
+def read_line(line: Line, folder: Path, notes: list[str] | None = None) -> Voice | None:
     """Return the voice of a line with sound or phones, with paths relative to `folder`; None for other lines.
-    Raises FileError.
+    notes: gets what was inferred from its phones. Raises FileError.
     """
     if line.audio:
-        return read_line_voice(
-            folder / line.audio, folder / line.phones if line.phones else None, line.channel
-        )
+        phones = folder / line.phones if line.phones else None
+        return read_line_voice(folder / line.audio, phones, line.channel, notes)
     return make_voice_from_phones(folder / line.phones) if line.phones else None
 
 
@@ -118,7 +154,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
         )
         for attempt in tries:
             try:
-                voice = read_line(attempt, folder)
+                voice = read_line(attempt, folder, notes)
             except Exception as error:  # a bad sound must not stop a project
                 why = unforeseen_error(folder / (line.audio or line.phones or ""), error)
                 note = phrase("line '{ident}': {why}", ident=ident, why=why.words)

@@ -10,8 +10,11 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.corpora import CorpusReading, read_corpus
-from metagraph.graph.conversation.model import Conversation, segments_heard_by
+from metagraph.formats.corpora import CorpusReading, _as_long, _early_words, read_corpus
+from metagraph.graph.conversation.model import Conversation, Side, Word, segments_heard_by
+from metagraph.graph.face.takes import FACE_SKELETON
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
 from metagraph.synthesis.cooccurrence import count_cooccurrence
 from tests.synthesis.talking import speech, talking
 from tests.wavs import wav
@@ -87,8 +90,8 @@ def test_no_folder_and_no_motion_say_so(tmp_path: Path) -> None:
         read_corpus(tmp_path / "gone")
     with pytest.raises(FileError, match="it holds no motion"):
         read_corpus(tmp_path)
-    text(tmp_path / "1_wayne_0_1_1.npz", "x")
-    with pytest.raises(FileError, match="SMPL-X parameters"):
+    text(tmp_path / "1_wayne_0_1_1.c3d", "x")
+    with pytest.raises(FileError, match="it has markers"):
         read_corpus(tmp_path)
 
 
@@ -232,3 +235,43 @@ def test_what_is_read_is_counted_as_the_paper_counts(tmp_path: Path) -> None:
         r.hypothesis: r.total for r in count_cooccurrence([clip], [segments_heard_by(one.conversation, 0)], 3)
     }
     assert counted["clause with either hand"] == 2 and counted["partner's hesitation with a nod"] == 0
+
+
+# --- lengths of motion, sound and words
+
+
+def still(frames: int, fps: float) -> Clip:
+    places = np.zeros((frames, 1, 3))
+    return Clip("a", FACE_SKELETON, fps, rotation.identity_rotations((frames, 3)), places, (0,))
+
+
+@pytest.mark.parametrize(
+    ("frames", "said", "sound", "rate"),
+    [
+        (4800, 24.0, 40.0, 120.0),
+        (5040, 24.0, 40.0, 120.0),  # the motion goes on for 2 s
+        (600, 30.0, 40.0, 15.0),
+        (1200, 30.0, 40.0, 30.0),
+        (1200, 120.0, 40.0, 30.0),
+    ],
+)
+def test_motion_is_read_at_the_rate_at_which_it_is_as_long_as_its_sound(
+    frames: int, said: float, sound: float, rate: float
+) -> None:
+    found, told = _as_long(still(frames, said), sound)
+    assert found.fps == rate and bool(told) == (said != rate)
+
+
+def test_motion_that_fits_its_sound_at_no_rate_is_told() -> None:
+    found, told = _as_long(still(10, 30.0), 40.0)
+    assert found.fps == 30 and "check that they belong together" in told[0]
+
+
+def test_words_that_end_long_before_their_sound_are_told() -> None:
+    def talk(last: float) -> Conversation:
+        return Conversation(
+            name="t", length=40, sides=(Side(words=(Word(text="so", start=0, end=last),)), Side())
+        )
+
+    assert "its words end at 9 s" in _early_words(talk(9.0))[0]
+    assert not _early_words(talk(35.0))

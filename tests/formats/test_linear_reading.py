@@ -18,7 +18,7 @@ from metagraph.formats import elan
 from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.elan import read_elan
 from metagraph.formats.gltf.reader import read_gltf_clips
-from metagraph.formats.transcripts.text_files import _BRACKETED
+from metagraph.formats.transcripts.speaker_names import _BRACKETED
 from metagraph.motion.roles import body_parts, find_roles, joint_sides
 from metagraph.motion.skeleton import Skeleton
 from metagraph.speech.sympathies import _LAUGHED

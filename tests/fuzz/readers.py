@@ -116,6 +116,42 @@ def _only(*endings: str) -> Callable[[], dict[str, bytes]]:
     return lambda: {n: d for n, d in _talks().items() if Path(n).suffix in endings}
 
 
+def _services(*endings: str) -> Callable[[], dict[str, bytes]]:
+    from tests.formats.transcripts.made_transcripts import made_transcripts
+
+    files = {f"{n}{Path(name).suffix}": text for n, (name, text) in enumerate(made_transcripts().values())}
+    return lambda: {n: text.encode() for n, text in files.items() if Path(n).suffix in endings}
+
+
+def _faces() -> dict[str, bytes]:
+    from tests.formats.test_face_exports import audio2face, azure, table
+
+    found = {"a.csv": table(), "b.json": json.dumps(audio2face()), "c.json": json.dumps(azure())}
+    return {name: text.encode() for name, text in found.items()}
+
+
+def _smpl() -> dict[str, bytes]:
+    from tests.formats.test_smpl import amass
+
+    with tempfile.TemporaryDirectory() as folder:
+        return {"a.npz": amass(Path(folder) / "a.npz", 24).read_bytes()}
+
+
+def _acclaim() -> dict[str, bytes]:
+    from tests.formats.test_acclaim import amc, asf
+
+    return {"a.amc": amc().encode(), "b.asf": asf().encode()}
+
+
+def _mouths(json_files: bool) -> Callable[[], dict[str, bytes]]:
+    from tests.speech.mouth_files.made_mouths import MADE_MOUTHS
+
+    files = {f"{n}{Path(name).suffix}": text.encode() for n, (name, text) in enumerate(MADE_MOUTHS.values())}
+    return lambda: {
+        n: text for n, text in files.items() if (Path(n).suffix in (".json", ".pg2")) == json_files
+    }
+
+
 def _wav() -> dict[str, bytes]:
     import io
 
@@ -199,7 +235,23 @@ def _perceive() -> dict[str, bytes]:
 def _keypoints() -> dict[str, bytes]:
     rows = [{"t": n / 30, "keypoints": [[100 + k, 50 + 9 * k + n, 0.9] for k in range(17)]} for n in range(3)]
     people = {"frames": [{"people": [{"pose_keypoints_2d": [1.0, 2.0, 0.5] * 25}]}] * 2, "fps": 30}
-    return {"a.json": json.dumps(rows).encode(), "b.json": json.dumps(people).encode()}
+    one = {
+        "keypoints": [[100 + k, 50 + 9 * k] for k in range(17)],
+        "keypoint_scores": [0.9] * 17,
+        "bbox": [[0, 0, 9, 9]],
+    }
+    mmpose = {
+        "meta_info": {"dataset_name": "h36m"},
+        "instance_info": [{"frame_id": n, "instances": [one]} for n in range(2)],
+    }
+    old = {
+        "frames": [
+            {"people": [{"pose_keypoints": [1.0, 2.0, 0.5] * 18}]},
+            {"bodies": [{"joints": [1.0, 2.0, 0.5] * 18}]},
+        ]
+    }
+    found = {"a.json": rows, "b.json": people, "c.json": mmpose, "d.json": old, "e.json": [one, one]}
+    return {name: json.dumps(data).encode() for name, data in found.items()}
 
 
 def every_reader() -> dict[str, Fuzzed]:
@@ -226,10 +278,19 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.research.study.perceive.perceive_plan import read_perceive_plan
     from metagraph.research.study.study_plan import read_study
     from metagraph.speech.lines import make_voice_from_phones, read_line_voice
+    from metagraph.speech.mouth_files.registry import read_mouth_file
 
     def drawn(path: Path) -> None:
         for read in (read_character, read_vrm_roles, morph_targets, has_skinned_mesh):
             survives(read, path)
+
+    def acclaim(path: Path) -> None:
+        """Read a broken motion on a sound skeleton, or a sound motion on a broken one."""
+        whole = _acclaim()
+        for other in (path.with_suffix(".asf"), path.with_suffix(".amc")):
+            if other != path:
+                other.write_bytes(whole["a.amc" if other.suffix == ".amc" else "b.asf"])
+        read_clips(path.with_suffix(".amc"))
 
     def listed(path: Path) -> None:
         read_lines([path], path.parent)
@@ -288,12 +349,19 @@ def every_reader() -> dict[str, Fuzzed]:
         "fbx": Fuzzed(read_fbx_clips, _fixed(a_fbx=ascii_fbx()), (b"{", b"}", b"*9", b"Model:", b'"'), spoilt_words),
         "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
+        "faces": Fuzzed(read_clips, _faces, JSON, spoilt_words),
+        "smpl": Fuzzed(read_clips, _smpl, (b"PK", b"NUMPY", b"poses.npy", b"<f8"), spoilt_archive),
+        "acclaim": Fuzzed(acclaim, _acclaim, (b":bonedata", b"begin", b"dof rx", b"root", b"length"), spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(make_voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
         "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),
         "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm", ".tsv"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
+        "services": Fuzzed(read_transcript, _services(".json"), JSON, spoilt_json),
+        "transcribers": Fuzzed(read_transcript, _services(".trs", ".exb", ".cha", ".par", ".csv", ".tsv", ".ctm", ".marks"), XML, spoilt_words),
+        "mouths": Fuzzed(read_mouth_file, _mouths(False), XML, spoilt_words),
+        "mouth lists": Fuzzed(read_mouth_file, _mouths(True), JSON, spoilt_json),
         "words": Fuzzed(read_pack, _fixed(sv_yaml=b"code: sv\nname: x\nresponses: [ja, 'n\xc3\xa5']\nsmall: i, den\n"), (b"&a", b"{", b"- ", b", "), spoilt_words),
         "sound": Fuzzed(read_line_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),
         "keypoints": Fuzzed(read_keypoints, _keypoints, JSON, spoilt_json),

@@ -24,7 +24,9 @@ from metagraph.graph.requests import Line
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
 LISTS = (".csv", ".tsv", ".txt")
-PHONES = (".TextGrid", ".textgrid")
+# Of phones and mouth shapes beside a sound; other endings may be of anything, and count where they are read.
+PHONES = (".TextGrid", ".textgrid", ".pgo", ".pg2", ".dat", ".xml", ".tsv", ".json", ".csv")
+_SURE = (".textgrid", ".pgo", ".pg2")
 LONGEST = 20_000  # characters of a text
 MOST = 100_000  # lines of a list
 
@@ -86,12 +88,25 @@ def _beside(path: Path, folder: Path | None) -> Line:
     """Return a sound's line, with the text and phones of files called like it."""
     text = path.with_suffix(".txt")
     words = " ".join(_text(text).split())[:LONGEST] if is_file(text) else path.stem.replace("_", " ")
-    phones = next((p for s in PHONES if is_file(p := path.with_suffix(s))), None)
+    phones = next((p for s in PHONES if is_file(p := path.with_suffix(s)) and _holds_shapes(p)), None)
     return Line(
         text=words,
         audio=make_path_for_project(path, folder),
         phones=make_path_for_project(phones, folder) if phones else None,
     )
+
+
+def _holds_shapes(path: Path) -> bool:
+    """Return whether a file beside a sound says what the mouth does."""
+    if path.suffix.lower() in _SURE:
+        return True
+    from metagraph.speech.mouth_files.registry import read_mouth_file
+
+    try:
+        read_mouth_file(path)
+    except FileError:
+        return False
+    return True
 
 
 def _text(path: Path) -> str:

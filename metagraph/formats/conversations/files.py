@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from metagraph.formats.conversations.words import (
 )
 from metagraph.formats.store import make_path_for_project
 from metagraph.formats.transcripts.reader import read_transcript
+from metagraph.formats.transcripts.source import TranscriptSound
 from metagraph.formats.transcripts.words import count
 from metagraph.graph.conversation.model import (
     EVERYBODY,
@@ -38,7 +40,7 @@ from metagraph.speech.activity import HUSH, LEAST, activity
 from metagraph.speech.clauses import find_stress_time, segment_by_sound, segments
 from metagraph.speech.language_packs import LanguagePack
 from metagraph.speech.pitch import smooth
-from metagraph.speech.sound import HeardSound
+from metagraph.speech.sound import HeardSound, read_head
 
 Array = NDArray[Any]
 
@@ -92,7 +94,10 @@ def read_conversation(
             phrase("a conversation has one transcript, or one for each of up to {most} speakers", most=most)
         )
     reading = ConversationReading(cancelled=cancelled)
-    said = [(path, read_transcript(path)) for path in transcripts]
+    said = [
+        (path, read_transcript(path, _sound_of(audio, n, len(transcripts))))
+        for n, path in enumerate(transcripts)
+    ]
     for path, transcript in said:
         reading.notes += [phrase("{name}: {note}.", name=path.name, note=note) for note in transcript.notes]
     voices = read_side_voices(reading, list(audio), bool(said), most)
@@ -131,6 +136,19 @@ def read_conversation(
         hesitations=lists[shared][1],
     )
     return Read(made_of, tuple(dict.fromkeys(reading.notes)))
+
+
+def _sound_of(audio: Sequence[Path], n: int, transcripts: int) -> TranscriptSound:
+    """Return what is known of the sound that a transcript is of, before it is read: of its own file where
+    each has one, else of the longest.
+    """
+    own = [audio[n]] if len(audio) == transcripts else list(audio)
+    lengths = []
+    for path in own:
+        with suppress(FileError):  # who reads the sound tells that
+            rate, _, samples = read_head(path)
+            lengths.append(samples / rate)
+    return TranscriptSound(max(lengths, default=None), tuple(p.name for p in own))
 
 
 def _side(

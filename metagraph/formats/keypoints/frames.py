@@ -21,12 +21,15 @@ FARTHEST = 1e7  # of a coordinate, in any unit
 MOST_PEOPLE = 200  # in one frame
 # How keys are spelt, without capitals, hyphens and underscores.
 _SPACE = ("worldlandmarks", "poseworldlandmarks", "keypoints3d", "posekeypoints3d")
-_FLAT = ("landmarks", "poselandmarks", "keypoints", "posekeypoints2d")
+# `posekeypoints` is OpenPose's 1.0 and 1.1, `bodyparts` 1.0, `joints` before it.
+_FLAT = ("landmarks", "poselandmarks", "keypoints", "posekeypoints2d", "posekeypoints", "bodyparts", "joints")
+_PEOPLE = ("people", "instances", "bodies", "persons")  # OpenPose, MMPose, OpenPose before 1.0
+_SCORES = ("keypointscores", "scores")  # of points that stand without their confidence, as MMPose writes
 _SECONDS = ("t", "time", "seconds", "timestamp", "timesec", "timestampsec")
 _MILLISECONDS = ("timestampms", "timems", "ms", "milliseconds")
 _NUMBER = ("frame", "frameid", "frameindex", "framenumber", "frameidx", "imageid")
 _SURE = ("visibility", "confidence", "score", "presence", "c", "v")
-REMEDY = "Choose what OpenPose writes with --write_json, or MediaPipe's pose landmarks as JSON."
+REMEDY = "Choose what OpenPose writes with --write_json, MediaPipe's pose landmarks, or MMPose's predictions."
 
 
 @dataclass
@@ -39,6 +42,7 @@ class KeypointFrame:
     time: float | None = None
     number: int | None = None
     flat: list[SeenPerson] = field(default_factory=list)
+    kept: list[list[str]] = field(default_factory=list)  # of each person, what the file has
     space: list[SeenPerson] = field(default_factory=list)
 
 
@@ -47,7 +51,7 @@ def spelt(key: str) -> str:
 
 
 def has_people(item: Mapping[str, Any]) -> bool:
-    return any(spelt(k) in (*_SPACE, *_FLAT, "people") for k in item)
+    return any(spelt(k) in (*_SPACE, *_FLAT, *_PEOPLE) for k in item)
 
 
 def is_json_number(value: Any) -> bool:
@@ -71,9 +75,22 @@ def is_person(value: Any) -> bool:
     return len(value) in BY_COUNT and point
 
 
+def is_untimed_person(item: Any) -> bool:
+    """Return whether an entry of a list is one of several people in a picture, as MMPose writes them: points
+    with their scores and a box, and neither a time nor a number of a frame.
+    """
+    if not isinstance(item, dict):
+        return False
+    said = {spelt(str(k)) for k in item}
+    timed = said & {*_SECONDS, *_MILLISECONDS, *_NUMBER}
+    return "keypoints" in said and "bbox" in said and bool(said & set(_SCORES)) and not timed
+
+
 def read_frame(path: Path, item: Any, where: str) -> KeypointFrame:
     """Return what a frame holds. Raises FileError for what is no frame."""
     out = KeypointFrame(where)
+    if isinstance(item, list) and item and all(isinstance(p, dict) and has_people(p) for p in item):
+        item = {"people": item}  # MMPose's list of the people of one picture
     if isinstance(item, list):
         out.flat = list(_people(path, item, where, False))
         return out
@@ -81,18 +98,38 @@ def read_frame(path: Path, item: Any, where: str) -> KeypointFrame:
         raise FileError(path, "it is no frame: an object or a list is expected", where, REMEDY)
     said = {spelt(k): v for k, v in item.items()}
     _when(path, said, out)
-    if "people" in said:
-        people = said["people"]
+    several = next((k for k in _PEOPLE if k in said), None)
+    if several is not None:
+        people = said[several]
         if not isinstance(people, list) or not all(isinstance(p, dict) for p in people):
-            raise FileError(path, "'people' is not a list of people", where, REMEDY)
+            raise FileError(path, f"'{several}' is not a list of people", where, REMEDY)
+        out.kept = [sorted(map(str, p)) for p in people]
         for person in people[:MOST_PEOPLE]:
-            _take(path, {spelt(k): v for k, v in person.items()}, out)
+            _take(path, _with_scores(path, {spelt(k): v for k, v in person.items()}, where), out)
     elif any(k in said for k in (*_SPACE, *_FLAT)):
-        _take(path, said, out)
+        _take(path, _with_scores(path, said, where), out)
     elif out.time is None and out.number is None:
         keys = ", ".join(list(map(str, item))[:6]) or "nothing"
         raise FileError(path, f"it holds no keypoints; it has {keys}", where, REMEDY)
     return out
+
+
+def _with_scores(path: Path, said: dict[str, Any], where: str) -> dict[str, Any]:
+    """Return a person's values, with points `[[x, y], ...]` that stand beside their scores joined to `[[x, y,
+    score], ...]`, or `[[x, y, z, score], ...]` as points in space. Raises FileError.
+    """
+    scores = next((said[k] for k in _SCORES if isinstance(said.get(k), list)), None)
+    points = said.get("keypoints")
+    if scores is None or not isinstance(points, list) or not points or not isinstance(points[0], list):
+        return said
+    if len(scores) != len(points) or not all(isinstance(p, list) for p in points):
+        raise FileError(
+            path, f"{len(points)} points have {len(scores)} scores", where, "Correct them, or leave one out."
+        )
+    joined = [[*p, s] for p, s in zip(points, scores, strict=True)]
+    if len(points[0]) == 3:
+        return {**{k: v for k, v in said.items() if k != "keypoints"}, "keypoints3d": joined}
+    return {**said, "keypoints": joined}
 
 
 def _when(path: Path, said: Mapping[str, Any], out: KeypointFrame) -> None:
@@ -129,7 +166,9 @@ def _take(path: Path, said: Mapping[str, Any], out: KeypointFrame) -> None:
                 out.where,
                 space,
                 number,
-                said_sure="posekeypoints2d" in said or "keypoints" in said,
+                said_sure=any(
+                    k in said for k in ("posekeypoints2d", "posekeypoints", "keypoints", "bodyparts")
+                ),
             )
 
 

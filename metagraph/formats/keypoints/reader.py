@@ -1,16 +1,18 @@
-"""Keypoints that a pose estimator found in a video: OpenPose's and MediaPipe's JSON, in the ways in which
-programs write it.
+"""Keypoints that a pose estimator found in a video: the JSON of OpenPose, MediaPipe, MMPose and AlphaPose, in
+the ways in which programs write it.
 
 Read: a folder of OpenPose frames (`video_000000000012_keypoints.json`), or one file: a list of frames, an
 object that holds one, or one object a line. A frame is OpenPose's (`people`, each with `pose_keypoints_2d` or
 `_3d`) or MediaPipe's (33 landmarks of one person or several, however `worldLandmarks`, `poseLandmarks`,
-`pose_landmarks` ... is spelt), or COCO's (`keypoints`). Points count 17, 18, 25 or 33.
+`pose_landmarks` ... is spelt), or COCO's (`keypoints`), with MMPose's scores beside them (`instances`,
+`keypoint_scores`). OpenPose's people have `pose_keypoints` before 1.2, `body_parts` in 1.0 and `joints` (of
+`bodies`) before. Points count 15, 17, 18, 25, 26, 33 or 133.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -29,10 +31,19 @@ from metagraph.formats.keypoints.frames import (
     has_people,
     is_json_number,
     is_person,
+    is_untimed_person,
     read_frame,
     spelt,
 )
-from metagraph.mimicry.keypoint_layouts import BY_COUNT, LAYOUTS, PLACE, KeypointTrack, choose_points
+from metagraph.mimicry.keypoint_layouts import (
+    BY_COUNT,
+    H36M,
+    LAYOUTS,
+    PLACE,
+    POINTS,
+    KeypointTrack,
+    choose_points,
+)
 from metagraph.mimicry.people import SeenPerson, follow_person
 
 Array = NDArray[Any]
@@ -51,6 +62,7 @@ class _Head:
     fps: float | None = None
     width: float | None = None
     height: float | None = None
+    h36m: bool = False
 
 
 def read_keypoints(
@@ -72,12 +84,16 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
     path = Path(path)
     head = _Head()
     found = _folder(path) if path.is_dir() else _file(path, head)
-    frames = list(islice(found, KEYPOINT_FRAMES + 1))
+    frames = _joined(islice(found, KEYPOINT_FRAMES + 1))
     if len(frames) > KEYPOINT_FRAMES:
         raise FileError(path, f"it has more than {KEYPOINT_FRAMES:,} frames", "", _CUT)
     if not frames:
         raise FileError(path, "there are no frames in it", "", REMEDY)
     notes: list[str] = []
+    if head.h36m:
+        notes.append("its points are Human3.6M's, as it says")
+        for frame in frames:
+            frame.flat, frame.space = ([_from_h36m(p) for p in some] for some in (frame.flat, frame.space))
     times = _times(frames, fps or head.fps, notes)
     lasts = float(np.max(times, initial=0.0))
     if not lasts <= KEYPOINT_SECONDS:
@@ -89,6 +105,31 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
         )
     times, frames = times[kept], [frames[n] for n in kept]
     return _gathered(path, times, frames, picture or _size(head), notes)
+
+
+def _joined(found: Iterable[KeypointFrame]) -> list[KeypointFrame]:
+    """Return frames, those that follow each other with one number as one: AlphaPose and COCO list people."""
+    out: list[KeypointFrame] = []
+    for frame in found:
+        if out and frame.number is not None and frame.number == out[-1].number and frame.time is None:
+            out[-1].flat += frame.flat
+            out[-1].space += frame.space
+        else:
+            out.append(frame)
+    return out
+
+
+def _from_h36m(person: SeenPerson) -> SeenPerson:
+    """Return somebody's Human3.6M points as COCO's; eyes and ears were not found."""
+    if len(person.points) != len(H36M):
+        return person
+    order = np.array([H36M.index(name) if name in H36M else -1 for name in POINTS])
+    confidence = np.where(order < 0, 0.0, person.confidence[order])
+    points = person.points
+    spine = np.abs(points[H36M.index("neck")] - points[H36M.index("hips")])
+    if spine[2] > spine[1]:  # MMPose turns its people so that z is up and y towards the camera
+        points = -points[:, [0, 2, 1]]
+    return SeenPerson(np.where(order[:, None] < 0, 0.0, points[order]), confidence, person.ident)
 
 
 # --- files
@@ -111,8 +152,8 @@ def _folder(path: Path) -> Iterator[KeypointFrame]:
         )
     for number, file in sorted(found):
         data = _decoded(file, _bytes(file))
-        if not isinstance(data, dict):
-            raise FileError(file, "it is not a frame of OpenPose's", "", REMEDY)
+        if not isinstance(data, dict | list):
+            raise FileError(file, "it is not a frame of OpenPose's or MMPose's", "", REMEDY)
         frame = read_frame(file, data, file.name)
         frame.number = number
         yield frame
@@ -133,6 +174,8 @@ def _file(path: Path, head: _Head) -> Iterator[KeypointFrame]:
         data = data[whole]
     elif isinstance(data, dict):
         data = [data]
+    elif isinstance(data, list) and data and all(is_untimed_person(p) for p in data):
+        data = [data]  # MMPose's people of one picture
     if not isinstance(data, list):
         raise FileError(path, "it is neither an object nor a list", "", REMEDY)
     if is_person(data) or (data and all(is_person(p) for p in data) and is_json_number(data[0][0])):
@@ -180,6 +223,12 @@ def _is_json(line: bytes) -> bool:
 
 def _heading(path: Path, data: Mapping[str, Any], head: _Head) -> None:
     said = {spelt(k): v for k, v in data.items()}
+    meta = said.get("metainfo")
+    if isinstance(meta, dict):
+        named = {spelt(str(k)): v for k, v in meta.items()}
+        points = named.get("keypointid2name")
+        first = points.get("0") if isinstance(points, dict) else None
+        head.h36m = spelt(str(named.get("datasetname", ""))) in ("h36m", "human36m") or first == "root"
     for name, keys in {
         "fps": ("fps", "framerate"),
         "width": ("width", "imagewidth"),
@@ -234,7 +283,7 @@ def _gathered(
     people = [f.space if deep else f.flat for f in frames]
     counts = {len(p.points) for some in people for p in some}
     if not counts:
-        raise FileError(path, "nobody is in any of its frames", f"{_many(len(frames), 'frame')}", REMEDY)
+        raise FileError(path, _why_nobody(frames), f"{_many(len(frames), 'frame')}", REMEDY)
     if len(counts) > 1:
         raise FileError(
             path,
@@ -256,6 +305,15 @@ def _gathered(
     return KeypointTrack(
         times, _upright(points, confidence, deep, notes), confidence, names, 3 if deep else 2, tuple(notes)
     )
+
+
+def _why_nobody(frames: Sequence[KeypointFrame]) -> str:
+    """Return why no frame has anybody's points."""
+    keys = next((k for f in frames for k in f.kept if k), None)
+    if keys is None:
+        return "nobody is in any of its frames"
+    named = ", ".join(repr(k[:30]) for k in keys[:8])
+    return f"its people have no body's keypoints that are known, only {named}"
 
 
 def _stretch(

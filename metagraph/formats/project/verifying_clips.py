@@ -31,8 +31,8 @@ from metagraph.formats.store import (
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.clip import Clip
+from metagraph.speech.mouth_files.registry import read_mouth_file
 from metagraph.speech.sound import read_sound
-from metagraph.speech.textgrid import read_textgrid
 
 TRUST = "If you trust where the project comes from, verify it again with --network."
 CHANGED = (
@@ -139,7 +139,7 @@ def verify_named_files(project: Project, folder: Path) -> list[VerifiedPart]:
     sounds = _Readers()
     for line in lines:
         sounds.add(line.audio, read_sound, line.channel, LINE_SECONDS)
-        sounds.add(line.phones, read_textgrid)
+        sounds.add(line.phones, read_mouth_file)
     projects = _Readers()
     for side in sides:
         sounds.add(side.audio, read_sound, side.channel, CONVERSATION_SECONDS)

@@ -1,89 +1,56 @@
-"""JSON transcripts: those of Whisper and its kin (openai-whisper, faster-whisper, WhisperX, the API's verbose
-JSON), of IBM Speech to Text, and what `metagraph speech` writes.
+"""JSON transcripts without a service's marks: Whisper and its kin (openai-whisper, faster-whisper, WhisperX,
+the API's verbose JSON, whisper.cpp, Transformers), plain lists of words, IBM's, Vosk's, and what
+`metagraph speech` writes.
 """
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
-from pathlib import Path
-from statistics import median
 from typing import Any
 
 from metagraph.common.wording import phrase
-from metagraph.errors import FileError
+from metagraph.formats.transcripts.json_values import (
+    dict_of,
+    list_of,
+    name_of,
+    number_of,
+    rows_of,
+    seconds_of,
+    text_of,
+    timed_row_of,
+)
+from metagraph.formats.transcripts.source import TranscriptSource
+from metagraph.formats.transcripts.speaker_names import find_speaker_names
+from metagraph.formats.transcripts.units import infer_time_unit
 from metagraph.formats.transcripts.words import Collected, Transcript
 
 _REMEDY = phrase(
     "Whisper writes 'segments', with 'words' if word timestamps were "
     "requested; IBM writes 'results' with 'timestamps'."
 )
-_SLOWEST = 3.0  # seconds a letter: the slowest speech has a fifth of that, a word in milliseconds 20 or more
-_FASTEST = 0.015  # seconds a letter: hurried speech has twice that
 
 
-def read_json(path: Path, text: str) -> Transcript:
-    """Read a JSON transcript. Raises FileError."""
-    try:
-        data = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise FileError(
-            path,
-            phrase("is not JSON ({msg})", msg=error.msg),
-            phrase("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno),
-            phrase("Save the transcript again."),
-        ) from None
-    except (RecursionError, ValueError):
-        raise FileError(
-            path, phrase("its lists are nested too deep, or its numbers are too long"), "", _REMEDY
-        ) from None
-    out = Collected(path)
-    if isinstance(data, dict) and "sides" in data:
-        return _ours(out, text)
-    if _in_milliseconds(data):
-        out.unit = 0.001
-        out.notes.append(phrase("its times are whole numbers too large for seconds: read as milliseconds"))
-    if isinstance(data, list):
-        if all(isinstance(x, dict) and "results" in x for x in data) and data:
-            data = {
-                "results": [r for x in data for r in _list(out, x["results"], "results")],
-                "speaker_labels": [
-                    s for x in data for s in _list(out, x.get("speaker_labels") or [], "speaker_labels")
-                ],
-            }
-        else:
-            data = (
-                {"segments": data}
-                if any(isinstance(x, dict) and "text" in x for x in data)
-                else {"words": data}
-            )
-    if "results" in data:
-        _ibm(out, data)
-    elif "segments" in data:
-        _whisper(out, data)
-    elif "word_segments" in data or "words" in data:
-        key = "word_segments" if "word_segments" in data else "words"
-        _words(out, _list(out, data[key], key), "", key, None)
-    else:
-        names = ", ".join(f"'{str(k)[:30]}'" for k in list(data)[:6]) or "nothing"
-        raise FileError(
-            path,
-            phrase("is JSON, but not of a known transcript format; it contains {names}", names=names),
-            "",
-            _REMEDY,
-        )
-    return out.finished()
+def is_word_list(source: TranscriptSource) -> bool:
+    """Return whether JSON holds segments or words with their times."""
+    return (
+        bool(_rows(source.data) or {"segments", "words", "word_segments"} & source.keys) or source.data == []
+    )
 
 
-def _ours(out: Collected, text: str) -> Transcript:
+def is_saved_conversation(source: TranscriptSource) -> bool:
+    """Return whether JSON is a conversation as `metagraph speech` writes it."""
+    return "sides" in source.keys and isinstance(source.data, dict)
+
+
+def read_saved_conversation(source: TranscriptSource) -> Transcript:
+    """Read what `metagraph speech` writes. Raises FileError."""
     import msgspec
 
     from metagraph.graph.conversation.model import Conversation
 
+    out = Collected(source.path)
     try:
-        read = msgspec.json.decode(text, type=Conversation)
+        read = msgspec.json.decode(source.text, type=Conversation)
     except (msgspec.ValidationError, msgspec.DecodeError, ValueError) as error:
         raise out.fail(
             phrase("is not a conversation as 'metagraph speech' writes it: {error}", error=error)
@@ -98,57 +65,19 @@ def _ours(out: Collected, text: str) -> Transcript:
     return out.finished({name: side.segments for name, side in zip(names, read.sides, strict=True)})
 
 
-def _list(out: Collected, value: Any, where: str) -> Sequence[Any]:
-    if not isinstance(value, list):
-        raise out.fail(phrase("is {kind}, not a list", kind=_kind(value)), f"'{where}'", _REMEDY)
-    return value
+def _rows(data: Any) -> list[Any]:
+    """Return a plain list of segments or words; empty where data is none."""
+    if not isinstance(data, list) or not data or not isinstance(data[0], dict):
+        return []
+    first = timed_row_of(data[0])
+    return data if first.text and (first.start is not None or first.end is not None) else []
 
 
-def _dict(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
-    if not isinstance(value, dict):
-        raise out.fail(phrase("is {kind}, not an object", kind=_kind(value)), f"'{where}'", _REMEDY)
-    return value
-
-
-def _kind(value: Any) -> str:
-    names = {
-        dict: phrase("an object"),
-        list: phrase("a list"),
-        str: phrase("a text"),
-        bool: phrase("true or false"),
-        int: phrase("a number"),
-        float: phrase("a number"),
-    }
-    return names.get(type(value), phrase("nothing"))
-
-
-def _time(out: Collected, value: Any, where: str) -> float | None:
-    """Return seconds; None if there are none."""
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise out.fail(phrase("a time is {kind}", kind=_kind(value)), where)
-    try:
-        seconds = float(value)
-    except (ValueError, OverflowError):
-        raise out.fail(phrase("a time is '{value}'", value=str(value)[:30]), where) from None
-    if not math.isfinite(seconds):
-        raise out.fail(phrase("a time is {seconds:g}", seconds=seconds), where)
-    return seconds * out.unit
-
-
-def _in_milliseconds(data: Any) -> bool:
-    """Return whether every time of a text is a whole number, and half of the texts would last over
-    `_SLOWEST` seconds a letter if these were seconds, and no less than `_FASTEST` if they are milliseconds.
-    """
-    lengths = []
-    for start, end, text in _timed_texts(data):
-        if not (float(start).is_integer() and float(end).is_integer()):
-            return False
-        letters = sum(c.isalnum() for c in text)
-        if letters:
-            lengths.append((end - start) / letters)
-    return bool(lengths) and median(lengths) > max(_SLOWEST, 1000 * _FASTEST)
+def infer_unit_of(out: Collected, source: TranscriptSource) -> None:
+    """Settle which unit a file's times have, by all texts that have a start and an end in it."""
+    out.unit, told = infer_time_unit(_timed_texts(source.data), source.sound.seconds)
+    if told is not None:
+        out.notes.append(told)
 
 
 def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
@@ -160,72 +89,82 @@ def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
             waiting.extend(value)
         elif isinstance(value, dict):
             waiting.extend(value.values())
-            start, end = (_number(value.get(key)) for key in ("start", "end"))
-            text = _text(value.get("word", value.get("text", value.get("punctuated_word"))))
-            if start is not None and end is not None and abs(start) + abs(end) < 1e15:
-                yield start, end, text
+            row = timed_row_of(value)
+            start, end, length = number_of(row.start), number_of(row.end), number_of(row.length)
+            if end is None and start is not None and length is not None:
+                end = start + length
+            known = start is not None and end is not None and not row.milliseconds
+            if known and abs(start or 0.0) + abs(end or 0.0) < 1e15:
+                yield start or 0.0, end or 0.0, row.text
 
 
-def _number(value: Any) -> float | None:
-    """Return a number, also one that is written as text."""
-    if isinstance(value, int | float | str) and not isinstance(value, bool):
-        with suppress(ValueError, OverflowError):
-            return float(value)
-    return None
+def read_word_list(source: TranscriptSource) -> Transcript:
+    """Read segments, with words in them or beside them, or words alone. Raises FileError."""
+    out, data = Collected(source.path), source.data
+    infer_unit_of(out, source)
+    if isinstance(data, list):
+        texts = any(isinstance(x, dict) and "text" in x for x in data)
+        segments = any(isinstance(x, dict) and "text" in x and x.get("words") for x in data)
+        data = {"segments": data} if texts or segments else {"words": data}
+    if "segments" in data:
+        _segments(out, data)
+    else:
+        key = "word_segments" if "word_segments" in data else "words"
+        add_words(out, list_of(out, data[key], key), "", key)
+    return out.finished()
 
 
-def _text(value: Any) -> str:
-    return value if isinstance(value, str) else ""
-
-
-def _name(value: Any) -> str:
-    return str(value).strip() if isinstance(value, str | int | float) and not isinstance(value, bool) else ""
-
-
-# --- Whisper
-
-
-def _whisper(out: Collected, data: Mapping[str, Any]) -> None:
-    rows = _list(out, data["segments"], "segments")
+def _segments(out: Collected, data: Mapping[str, Any]) -> None:
+    rows = list_of(out, data["segments"], "segments")
     inside = any(isinstance(r, dict) and r.get("words") for r in rows)
     beside = data.get("word_segments") or data.get("words")
     if not inside and beside:  # the API's verbose JSON lists words apart
-        _words(out, _list(out, beside, "words"), "", "words", None)
+        add_words(out, list_of(out, beside, "words"), "", "words")
         return
+    names = find_speaker_names([[text_of(r.get("text"))] for r in rows if isinstance(r, dict)])
+    names.tell(out)
+    before = ""
     for n, row in enumerate(rows):
         where = f"segments[{n}]"
-        one = _dict(out, row, where)
-        speaker = _name(one.get("speaker", one.get("channel", "")))
-        start, end = _time(out, one.get("start"), where), _time(out, one.get("end"), where)
+        one = dict_of(out, row, where)
+        speaker = name_of(one.get("speaker", one.get("channel", "")))
+        timed = timed_row_of(one)
+        start, end = timed.span(out, where)
         if one.get("words"):
-            _words(out, _list(out, one["words"], f"{where}.words"), speaker, f"{where}.words", (start, end))
+            words = list_of(out, one["words"], f"{where}.words")
+            add_words(out, words, speaker, f"{where}.words", (start, end))
         elif start is None or end is None:
-            raise out.fail(phrase("has no start and end"), where)
+            raise out.fail(phrase("has no start and end"), where, _REMEDY)
         else:
-            out.add(speaker, _text(one.get("text")), start, end, where)
+            named = None if speaker else names.part(timed.text)
+            who, said = named if named is not None else (speaker or before, timed.text)
+            out.add(who, said, start, end, where)
+            before = who
 
 
-def _words(
+def _word(out: Collected, row: Any, speaker: str, where: str) -> tuple[str, str, float | None, float | None]:
+    """Return speaker, text, start and end of a word: an object, or faster-whisper's tuple as a list of start,
+    end, word and probability.
+    """
+    if isinstance(row, list) and len(row) >= 3 and isinstance(row[2], str):
+        row = {"start": row[0], "end": row[1], "word": row[2]}
+    one = dict_of(out, row, where)
+    timed = timed_row_of(one)
+    who = name_of(one.get("speaker", one.get("speaker_id", "")))
+    return (who or speaker, timed.text, *timed.span(out, where))
+
+
+def add_words(
     out: Collected,
     rows: Sequence[Any],
     speaker: str,
     where: str,
-    span: tuple[float | None, float | None] | None,
+    span: tuple[float | None, float | None] | None = None,
 ) -> None:
-    """Add words; those without times (WhisperX gives numbers none) share what is between their neighbours."""
-    read: list[tuple[str, str, float | None, float | None]] = []
-    for n, row in enumerate(rows):
-        one = _dict(out, row, f"{where}[{n}]")
-        text = _text(one.get("word", one.get("text", one.get("punctuated_word"))))
-        place = f"{where}[{n}]"
-        read.append(
-            (
-                _name(one.get("speaker", "")) or speaker,
-                text,
-                _time(out, one.get("start"), place),
-                _time(out, one.get("end"), place),
-            )
-        )
+    """Add words; those without times (WhisperX gives numbers none, Gentle what it did not find) share what is
+    between their neighbours. span: when the first begins and the last ends at the latest. Raises FileError.
+    """
+    read = [_word(out, row, speaker, f"{where}[{n}]") for n, row in enumerate(rows)]
     timed = [r for r in read if r[2] is not None and r[3] is not None]
     if read and not timed and (span is None or None in span):
         raise out.fail(phrase("no word has a start and an end"), where, _REMEDY)
@@ -252,32 +191,101 @@ def _words(
         n = behind
 
 
+# --- whisper.cpp, Transformers, Vosk
+
+
+def is_whisper_cpp(source: TranscriptSource) -> bool:
+    return isinstance(source.data, dict) and isinstance(source.data.get("transcription"), list)
+
+
+def read_whisper_cpp(source: TranscriptSource) -> Transcript:
+    """Read `transcription`, whose `offsets` are milliseconds. Raises FileError."""
+    out = Collected(source.path)
+    for where, row in rows_of(out, source.data, "transcription"):
+        at = dict_of(out, row.get("offsets") or {}, f"{where}.offsets")
+        start, end = (seconds_of(out, at.get(key), where, 1e-3) for key in ("from", "to"))
+        if start is None or end is None:
+            raise out.fail(phrase("has no start and end"), where, _REMEDY)
+        speaker = name_of(row.get("speaker", ""))
+        out.add(speaker, text_of(row.get("text")), start, end, where)
+    return out.finished()
+
+
+def is_transformers(source: TranscriptSource) -> bool:
+    return isinstance(source.data, dict) and isinstance(source.data.get("chunks"), list)
+
+
+def read_transformers(source: TranscriptSource) -> Transcript:
+    """Read `chunks`, each with its `timestamp`: start and end in seconds, the last end perhaps null. Raises
+    FileError.
+    """
+    out = Collected(source.path)
+    for where, row in rows_of(out, source.data, "chunks"):
+        at = list_of(out, row.get("timestamp"), f"{where}.timestamp")
+        start = seconds_of(out, at[0] if at else None, where)
+        end = seconds_of(out, at[1] if len(at) > 1 else None, where)
+        if start is None:
+            raise out.fail(phrase("has no start and end"), where, _REMEDY)
+        out.add(
+            name_of(row.get("speaker", "")), text_of(row.get("text")), start, start if end is None else end
+        )
+    return out.finished()
+
+
+def is_vosk(source: TranscriptSource) -> bool:
+    return "result" in source.keys and "text" in source.keys
+
+
+def read_vosk(source: TranscriptSource) -> Transcript:
+    """Read `result`, one object a line or a list of them; seconds. Raises FileError."""
+    out = Collected(source.path)
+    several = source.data if isinstance(source.data, list) else [source.data]
+    for n, item in enumerate(several):
+        one = dict_of(out, item, f"[{n}]")
+        if one.get("result"):
+            add_words(out, list_of(out, one["result"], f"[{n}].result"), "", f"[{n}].result")
+    return out.finished()
+
+
 # --- IBM
 
 
-def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
+def is_ibm(source: TranscriptSource) -> bool:
+    return "results" in source.keys
+
+
+def read_ibm(source: TranscriptSource) -> Transcript:
     """results[].alternatives[0].timestamps: [word, start, end]; speaker_labels[]: from, to, speaker."""
+    out, data = Collected(source.path), source.data
+    if isinstance(data, list):
+        data = {
+            "results": [r for _, x in _objects(out, data) for r in list_of(out, x.get("results"), "results")],
+            "speaker_labels": [
+                s
+                for _, x in _objects(out, data)
+                for s in list_of(out, x.get("speaker_labels") or [], "speaker_labels")
+            ],
+        }
     labels: dict[float, str] = {}
-    for n, row in enumerate(_list(out, data.get("speaker_labels") or [], "speaker_labels")):
-        one = _dict(out, row, f"speaker_labels[{n}]")
-        at = _time(out, one.get("from"), f"speaker_labels[{n}]")
+    for where, row in rows_of(out, data, "speaker_labels"):
+        at = seconds_of(out, row.get("from"), where)
         if at is not None:
-            labels[round(at, 2)] = _name(one.get("speaker", ""))
+            labels[round(at, 2)] = name_of(row.get("speaker", ""))
     words = untimed = 0
-    for n, row in enumerate(_list(out, data["results"], "results")):
+    for n, row in enumerate(list_of(out, data["results"], "results")):
         where = f"results[{n}]"
-        one = _dict(out, row, where)
-        tries = _list(out, one.get("alternatives") or [], f"{where}.alternatives")
+        one = dict_of(out, row, where)
+        tries = list_of(out, one.get("alternatives") or [], f"{where}.alternatives")
         if one.get("final") is False or not tries:
             continue
-        best = _dict(out, tries[0], f"{where}.alternatives[0]")
-        stamps = _list(out, best.get("timestamps") or [], f"{where}.timestamps")
-        untimed += not stamps and bool(_text(best.get("transcript")).strip())
+        best = dict_of(out, tries[0], f"{where}.alternatives[0]")
+        stamps = list_of(out, best.get("timestamps") or [], f"{where}.timestamps")
+        untimed += not stamps and bool(text_of(best.get("transcript")).strip())
         for m, stamp in enumerate(stamps):
             place = f"{where}.timestamps[{m}]"
             if not isinstance(stamp, list) or len(stamp) < 3 or not isinstance(stamp[0], str):
                 raise out.fail(phrase("is not a word with its start and end"), place, _REMEDY)
-            start, end = _time(out, stamp[1], place), _time(out, stamp[2], place)
+            start, end = seconds_of(out, stamp[1], place), seconds_of(out, stamp[2], place)
             if start is None or end is None:
                 raise out.fail(phrase("is not a word with its start and end"), place, _REMEDY)
             out.add(labels.get(round(start, 2), next(iter(labels.values()), "")), stamp[0], start, end, place)
@@ -290,3 +298,9 @@ def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
         )
     if untimed:
         out.notes.append(phrase("skipped {untimed} results without times", untimed=untimed))
+    return out.finished()
+
+
+def _objects(out: Collected, data: Sequence[Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    for n, item in enumerate(data):
+        yield f"[{n}]", dict_of(out, item, f"[{n}]")

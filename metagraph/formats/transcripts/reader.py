@@ -1,5 +1,4 @@
-"""Transcripts: who says which word when, from TextGrid, ELAN, WebVTT, SRT, CTM, tables and the JSON of
-Whisper's kin and of IBM.
+"""Transcripts: who says which word when, from every format in the registry.
 
 What a file is, its content says. Our own exports are read back whole: words and segments, as corrected by
 hand.
@@ -9,41 +8,51 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from metagraph.common.files import guard_reader
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import guard_reader, read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.formats.transcripts.json_files import read_json
-from metagraph.formats.transcripts.text_files import (
-    is_ctm,
-    is_word_table,
-    read_ctm,
-    read_cues,
-    read_word_table,
-)
-from metagraph.formats.transcripts.tiers import read_elan_tiers, read_textgrid_tiers
-from metagraph.formats.transcripts.words import REMEDY, Transcript, read_text_file
+from metagraph.formats.transcripts.registry import describe_transcript_formats, find_transcript_reader
+from metagraph.formats.transcripts.source import UNKNOWN_SOUND, TranscriptSound, TranscriptSource
+from metagraph.formats.transcripts.words import Transcript, decode_text
 
 
 @guard_reader
-def read_transcript(path: str | Path) -> Transcript:
-    """Read a transcript, whatever of `SUFFIXES` it is. Raises FileError."""
+def read_transcript(path: str | Path, sound: TranscriptSound = UNKNOWN_SOUND) -> Transcript:
+    """Read a transcript of any known format. sound: what it was made of, which tells the unit of times that
+    name none, and which of several media an annotation's times are meant for. Raises FileError.
+    """
     path = Path(path)
-    text = read_text_file(path)
-    head = text.lstrip("\ufeff \t\n")[:4000]
-    if not head:
+    raw = read_file(path, TEXT_FILE)
+    source = TranscriptSource(path, decode_text(raw), raw, sound)
+    if not source.head:
         return Transcript({}, {}, ("it is empty",))
-    if "\0" in head[:200]:
-        raise FileError(path, phrase("is not text"), phrase("its beginning"), REMEDY)
-    if head.startswith(('File type = "ooTextFile', '"ooTextFile')) or path.suffix.casefold() == ".textgrid":
-        return read_textgrid_tiers(path)
-    if head.startswith("<"):
-        return read_elan_tiers(path)
-    if head.startswith(("{", "[")):
-        return read_json(path, text)
-    if head.startswith("WEBVTT") or "-->" in text:
-        return read_cues(path, text)
-    if is_word_table(text):
-        return read_word_table(path, text)
-    if is_ctm(text):
-        return read_ctm(path, text)
-    raise FileError(path, phrase("is not a transcript in a known format"), phrase("its beginning"), REMEDY)
+    remedy = phrase("Known formats are {names}.", names=describe_transcript_formats())
+    if "\0" in source.head[:200]:
+        raise FileError(path, phrase("is not text"), phrase("its beginning"), remedy)
+    reader = find_transcript_reader(source)
+    if reader is not None:
+        return reader.read(source)
+    if source.data is not None:
+        names = ", ".join(f"'{str(k)[:30]}'" for k in sorted(source.keys)[:6]) or phrase("nothing")
+        raise FileError(
+            path,
+            phrase("is JSON, but not of a known transcript format; it contains {names}", names=names),
+            "",
+            phrase(
+                "Expected are 'words' or 'segments' whose entries have a text, a start and an end, or what "
+                "one of these writes: {names}.",
+                names=describe_transcript_formats(".json"),
+            ),
+        )
+    if source.root:
+        raise FileError(
+            path,
+            phrase(
+                "is XML, but not of a known transcript format; its outermost element is '{root}'",
+                root=source.root[:60],
+            ),
+            phrase("its beginning"),
+            remedy,
+        )
+    raise FileError(path, phrase("is not a transcript in a known format"), phrase("its beginning"), remedy)

@@ -9,6 +9,8 @@ from pathlib import Path
 
 from metagraph.common.wording import phrase
 from metagraph.formats.elan import read_elan
+from metagraph.formats.transcripts.json_values import dict_of, list_of, name_of, seconds_of, text_of
+from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import LATEST, TO_ALL, Collected, Transcript, count, is_silent
 from metagraph.graph.conversation.model import EVERYBODY, SHORTEST, SPOKEN, Segment, Spoken
 from metagraph.playback.learning.annotation import IGNORE, guess_role
@@ -53,6 +55,7 @@ _ROLES = {
     "silences": "other",
 }
 _PARTING = " -_@:/|.()[]\t"  # what stands between a name and what a tier holds
+_ALIGNED = re.compile(r"(?i)(?<![a-z])(ort|kan|kas|trn)-mau(?![a-z])")
 _PARTED = re.compile(r"\s*[-_@:/|.()\[\]\s]+\s*")
 
 
@@ -66,21 +69,70 @@ class _Tier:
     rows: Sequence[tuple[str, float, float]]
 
 
-def read_textgrid_tiers(path: Path) -> Transcript:
-    grid = read_textgrid(path)
+def is_textgrid(source: TranscriptSource) -> bool:
+    """Return whether a file is a TextGrid, or is called one."""
+    begins = source.head.startswith(('File type = "ooTextFile', '"ooTextFile'))
+    return begins or source.path.suffix.casefold() == ".textgrid"
+
+
+def read_textgrid_tiers(source: TranscriptSource) -> Transcript:
+    """Read the words of a TextGrid. Raises FileError."""
+    grid = read_textgrid(source.path)
     tiers = [_tier(t.name, "", [(i.text, i.start, i.end) for i in t.intervals]) for t in grid.tiers]
     points = {t.name for t in grid.tiers if t.points}
-    return _from_tiers(path, [t for t in tiers if t.name not in points or t.role == "peaks"], ())
+    return _from_tiers(source.path, [t for t in tiers if t.name not in points or t.role == "peaks"], ())
 
 
-def read_elan_tiers(path: Path) -> Transcript:
-    read = read_elan(path)
-    tiers = [
-        _tier(t.name, t.participant, [(i.text, round(i.start, 6), round(i.end, 6)) for i in t.intervals])
+def is_mfa_json(source: TranscriptSource) -> bool:
+    """Return whether JSON is what the Montreal Forced Aligner writes, or praatio."""
+    return isinstance(source.data, dict) and isinstance(source.data.get("tiers"), dict | list)
+
+
+def read_mfa_json(source: TranscriptSource) -> Transcript:
+    """Read `tiers`, by name or as a list, each with `entries` of start, end and label in seconds. Raises
+    FileError.
+    """
+    out = Collected(source.path)
+    given = source.data["tiers"]
+    named = given.items() if isinstance(given, dict) else [("", one) for one in given]
+    tiers = []
+    for key, value in named:
+        one = dict_of(out, value, f"tiers.{key}")
+        name = name_of(one.get("name", "")) or key
+        if name_of(one.get("type", one.get("class", ""))).casefold() in ("point", "texttier"):
+            continue
+        rows = []
+        for n, entry in enumerate(list_of(out, one.get("entries") or [], f"tiers.{name}.entries")):
+            where = f"tiers.{name}.entries[{n}]"
+            cells = list_of(out, entry, where)
+            start, end = (seconds_of(out, c, where) for c in cells[:2]) if len(cells) > 2 else (None, None)
+            if start is None or end is None:
+                raise out.fail(phrase("has no start, end and label"), where)
+            rows.append((text_of(cells[2]), start, end))
+        tiers.append(_tier(name, "", rows))
+    return _from_tiers(source.path, tiers, ())
+
+
+def is_elan(source: TranscriptSource) -> bool:
+    """Return whether XML is an annotation of ELAN's, or nothing that is known."""
+    return source.root == "ANNOTATION_DOCUMENT" or (
+        source.head.startswith("<") and source.path.suffix.casefold() == ".eaf"
+    )
+
+
+def read_elan_tiers(source: TranscriptSource) -> Transcript:
+    """Read the words of an annotation, at their times in the sound: an annotation's 0 is the medium's time
+    origin. Raises FileError.
+    """
+    read = read_elan(source.path)
+    late, told = read.offset_of(source.sound.names)
+    rows = {
+        t.name: [(i.text, round(i.start + late, 6), round(i.end + late, 6)) for i in t.intervals]
         for t in read.tiers
         if not _of_movement(t)
-    ]
-    return _from_tiers(path, tiers, read.notes)
+    }
+    tiers = [_tier(t.name, t.participant, rows[t.name]) for t in read.tiers if t.name in rows]
+    return _from_tiers(source.path, tiers, [*read.notes, *told])
 
 
 def _of_movement(tier: ElanTier) -> bool:
@@ -97,10 +149,13 @@ def _role(name: str) -> tuple[str, str]:
     "words" (or "", not said).
     """
     name = name.strip().strip('"').strip()
+    if (aligned := _ALIGNED.search(name)) is not None:  # WebMAUS: words, their sounds
+        role = "words" if aligned[1].casefold() == "ort" else "other"
+        return f"{name[: aligned.start()]}{name[aligned.end() :]}".strip(_PARTING), role
     parts = _PARTED.split(name)
     for n in (-1, 0):
-        role = _ROLES.get(parts[n].casefold()) if parts else None
-        if role is None:
+        known = _ROLES.get(parts[n].casefold()) if parts else None
+        if known is None:
             continue
         size = len(parts[n])
         rest = (
@@ -110,7 +165,7 @@ def _role(name: str) -> tuple[str, str]:
             if n == 0
             else name.replace(parts[n], "")
         )
-        return rest.strip(_PARTING), role
+        return rest.strip(_PARTING), known
     return name, ""
 
 

@@ -19,11 +19,6 @@ from metagraph.graph.conversation.model import SHORTEST, Segment, Word
 LATEST = 1e6  # seconds
 TO_ALL = "all"  # in "clause to all: ...", as our exports write whom a segment is said to
 _TEXT = 1000  # characters of a word
-SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
-REMEDY = phrase(
-    "Known formats are {names}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables.",
-    names=", ".join(SUFFIXES),
-)
 _CORRECT = phrase("Correct it there, or save the transcript again.")
 _SILENT = frozenset(
     (
@@ -207,9 +202,8 @@ def settle_words(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
     return tuple(out), notes
 
 
-def read_text_file(path: Path) -> str:
-    """Return a text file's content. Raises FileError."""
-    data = read_file(path, TEXT_FILE)
+def decode_text(data: bytes) -> str:
+    """Return a text file's content, whose lines end in a line feed."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", "replace").replace("\r\n", "\n").replace("\r", "\n")
     try:
@@ -217,3 +211,8 @@ def read_text_file(path: Path) -> str:
     except UnicodeDecodeError:
         text = data.decode("cp1252", "replace")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_text_file(path: Path) -> str:
+    """Return a text file's content. Raises FileError."""
+    return decode_text(read_file(path, TEXT_FILE))

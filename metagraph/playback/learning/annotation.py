@@ -13,8 +13,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from metagraph.common.wording import Phrase, phrase
 from metagraph.graph.model import Layer, Limb
 
+_SOUNDS = (".wav", ".flac", ".ogg", ".mp3", ".m4a", ".aac", ".aif", ".aiff")
 IGNORE = "ignore"
 ROLES: Mapping[str, tuple[Layer, Limb]] = {
     "left arm": ("arms", "left"), "right arm": ("arms", "right"), "arms": ("arms", "both"),
@@ -65,19 +67,58 @@ class AnnotationTier:
 
 @dataclass(frozen=True)
 class Annotation:
-    """media: the sound and video files it is about, as named in it. vocabularies: name -> labels. notes: what
-    was left out.
+    """media: the sound and video files it is about, as named in it. origins: of each medium, which of its
+    seconds is 0 here; empty where all begin at 0. vocabularies: name -> labels. notes: what was left out.
     """
 
     tiers: tuple[AnnotationTier, ...] = ()
     media: tuple[str, ...] = ()
     vocabularies: Mapping[str, tuple[str, ...]] | None = None
     notes: tuple[str, ...] = ()
+    origins: tuple[float, ...] = ()
+
+    def offset_of(self, names: Sequence[str]) -> tuple[float, tuple[Phrase, ...]]:
+        """Return the seconds to add to a time here for the time in one of several files, and what is to be
+        told of that.
+
+        The medium that is called as a file counts; else the one that all media share, else that of the first
+        sound among them.
+        """
+        if not any(self.origins):
+            return 0.0, ()
+        called = {_stem(name) for name in names}
+        own = [n for n, medium in enumerate(self.media) if _stem(medium) in called]
+        sounds = [n for n, m in enumerate(self.media) if m.casefold().endswith(_SOUNDS)]
+        chosen = (own or sounds or [0])[0]
+        late, name = self.origins[chosen], self.media[chosen].replace("\\", "/").rsplit("/", 1)[-1]
+        told = []
+        if len(set(self.origins)) > 1 and not own and names:
+            told.append(
+                phrase(
+                    "its media begin at different times, and none is called as the sound: read as times in "
+                    "'{name}'",
+                    name=name,
+                )
+            )
+        if late:
+            told.append(
+                phrase(
+                    "its times begin at {late:.3f} s of '{name}' (its time origin): read that much later",
+                    late=late,
+                    name=name,
+                )
+            )
+        return late, tuple(told)
 
     @property
     def end(self) -> float:
         """When the last interval ends, seconds; 0 without any."""
         return max((i.end for tier in self.tiers for i in tier.intervals), default=0.0)
+
+
+def _stem(name: str) -> str:
+    """Return a file's name without its folder and ending."""
+    return name.replace("\\", "/").rsplit("/", 1)[-1].rpartition(".")[0].casefold() or name.casefold()
 
 
 def label_of(text: str) -> str:

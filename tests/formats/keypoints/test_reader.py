@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats.keypoints.reader import read_keypoints
-from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, KeypointTrack
+from metagraph.mimicry.keypoint_layouts import H36M, LAYOUTS, PLACE, KeypointTrack
 from tests.mimicry.test_pose_measures import FIGURE
 
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints"
@@ -384,3 +384,77 @@ def test_any_json_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, t
     except FileError:
         return
     assert len(found) == len(found.points) == len(found.confidence)
+
+
+# --- layouts of other programs and versions
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        {"people": [{"pose_keypoints": flat(picture("openpose coco")), "face_keypoints": []}]},  # 1.1
+        {"version": 1.0, "people": [{"body_parts": flat(picture("openpose coco"))}]},
+        {"version": 0.1, "bodies": [{"joints": flat(picture("openpose coco"))}]},
+        {"people": [{"pose_keypoints_2d": flat(picture("openpose mpi"))}]},  # has neither eyes nor nose
+    ],
+)
+def test_openpose_before_one_two_and_its_mpi_model_are_read(read: Any, frame: dict[str, Any]) -> None:
+    found = read({"frames": [frame, frame]})
+    assert len(found) == 2
+    upright(found)
+
+
+def mmpose(layout: str, **more: Any) -> dict[str, Any]:
+    rows = picture(layout)
+    return {
+        "keypoints": [r[:2] for r in rows],
+        "keypoint_scores": [r[2] for r in rows],
+        "bbox": [[1, 2, 3, 4]],
+        "bbox_score": 0.9,
+        **more,
+    }
+
+
+@pytest.mark.parametrize("layout", ["coco", "halpe", "coco whole body"])
+def test_mmpose_people_are_read_with_their_scores(read: Any, layout: str) -> None:
+    low = {**mmpose(layout), "keypoint_scores": [0.25] * len(LAYOUTS[layout])}
+    frames = [{"frame_id": n, "instances": [low]} for n in (1, 2, 5)]
+    found = read({"meta_info": {"dataset_name": "coco"}, "instance_info": frames}, fps=10)
+    assert found.times.tolist() == [0.0, 0.1, 0.4]
+    assert found.canonical[1].max() == 0.25
+    upright(found)
+    assert len(read([mmpose(layout), mmpose(layout)])) == 1  # both are in one picture
+
+
+def test_mmpose_scores_that_do_not_fit_their_points_are_refused(read: Any) -> None:
+    with pytest.raises(FileError, match="17 points have 3 scores"):
+        read({"instance_info": [{"instances": [{**mmpose("coco"), "keypoint_scores": [1, 1, 1]}]}]})
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_points_of_human36m_are_told_from_those_of_coco_by_their_names(read: Any, turned: bool) -> None:
+    at = np.array([FIGURE.get(name, (0, 1.45, 0)) for name in H36M], float)
+    rows = at * [-1, 1, 1] if turned else at * [1, -1, -1]
+    rows = rows[:, [0, 2, 1]] if turned else rows
+    person = {"keypoints": rows.tolist(), "keypoint_scores": [1.0] * 17}
+    data = {"meta_info": {"dataset_name": "h36m"}, "instance_info": [{"instances": [person]}]}
+    found = read(data)
+    upright(found)
+    points, sure = found.canonical
+    assert points[0, PLACE["left_wrist"]] == pytest.approx(FIGURE["left_wrist"], abs=1e-6)
+    assert sure[0, PLACE["left_ear"]] == 0 and any("Human3.6M" in n for n in found.notes)
+
+
+def test_people_of_one_picture_in_a_list_are_one_frame(read: Any) -> None:
+    rows = [
+        {"image_id": f"{n}.jpg", "keypoints": flat(picture("coco", x)), "score": 2.0, "idx": n}
+        for n in range(3)
+        for x in (300.0, 500.0)
+    ]
+    found = read(rows)
+    assert len(found) == 3 and any("several people" in n for n in found.notes)
+
+
+def test_people_without_a_body_say_what_they_have_instead(read: Any) -> None:
+    with pytest.raises(FileError, match="only 'face_keypoints_2d'"):
+        read({"people": [{"face_keypoints_2d": [1, 2, 3]}]})

@@ -75,7 +75,7 @@ def test_a_transcript_without_words_is_told(read: Reader, text: str) -> None:
         ('{"results": [{"alternatives": [{"timestamps": [["a", 1]]}]}]}', "not a word with its start"),
         ('{"results": [{"alternatives": [{"transcript": "a b"}]}]}', "have no times"),
         ('{"sides": []}', "not a conversation"),
-        ("<html></html>", "not an ELAN"),
+        ("<html></html>", "is XML, but not of a known"),
         ("WEBVTT\n\n00:01 --> later\nhi\n", "not the times of a cue"),
         ("1\n00:00:05,000 --> 00:00:01,000\nhi\n", "before it starts"),
         ("a 1 0.5 0.2 so\na 1 x 0.2 we\n", "no recording, channel"),

@@ -1,0 +1,55 @@
+"""Write the page of what is read, from the registries of readers: `python docs/readers_page.py`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+PAGE = ROOT / "docs" / "reference" / "readers.md"
+HEAD = """# What is read from which tool
+
+After this page you know which transcripts and which mouth shapes Metagraph reads, and what of them.
+
+What a file is, its content says; its ending may differ. What was inferred, as a unit of time or a speaker, is
+reported. A file that is of none of these kinds is refused, with what was expected.
+
+*Checked with*: **a file of the tool**, or a file that we made from the tool's **published description**.
+"""
+UNITS = """
+Where a file does not name its unit of time, the length of the sound tells it: seconds, hundredths,
+milliseconds, microseconds, nanoseconds, or ticks of 100 nanoseconds.
+"""
+
+
+def page() -> str:
+    """Return the page."""
+    from metagraph.formats.transcripts.registry import TRANSCRIPT_READERS
+    from metagraph.speech.mouth_files.registry import MOUTH_READERS
+
+    parts = [
+        HEAD,
+        table(
+            "Transcripts", ((r.name, r.versions, r.holds, r.endings, r.by_tool) for r in TRANSCRIPT_READERS)
+        ),
+        UNITS,
+        table("Mouth shapes", ((r.name, r.versions, r.holds, r.endings, r.by_tool) for r in MOUTH_READERS)),
+    ]
+    return "\n".join(parts)
+
+
+def table(title: str, rows: Iterable[tuple[str, str, str, tuple[str, ...], bool]]) -> str:
+    """Return a section with a table of readers."""
+    lines = "".join(
+        f"| {name} | {versions} | {', '.join(f'`{e}`' for e in endings)} | {holds} | "
+        f"{'a file of the tool' if by_tool else 'published description'} |\n"
+        for name, versions, holds, endings, by_tool in rows
+    )
+    head = "| Tool | Version | Files | What is read | Checked with |\n|---|---|---|---|---|\n"
+    return f"## {title}\n\n{head}{lines}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

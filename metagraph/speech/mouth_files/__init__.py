@@ -1,0 +1,1 @@
+"""What the mouth does over time, from every kind of file that says it."""
