@@ -36,7 +36,7 @@ VERBS = set(
     differs digest discover drag draw drive drop duplicate ease edit elide encode escape estimate
     evaluate exchange exhibit explain export extend fade fetch fill filter find finish fit fix fold
     follow foresee forget format free freeze from gather generate get go grade group guard guess
-    handle has hear hide hit hold holds import improvise install is join judge keep keeps key label
+    handle has hear hide hit hold holds import improvise infer install is join judge keep keeps key label
     land last lay lead leap learn leave level lie lift limit list load lock log look main make mark
     mask match matches may mean measure meet merge mimic mirror mix move moves multiply name needs
     normalize note nudge offer open order pad paint parse paste perceive perform pick place plan

@@ -10,13 +10,13 @@ from typing import Any
 
 from metagraph.common.wording import phrase
 from metagraph.formats.transcripts.json_values import (
-    dict_of,
     list_of,
+    list_row_dicts,
     name_of,
-    number_of,
-    rows_of,
-    seconds_of,
-    text_of,
+    parse_json_number,
+    parse_json_seconds,
+    parse_text,
+    require_dict,
     timed_row_of,
 )
 from metagraph.formats.transcripts.source import TranscriptSource
@@ -73,7 +73,7 @@ def _rows(data: Any) -> list[Any]:
     return data if first.text and (first.start is not None or first.end is not None) else []
 
 
-def infer_unit_of(out: Collected, source: TranscriptSource) -> None:
+def infer_unit(out: Collected, source: TranscriptSource) -> None:
     """Settle which unit a file's times have, by all texts that have a start and an end in it."""
     out.unit, told = infer_time_unit(_timed_texts(source.data), source.sound.seconds)
     if told is not None:
@@ -90,7 +90,11 @@ def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
         elif isinstance(value, dict):
             waiting.extend(value.values())
             row = timed_row_of(value)
-            start, end, length = number_of(row.start), number_of(row.end), number_of(row.length)
+            start, end, length = (
+                parse_json_number(row.start),
+                parse_json_number(row.end),
+                parse_json_number(row.length),
+            )
             if end is None and start is not None and length is not None:
                 end = start + length
             known = start is not None and end is not None and not row.milliseconds
@@ -101,7 +105,7 @@ def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
 def read_word_list(source: TranscriptSource) -> Transcript:
     """Read segments, with words in them or beside them, or words alone. Raises FileError."""
     out, data = Collected(source.path), source.data
-    infer_unit_of(out, source)
+    infer_unit(out, source)
     if isinstance(data, list):
         texts = any(isinstance(x, dict) and "text" in x for x in data)
         segments = any(isinstance(x, dict) and "text" in x and x.get("words") for x in data)
@@ -121,12 +125,12 @@ def _segments(out: Collected, data: Mapping[str, Any]) -> None:
     if not inside and beside:  # the API's verbose JSON lists words apart
         add_words(out, list_of(out, beside, "words"), "", "words")
         return
-    names = find_speaker_names([[text_of(r.get("text"))] for r in rows if isinstance(r, dict)])
+    names = find_speaker_names([[parse_text(r.get("text"))] for r in rows if isinstance(r, dict)])
     names.tell(out)
     before = ""
     for n, row in enumerate(rows):
         where = f"segments[{n}]"
-        one = dict_of(out, row, where)
+        one = require_dict(out, row, where)
         speaker = name_of(one.get("speaker", one.get("channel", "")))
         timed = timed_row_of(one)
         start, end = timed.span(out, where)
@@ -148,7 +152,7 @@ def _word(out: Collected, row: Any, speaker: str, where: str) -> tuple[str, str,
     """
     if isinstance(row, list) and len(row) >= 3 and isinstance(row[2], str):
         row = {"start": row[0], "end": row[1], "word": row[2]}
-    one = dict_of(out, row, where)
+    one = require_dict(out, row, where)
     timed = timed_row_of(one)
     who = name_of(one.get("speaker", one.get("speaker_id", "")))
     return (who or speaker, timed.text, *timed.span(out, where))
@@ -201,13 +205,13 @@ def is_whisper_cpp(source: TranscriptSource) -> bool:
 def read_whisper_cpp(source: TranscriptSource) -> Transcript:
     """Read `transcription`, whose `offsets` are milliseconds. Raises FileError."""
     out = Collected(source.path)
-    for where, row in rows_of(out, source.data, "transcription"):
-        at = dict_of(out, row.get("offsets") or {}, f"{where}.offsets")
-        start, end = (seconds_of(out, at.get(key), where, 1e-3) for key in ("from", "to"))
+    for where, row in list_row_dicts(out, source.data, "transcription"):
+        at = require_dict(out, row.get("offsets") or {}, f"{where}.offsets")
+        start, end = (parse_json_seconds(out, at.get(key), where, 1e-3) for key in ("from", "to"))
         if start is None or end is None:
             raise out.fail(phrase("has no start and end"), where, _REMEDY)
         speaker = name_of(row.get("speaker", ""))
-        out.add(speaker, text_of(row.get("text")), start, end, where)
+        out.add(speaker, parse_text(row.get("text")), start, end, where)
     return out.finished()
 
 
@@ -220,14 +224,14 @@ def read_transformers(source: TranscriptSource) -> Transcript:
     FileError.
     """
     out = Collected(source.path)
-    for where, row in rows_of(out, source.data, "chunks"):
+    for where, row in list_row_dicts(out, source.data, "chunks"):
         at = list_of(out, row.get("timestamp"), f"{where}.timestamp")
-        start = seconds_of(out, at[0] if at else None, where)
-        end = seconds_of(out, at[1] if len(at) > 1 else None, where)
+        start = parse_json_seconds(out, at[0] if at else None, where)
+        end = parse_json_seconds(out, at[1] if len(at) > 1 else None, where)
         if start is None:
             raise out.fail(phrase("has no start and end"), where, _REMEDY)
         out.add(
-            name_of(row.get("speaker", "")), text_of(row.get("text")), start, start if end is None else end
+            name_of(row.get("speaker", "")), parse_text(row.get("text")), start, start if end is None else end
         )
     return out.finished()
 
@@ -241,7 +245,7 @@ def read_vosk(source: TranscriptSource) -> Transcript:
     out = Collected(source.path)
     several = source.data if isinstance(source.data, list) else [source.data]
     for n, item in enumerate(several):
-        one = dict_of(out, item, f"[{n}]")
+        one = require_dict(out, item, f"[{n}]")
         if one.get("result"):
             add_words(out, list_of(out, one["result"], f"[{n}].result"), "", f"[{n}].result")
     return out.finished()
@@ -267,25 +271,25 @@ def read_ibm(source: TranscriptSource) -> Transcript:
             ],
         }
     labels: dict[float, str] = {}
-    for where, row in rows_of(out, data, "speaker_labels"):
-        at = seconds_of(out, row.get("from"), where)
+    for where, row in list_row_dicts(out, data, "speaker_labels"):
+        at = parse_json_seconds(out, row.get("from"), where)
         if at is not None:
             labels[round(at, 2)] = name_of(row.get("speaker", ""))
     words = untimed = 0
     for n, row in enumerate(list_of(out, data["results"], "results")):
         where = f"results[{n}]"
-        one = dict_of(out, row, where)
+        one = require_dict(out, row, where)
         tries = list_of(out, one.get("alternatives") or [], f"{where}.alternatives")
         if one.get("final") is False or not tries:
             continue
-        best = dict_of(out, tries[0], f"{where}.alternatives[0]")
+        best = require_dict(out, tries[0], f"{where}.alternatives[0]")
         stamps = list_of(out, best.get("timestamps") or [], f"{where}.timestamps")
-        untimed += not stamps and bool(text_of(best.get("transcript")).strip())
+        untimed += not stamps and bool(parse_text(best.get("transcript")).strip())
         for m, stamp in enumerate(stamps):
             place = f"{where}.timestamps[{m}]"
             if not isinstance(stamp, list) or len(stamp) < 3 or not isinstance(stamp[0], str):
                 raise out.fail(phrase("is not a word with its start and end"), place, _REMEDY)
-            start, end = seconds_of(out, stamp[1], place), seconds_of(out, stamp[2], place)
+            start, end = parse_json_seconds(out, stamp[1], place), parse_json_seconds(out, stamp[2], place)
             if start is None or end is None:
                 raise out.fail(phrase("is not a word with its start and end"), place, _REMEDY)
             out.add(labels.get(round(start, 2), next(iter(labels.values()), "")), stamp[0], start, end, place)
@@ -303,4 +307,4 @@ def read_ibm(source: TranscriptSource) -> Transcript:
 
 def _objects(out: Collected, data: Sequence[Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     for n, item in enumerate(data):
-        yield f"[{n}]", dict_of(out, item, f"[{n}]")
+        yield f"[{n}]", require_dict(out, item, f"[{n}]")

@@ -25,14 +25,14 @@ def list_of(out: Collected, value: Any, where: str) -> Sequence[Any]:
     return value
 
 
-def dict_of(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
+def require_dict(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
     """Return an object. Raises FileError for anything else."""
     if not isinstance(value, dict):
         raise out.fail(phrase("is {kind}, not an object", kind=_kind(value)), f"'{where}'", REMEDY_JSON)
     return value
 
 
-def rows_of(
+def list_row_dicts(
     out: Collected, data: Mapping[str, Any], key: str, where: str = ""
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Yield the place and the value of each object in a list that an object holds; nothing where it holds
@@ -40,10 +40,10 @@ def rows_of(
     """
     place = f"{where}.{key}" if where else key
     for n, row in enumerate(list_of(out, data.get(key) or [], place)):
-        yield f"{place}[{n}]", dict_of(out, row, f"{place}[{n}]")
+        yield f"{place}[{n}]", require_dict(out, row, f"{place}[{n}]")
 
 
-def seconds_of(out: Collected, value: Any, where: str, unit: float | None = None) -> float | None:
+def parse_json_seconds(out: Collected, value: Any, where: str, unit: float | None = None) -> float | None:
     """Return seconds; None where there are none. unit: seconds of one of the value's units, None for the
     file's. Texts may be numbers, "1.5s", "00:00:01,500" or "PT1.5S"; an object has `seconds` and `nanos`.
     Raises FileError.
@@ -51,8 +51,8 @@ def seconds_of(out: Collected, value: Any, where: str, unit: float | None = None
     if value is None:
         return None
     if isinstance(value, dict) and {"seconds", "nanos"} & set(value):
-        whole = seconds_of(out, value.get("seconds", 0), where, 1.0) or 0.0
-        return whole + (seconds_of(out, value.get("nanos", 0), where, 1e-9) or 0.0)
+        whole = parse_json_seconds(out, value.get("seconds", 0), where, 1.0) or 0.0
+        return whole + (parse_json_seconds(out, value.get("nanos", 0), where, 1e-9) or 0.0)
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise out.fail(phrase("a time is {kind}", kind=_kind(value)), where)
     if isinstance(value, str) and (said := _said(value)) is not None:
@@ -78,7 +78,7 @@ def _said(text: str) -> float | None:
     return None
 
 
-def number_of(value: Any) -> float | None:
+def parse_json_number(value: Any) -> float | None:
     """Return a number, also one that is written as text; None for anything else."""
     if isinstance(value, int | float | str) and not isinstance(value, bool):
         with suppress(ValueError, OverflowError):
@@ -87,7 +87,7 @@ def number_of(value: Any) -> float | None:
     return None
 
 
-def text_of(value: Any) -> str:
+def parse_text(value: Any) -> str:
     """Return a text; "" for anything else."""
     return value if isinstance(value, str) else ""
 
@@ -132,15 +132,18 @@ class TimedRow:
     def span(self, out: Collected, where: str) -> tuple[float | None, float | None]:
         """Return start and end in seconds, None for what is not said. Raises FileError."""
         unit = 1e-3 if self.milliseconds else None
-        start, end = seconds_of(out, self.start, where, unit), seconds_of(out, self.end, where, unit)
+        start, end = (
+            parse_json_seconds(out, self.start, where, unit),
+            parse_json_seconds(out, self.end, where, unit),
+        )
         if end is None and start is not None and self.length is not None:
-            end = start + (seconds_of(out, self.length, where, unit) or 0.0)
+            end = start + (parse_json_seconds(out, self.length, where, unit) or 0.0)
         return start, end
 
 
 def timed_row_of(one: Mapping[str, Any]) -> TimedRow:
     """Return the text and the times of an object, however they are called."""
-    text = next((text_of(one[key]) for key in _TEXTS if text_of(one.get(key))), "")
+    text = next((parse_text(one[key]) for key in _TEXTS if parse_text(one.get(key))), "")
     for ending in ("", *_THOUSANDTHS):
         start, end, length = (
             next((one[key + ending] for key in keys if one.get(key + ending) is not None), None)

@@ -9,7 +9,13 @@ from pathlib import Path
 
 from metagraph.common.wording import phrase
 from metagraph.formats.elan import read_elan
-from metagraph.formats.transcripts.json_values import dict_of, list_of, name_of, seconds_of, text_of
+from metagraph.formats.transcripts.json_values import (
+    list_of,
+    name_of,
+    parse_json_seconds,
+    parse_text,
+    require_dict,
+)
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import LATEST, TO_ALL, Collected, Transcript, count, is_silent
 from metagraph.graph.conversation.model import EVERYBODY, SHORTEST, SPOKEN, Segment, Spoken
@@ -97,7 +103,7 @@ def read_mfa_json(source: TranscriptSource) -> Transcript:
     named = given.items() if isinstance(given, dict) else [("", one) for one in given]
     tiers = []
     for key, value in named:
-        one = dict_of(out, value, f"tiers.{key}")
+        one = require_dict(out, value, f"tiers.{key}")
         name = name_of(one.get("name", "")) or key
         if name_of(one.get("type", one.get("class", ""))).casefold() in ("point", "texttier"):
             continue
@@ -105,10 +111,12 @@ def read_mfa_json(source: TranscriptSource) -> Transcript:
         for n, entry in enumerate(list_of(out, one.get("entries") or [], f"tiers.{name}.entries")):
             where = f"tiers.{name}.entries[{n}]"
             cells = list_of(out, entry, where)
-            start, end = (seconds_of(out, c, where) for c in cells[:2]) if len(cells) > 2 else (None, None)
+            start, end = (
+                (parse_json_seconds(out, c, where) for c in cells[:2]) if len(cells) > 2 else (None, None)
+            )
             if start is None or end is None:
                 raise out.fail(phrase("has no start, end and label"), where)
-            rows.append((text_of(cells[2]), start, end))
+            rows.append((parse_text(cells[2]), start, end))
         tiers.append(_tier(name, "", rows))
     return _from_tiers(source.path, tiers, ())
 

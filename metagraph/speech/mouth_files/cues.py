@@ -10,7 +10,7 @@ from typing import Any
 from xml.parsers import expat
 
 from metagraph.common.wording import phrase
-from metagraph.speech.mouth_files.model import MouthCues, MouthFile, MouthShapes, number_in
+from metagraph.speech.mouth_files.model import MouthCues, MouthFile, MouthShapes, parse_mouth_number
 
 SECONDS, MILLISECONDS, TICKS = (1.0, "seconds"), (1e-3, "milliseconds"), (1e-7, "ticks of 100 nanoseconds")
 MOHO_RATE = 24.0  # frames a second that Rhubarb and Papagayo write where they are not asked for others
@@ -88,7 +88,7 @@ def read_moho(file: MouthFile) -> MouthShapes:
     for n, line in enumerate(file.text.split("\n")[1:], 2):
         cells = line.split()
         if cells:
-            frame = number_in(cells[0])
+            frame = parse_mouth_number(cells[0])
             start = cells[0] if frame is None else max(frame - 1, 0)
             cues.add(start, None, " ".join(cells[1:]), phrase("line {n}", n=n))
     last = max((start for start, *_ in cues.rows), default=0.0)
@@ -110,7 +110,7 @@ def read_papagayo(file: MouthFile) -> MouthShapes:
     """
     cues = MouthCues(file)
     lines = file.text.lstrip("\ufeff \n").split("\n")
-    rate = number_in(lines[2].strip()) if len(lines) > 4 else None
+    rate = parse_mouth_number(lines[2].strip()) if len(lines) > 4 else None
     if rate is None or not 1 <= rate <= 1000:
         raise file.fail(phrase("it does not say its frames a second"), phrase("line {n}", n=3))
     heads = 0  # a voice begins with three lines at one tab: its name, its text, how many phrases it has
@@ -120,7 +120,7 @@ def read_papagayo(file: MouthFile) -> MouthShapes:
         if tabs == 4 and len(cells) == 2 and heads <= 3:
             cues.add(cells[0], None, cells[1], phrase("line {n}", n=n))
     cues.unit = 1 / rate
-    _tell_voices(cues, number_in(lines[4].strip()))
+    _tell_voices(cues, parse_mouth_number(lines[4].strip()))
     return cues.finished()
 
 
@@ -136,7 +136,7 @@ def is_papagayo_ng(file: MouthFile) -> bool:
 def read_papagayo_ng(file: MouthFile) -> MouthShapes:
     """Read the phonemes of the first voice of a Papagayo-NG project. Raises FileError."""
     cues = MouthCues(file)
-    rate, voices = number_in(file.data["fps"]), file.data["voices"]
+    rate, voices = parse_mouth_number(file.data["fps"]), file.data["voices"]
     if rate is None or not 1 <= rate <= 1000:
         raise file.fail(phrase("it does not say its frames a second"), "'fps'")
     if not isinstance(voices, list) or not voices:
@@ -184,7 +184,7 @@ def is_cue_list(file: MouthFile) -> bool:
     rows = _list_in(file.data)
     first = next((r for r in rows if not isinstance(r, dict) or r.get("type") in (None, "viseme")), None)
     if isinstance(first, list):
-        return 2 <= len(first) <= 3 and number_in(first[0]) is not None and isinstance(first[1], str)
+        return 2 <= len(first) <= 3 and parse_mouth_number(first[0]) is not None and isinstance(first[1], str)
     return (
         isinstance(first, dict)
         and any(k in first for k in (*_TIMES, *_OFFSETS))
@@ -247,9 +247,9 @@ def read_gentle(file: MouthFile) -> MouthShapes:
         phones = word.get("phones") if isinstance(word, dict) else None
         if not isinstance(phones, list) or word.get("start") is None:
             continue
-        at = number_in(word["start"])
+        at = parse_mouth_number(word["start"])
         for one in phones:
-            length = number_in(one.get("duration")) if isinstance(one, dict) else None
+            length = parse_mouth_number(one.get("duration")) if isinstance(one, dict) else None
             if at is None or length is None:
                 raise file.fail(phrase("has no time"), where)
             cues.add(at, at + length, one.get("phone"), where)
@@ -269,10 +269,10 @@ def is_cue_table(file: MouthFile) -> bool:
 
 def _cells(line: str) -> tuple[str, str | None, str] | None:
     cells = [c for c in _SPLIT.split(line.strip()) if c]
-    if len(cells) not in (2, 3) or number_in(cells[0]) is None:
+    if len(cells) not in (2, 3) or parse_mouth_number(cells[0]) is None:
         return None
     if len(cells) == 3:
-        return None if number_in(cells[1]) is None else (cells[0], cells[1], cells[2])
+        return None if parse_mouth_number(cells[1]) is None else (cells[0], cells[1], cells[2])
     return cells[0], None, cells[1]
 
 

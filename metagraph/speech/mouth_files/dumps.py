@@ -13,7 +13,7 @@ from metagraph.common.budgets import MARKS
 from metagraph.common.wording import phrase
 from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.line_timing import OCULUS
-from metagraph.speech.mouth_files.model import LONGEST, MouthFile, MouthShapes, number_in
+from metagraph.speech.mouth_files.model import LONGEST, MouthFile, MouthShapes, parse_mouth_number
 
 # The order in which OVRLipSync counts visemes; its ih, oh and ou are our I, O and U.
 ORDER = ("sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou")
@@ -38,7 +38,7 @@ def is_viseme_table(file: MouthFile) -> bool:
 
 
 def _bare(cells: list[str]) -> bool:
-    return len(cells) in (15, 16) and all(number_in(c.strip()) is not None for c in cells)
+    return len(cells) in (15, 16) and all(parse_mouth_number(c.strip()) is not None for c in cells)
 
 
 def read_viseme_table(file: MouthFile) -> MouthShapes:
@@ -64,12 +64,12 @@ def read_viseme_table(file: MouthFile) -> MouthShapes:
         cells = [(c.replace(",", ".") if split == ";" else c).strip() for c in line.split(split)]
         where = phrase("line {n}", n=number)
         for k, place in columns:
-            value = number_in(cells[k]) if k < len(cells) else None
+            value = parse_mouth_number(cells[k]) if k < len(cells) else None
             if value is None:
                 raise file.fail(phrase("has no number for '{name}'", name=str(names[k])), where)
             row[place] = value
         if time is not None:
-            at = number_in(cells[time]) if time < len(cells) else None
+            at = parse_mouth_number(cells[time]) if time < len(cells) else None
             if at is None:
                 raise file.fail(phrase("has no time"), where)
             times.append(at)
@@ -105,15 +105,17 @@ def read_viseme_json(file: MouthFile) -> MouthShapes:
     for n, entry in enumerate(entries):
         where = phrase("frame {number}", number=n)
         weights = _weights(entry)
-        values = None if weights is None else [number_in(v) if v is not None else 0.0 for v in weights]
+        values = (
+            None if weights is None else [parse_mouth_number(v) if v is not None else 0.0 for v in weights]
+        )
         if values is None or any(v is None for v in values):
             raise file.fail(phrase("has not 15 numbers, one for each viseme"), where)
         rows[n, [VISEMES.index(OCULUS[name]) for name in ORDER]] = values
         if isinstance(entry, dict):
-            at = next((number_in(entry[k]) for k in _TIMES if k in entry), None)
+            at = next((parse_mouth_number(entry[k]) for k in _TIMES if k in entry), None)
             if at is not None:
                 times.append(at)
-    length = number_in(file.data.get("length")) if isinstance(file.data, dict) else None
+    length = parse_mouth_number(file.data.get("length")) if isinstance(file.data, dict) else None
     return _shapes(file, rows, times if len(times) == len(rows) else [], "", length)
 
 
@@ -130,7 +132,7 @@ def read_viseme_sequence(file: MouthFile) -> MouthShapes:
         if _ENTRY.match(line):
             found.append([])
         elif found and len(found[-1]) < 15 and (item := _ITEM.match(line)) is not None:
-            value = number_in(item[1])
+            value = parse_mouth_number(item[1])
             if value is None:
                 raise file.fail(phrase("a time is '{value}'", value=item[1][:30]), phrase("line {n}", n=n))
             found[-1].append(value)
@@ -143,7 +145,7 @@ def read_viseme_sequence(file: MouthFile) -> MouthShapes:
     if found:
         rows[:, [VISEMES.index(OCULUS[name]) for name in ORDER]] = found
     said = _LENGTH.search(file.text)
-    return _shapes(file, rows, [], "", number_in(said[1]) if said is not None else None)
+    return _shapes(file, rows, [], "", parse_mouth_number(said[1]) if said is not None else None)
 
 
 def _shapes(

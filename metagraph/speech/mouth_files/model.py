@@ -102,7 +102,7 @@ class MouthCues:
         """Add a cue; end None for until the next. Raises FileError."""
         times = []
         for value in (start, end):
-            number = None if value is None else number_in(value)
+            number = None if value is None else parse_mouth_number(value)
             if value is not None and (number is None or not abs(number) < 1e15):
                 raise self.file.fail(phrase("a time is '{value}'", value=str(value)[:30]), where)
             times.append(number)
@@ -188,7 +188,7 @@ class MouthCues:
         return lambda label: visemes_of(bare.get(label, label), arpabet)
 
 
-def number_in(value: Any) -> float | None:
+def parse_mouth_number(value: Any) -> float | None:
     """Return a finite number, also one that is written as text; None for anything else."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return None

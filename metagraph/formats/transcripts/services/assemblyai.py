@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from metagraph.formats.transcripts.json_files import add_words
-from metagraph.formats.transcripts.json_values import list_of, name_of, rows_of, seconds_of, text_of
+from metagraph.formats.transcripts.json_values import (
+    list_of,
+    list_row_dicts,
+    name_of,
+    parse_json_seconds,
+    parse_text,
+)
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -22,16 +28,19 @@ def read_assemblyai(source: TranscriptSource) -> Transcript:
     out.unit = 1e-3
     if source.data.get("words"):
         add_words(out, list_of(out, source.data["words"], "words"), "", "words")
-    for where, one in [] if source.data.get("words") else rows_of(out, source.data, "utterances"):
+    for where, one in [] if source.data.get("words") else list_row_dicts(out, source.data, "utterances"):
         who = name_of(one.get("speaker", ""))
-        start, end = seconds_of(out, one.get("start"), where), seconds_of(out, one.get("end"), where)
+        start, end = (
+            parse_json_seconds(out, one.get("start"), where),
+            parse_json_seconds(out, one.get("end"), where),
+        )
         if one.get("words"):
             words = list_of(out, one["words"], f"{where}.words")
             add_words(out, words, who, f"{where}.words", (start, end))
         else:
             add_words(
                 out,
-                [{"word": text_of(one.get("text")), "start": one.get("start"), "end": one.get("end")}],
+                [{"word": parse_text(one.get("text")), "start": one.get("start"), "end": one.get("end")}],
                 who,
                 where,
             )

@@ -9,7 +9,13 @@ from typing import Any
 
 from metagraph.common.wording import phrase
 from metagraph.formats.transcripts.json_files import add_words
-from metagraph.formats.transcripts.json_values import list_of, name_of, rows_of, seconds_of, text_of
+from metagraph.formats.transcripts.json_values import (
+    list_of,
+    list_row_dicts,
+    name_of,
+    parse_json_seconds,
+    parse_text,
+)
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -63,11 +69,11 @@ def _span(out: Collected, one: Mapping[str, Any], where: str) -> tuple[float | N
     for name in ("offset", "duration"):
         milliseconds, ticks = one.get(f"{name}milliseconds"), one.get(f"{name}inticks")
         if milliseconds is not None:
-            ends.append(seconds_of(out, milliseconds, where, 1e-3))
+            ends.append(parse_json_seconds(out, milliseconds, where, 1e-3))
         elif ticks is not None:
-            ends.append(seconds_of(out, ticks, where, _TICK))
+            ends.append(parse_json_seconds(out, ticks, where, _TICK))
         else:
-            ends.append(seconds_of(out, one.get(name), where, _TICK))
+            ends.append(parse_json_seconds(out, one.get(name), where, _TICK))
     start, length = ends
     return start, None if start is None or length is None else start + length
 
@@ -77,7 +83,7 @@ def _phrase(out: Collected, one: dict[str, Any], who: str, where: str) -> None:
     if status not in (None, "Success", 0):
         return
     best = one
-    for _, row in list(rows_of(out, one, "nbest", where))[:1]:
+    for _, row in list(list_row_dicts(out, one, "nbest", where))[:1]:
         best = _lower(row)
     start, end = _span(out, one, where)
     rows = best.get("displaywords") or best.get("words") or one.get("words")
@@ -86,11 +92,11 @@ def _phrase(out: Collected, one: dict[str, Any], who: str, where: str) -> None:
         for n, row in enumerate(list_of(out, rows, f"{where}.words")):
             word = _lower(row)
             begin, until = _span(out, word, f"{where}.words[{n}]")
-            text = text_of(word.get("word", word.get("displaytext", word.get("text"))))
+            text = parse_text(word.get("word", word.get("displaytext", word.get("text"))))
             words.append({"word": text, "start": begin, "end": until})
         add_words(out, words, who, f"{where}.words", (start, end))
         return
-    text = text_of(best.get("display", best.get("text", one.get("displaytext"))))
+    text = parse_text(best.get("display", best.get("text", one.get("displaytext"))))
     if not text.strip():
         return
     if start is None or end is None:

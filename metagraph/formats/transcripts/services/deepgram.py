@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from metagraph.formats.transcripts.json_files import add_words
-from metagraph.formats.transcripts.json_values import dict_of, list_of, name_of, rows_of, text_of
+from metagraph.formats.transcripts.json_values import (
+    list_of,
+    list_row_dicts,
+    name_of,
+    parse_text,
+    require_dict,
+)
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -16,10 +22,10 @@ def is_deepgram(source: TranscriptSource) -> bool:
 def read_deepgram(source: TranscriptSource) -> Transcript:
     """Read a channel, or a speaker within it, as a speaker. Raises FileError."""
     out = Collected(source.path)
-    results = dict_of(out, source.data["results"], "results")
-    channels = list(rows_of(out, results, "channels", "results"))
+    results = require_dict(out, source.data["results"], "results")
+    channels = list(list_row_dicts(out, results, "channels", "results"))
     for n, (where, channel) in enumerate(channels):
-        for place, best in list(rows_of(out, channel, "alternatives", where))[:1]:
+        for place, best in list(list_row_dicts(out, channel, "alternatives", where))[:1]:
             words = list_of(out, best.get("words") or [], f"{place}.words")
             own = [name_of(w.get("speaker", "")) for w in words if isinstance(w, dict)]
             if len(channels) > 1:
@@ -32,10 +38,10 @@ def read_deepgram(source: TranscriptSource) -> Transcript:
                 ]
             add_words(out, words, "", f"{place}.words")
     if not channels:
-        for where, one in rows_of(out, results, "utterances", "results"):
+        for where, one in list_row_dicts(out, results, "utterances", "results"):
             speaker = name_of(one.get("speaker", ""))
             if one.get("words"):
                 add_words(out, list_of(out, one["words"], f"{where}.words"), speaker, f"{where}.words")
             else:
-                add_words(out, [{**one, "word": text_of(one.get("transcript"))}], speaker, where)
+                add_words(out, [{**one, "word": parse_text(one.get("transcript"))}], speaker, where)
     return out.finished()

@@ -9,7 +9,7 @@ from typing import Any
 
 from metagraph.common.wording import phrase
 from metagraph.formats.transcripts.json_files import add_words
-from metagraph.formats.transcripts.json_values import dict_of, list_of, seconds_of, text_of
+from metagraph.formats.transcripts.json_values import list_of, parse_json_seconds, parse_text, require_dict
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -71,7 +71,7 @@ def read_elevenlabs(source: TranscriptSource) -> Transcript:
 
 
 def _characters(out: Collected, part: Mapping[str, Any], where: str) -> Iterator[tuple[str, float, float]]:
-    one = dict_of(out, part, where)
+    one = require_dict(out, part, where)
     letters = list_of(out, one.get("characters", one.get("chars")), where)
     if "charStartTimesMs" in one:
         unit = 1e-3
@@ -93,10 +93,10 @@ def _characters(out: Collected, part: Mapping[str, Any], where: str) -> Iterator
             where,
         )
     for n, (letter, start, end) in enumerate(zip(letters, starts, ends, strict=True)):
-        begin, until = (seconds_of(out, t, f"{where}[{n}]", unit) for t in (start, end))
+        begin, until = (parse_json_seconds(out, t, f"{where}[{n}]", unit) for t in (start, end))
         if begin is None or until is None:
             raise out.fail(phrase("has no start and end"), f"{where}[{n}]")
-        yield text_of(letter), begin, until
+        yield parse_text(letter), begin, until
 
 
 def _number(value: Any) -> bool:

@@ -9,7 +9,13 @@ from typing import Any
 
 from metagraph.common.wording import phrase
 from metagraph.formats.transcripts.json_files import add_words
-from metagraph.formats.transcripts.json_values import list_of, name_of, rows_of, seconds_of, text_of
+from metagraph.formats.transcripts.json_values import (
+    list_of,
+    list_row_dicts,
+    name_of,
+    parse_json_seconds,
+    parse_text,
+)
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -73,18 +79,18 @@ def read_google(source: TranscriptSource) -> Transcript:
     for n, (result, best) in enumerate(zip(_results(source.data), _best(source.data), strict=False)):
         words = []
         place = f"results[{n}].alternatives[0]"
-        for where, word in rows_of(out, best, "words", place):
-            end = seconds_of(out, _of(word, _ENDS), where)
-            start = seconds_of(out, _of(word, _STARTS), where)
+        for where, word in list_row_dicts(out, best, "words", place):
+            end = parse_json_seconds(out, _of(word, _ENDS), where)
+            start = parse_json_seconds(out, _of(word, _STARTS), where)
             words.append(
                 {
-                    "word": text_of(word.get("word")),
+                    "word": parse_text(word.get("word")),
                     "start": 0.0 if start is None and end is not None else start,
                     "end": end,
                     "speaker": _speaker(word),
                 }
             )
-        untimed += not words and bool(text_of(best.get("transcript")).strip())
+        untimed += not words and bool(parse_text(best.get("transcript")).strip())
         if words:
             found.append((name_of(result.get("channelTag", "")), words, place))
     tags = [any(w["speaker"] for w in words) for _, words, _ in found]

@@ -7,7 +7,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from metagraph.common.wording import phrase
-from metagraph.formats.transcripts.json_values import dict_of, seconds_of, text_of
+from metagraph.formats.transcripts.json_values import parse_json_seconds, parse_text, require_dict
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -24,13 +24,13 @@ def read_polly(source: TranscriptSource) -> Transcript:
     rows: list[tuple[float, str]] = []
     ends = 0.0
     for n, item in enumerate(source.data if isinstance(source.data, list) else [source.data]):
-        one = dict_of(out, item, f"[{n}]")
-        time = seconds_of(out, one.get("time"), f"[{n}]", 1e-3)
+        one = require_dict(out, item, f"[{n}]")
+        time = parse_json_seconds(out, one.get("time"), f"[{n}]", 1e-3)
         if time is None:
             raise out.fail(phrase("has no time"), f"[{n}]")
         ends = max(ends, time)
         if one.get("type") == "word":
-            rows.append((time, text_of(one.get("value"))))
+            rows.append((time, parse_text(one.get("value"))))
     if not rows:
         raise out.fail(
             phrase("it has no marks of words"), "", phrase("Request speech marks of type 'word' from Polly.")

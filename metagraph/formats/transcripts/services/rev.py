@@ -5,7 +5,7 @@ and `end_timestamp` as 00:00:01,500.
 from __future__ import annotations
 
 from metagraph.formats.transcripts.json_files import add_words
-from metagraph.formats.transcripts.json_values import name_of, rows_of, text_of
+from metagraph.formats.transcripts.json_values import list_row_dicts, name_of, parse_text
 from metagraph.formats.transcripts.source import TranscriptSource
 from metagraph.formats.transcripts.words import Collected, Transcript
 
@@ -21,13 +21,13 @@ def read_rev(source: TranscriptSource) -> Transcript:
     out = Collected(source.path)
     names = {
         name_of(one.get("id", "")): name_of(one.get("name", ""))
-        for _, one in rows_of(out, source.data, "speakers")
+        for _, one in list_row_dicts(out, source.data, "speakers")
     }
-    for where, one in rows_of(out, source.data, "monologues"):
+    for where, one in list_row_dicts(out, source.data, "monologues"):
         number = name_of(one.get("speaker", ""))
         words: list[dict[str, object]] = []
-        for _, element in rows_of(out, one, "elements", where):
-            text = text_of(element.get("value"))
+        for _, element in list_row_dicts(out, one, "elements", where):
+            text = parse_text(element.get("value"))
             if element.get("type") == "text":
                 start = element.get("ts", element.get("timestamp"))
                 end = element.get("end_ts", element.get("end_timestamp"))
