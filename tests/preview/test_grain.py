@@ -14,7 +14,7 @@ from metagraph.formats.gltf.reader import read_character, write_glb
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.skeleton import Skeleton
 from preview.camera import Camera
-from preview.figure import SkinnedFigure, shininess
+from preview.figure import SkinnedFigure, encode_shininess
 from preview.scene import Actor, Scene
 from preview.simplify import Fewer
 
@@ -104,8 +104,8 @@ def test_levels_of_detail_have_no_grain():
 
 def test_skin_is_told_by_its_materials_name_and_all_else_is_even():
     for name, skin in (("skin", 1), ("Body_00_SKIN", 1), ("Skinny jeans", 0), ("buckskins", 0), ("cloth", 0)):
-        assert shininess(MeshMaterial(name, roughness=0.37)) % 2 == skin, name
-    assert shininess(MeshMaterial("x", roughness=0.0)) == 254
+        assert encode_shininess(MeshMaterial(name, roughness=0.37)) % 2 == skin, name
+    assert encode_shininess(MeshMaterial("x", roughness=0.0)) == 254
 
 
 def test_light_goes_on_under_skin_beyond_the_terminator(offscreen):

@@ -12,7 +12,7 @@ from metagraph.errors import FileError
 from metagraph.graph.face.names import VISEMES
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
-from metagraph.speech.lines import load_voices, voice_from_phones
+from metagraph.speech.lines import load_voices, make_voice_from_phones
 from metagraph.speech.mouth_files.model import MouthFile, MouthShapes
 from metagraph.speech.mouth_files.registry import MOUTH_READERS, read_mouth_file
 from tests.speech.mouth_files.made_mouths import MADE_MOUTHS
@@ -128,4 +128,4 @@ def test_a_line_without_sound_lasts_as_long_as_its_shapes(tmp_path: Path) -> Non
     for kind in ("rhubarb json", "ovr csv"):
         name, text = MADE_MOUTHS[kind]
         (tmp_path / name).write_text(text, encoding="utf-8")
-        assert voice_from_phones(tmp_path / name).duration == pytest.approx(2.0, abs=0.03)
+        assert make_voice_from_phones(tmp_path / name).duration == pytest.approx(2.0, abs=0.03)
