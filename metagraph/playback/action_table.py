@@ -47,6 +47,7 @@ PLACE_COLUMNS: tuple[Column, ...] = ("kind", "layer", "stance", "end_stance")
 LABEL_COLUMNS: tuple[Column, ...] = (*PLACE_COLUMNS, "limb", "tags")
 TIME_COLUMNS: tuple[Column, ...] = ("start", "end", "blend_in", "blend_out", "earliest_exit")
 CHOICES: Mapping[str, tuple[str, ...]] = {"kind": KINDS, "layer": LAYERS, "limb": LIMBS}
+HALF_SHOWN = 0.005  # seconds: times are shown with two decimals
 Cell = tuple[str, Column]  # the id of a row, and a column
 
 
@@ -61,8 +62,8 @@ class ActionRow:
 
 @dataclass(frozen=True)
 class WrittenCells:
-    """project: with what could be written. refused: the reason for each cell that could not. cut: cells whose
-    times were moved into their clip.
+    """project: with what could be written. refused: the reason for each cell that could not. cut: cells with
+    blends that were longer than their part and were cut to it.
     """
 
     project: Project
@@ -337,6 +338,8 @@ def _set_fields(project: Project, rows: Rows, refused: dict[Cell, str]) -> tuple
                 refused[ident, column] = phrase(
                     "a {kind} of this layer has no such value", kind=phrase(action.kind)
                 )
+            elif (why := _find_time_refusal(project, action, column, text)) is not None:
+                refused[ident, column] = why
             elif column in TIME_COLUMNS:
                 action = _with_time(project, action, column, text)
                 value = parse_number(text)
@@ -350,6 +353,24 @@ def _set_fields(project: Project, rows: Rows, refused: dict[Cell, str]) -> tuple
 
 
 _SET = ("name", "limb", "tags", "likelihood", "cooldown", "prominence", "timing")
+
+
+def _find_time_refusal(project: Project, action: Action, column: Column, text: str) -> str | None:
+    """Return why an action cannot start, end or be left at a time; None for other columns."""
+    value = parse_number(text)
+    if value is None or column not in ("start", "end", "earliest_exit"):
+        return None
+    start, end = project.span(action)
+    length = project.clips[action.clip].duration
+    if value > length + HALF_SHOWN:
+        return phrase("{at:g} s is after the clip's end, {length:.2f} s", at=value, length=length)
+    if column == "start" and value >= end:
+        return phrase("{at:g} s is not before its end, {end:.2f} s", at=value, end=end)
+    if column == "end" and value <= start:
+        return phrase("{at:g} s is not after its start, {start:.2f} s", at=value, start=start)
+    if column == "earliest_exit" and not start <= value <= end + HALF_SHOWN:
+        return phrase("{at:g} s is not between its start and its end", at=value)
+    return None
 
 
 def _with_time(project: Project, action: Action, column: Column, text: str) -> Action:

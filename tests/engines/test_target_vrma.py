@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -38,7 +39,7 @@ def project() -> Project:
 def written(project: Project, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     report = registry.write_for_target(project, "vrma", tmp_path_factory.mktemp("vrma"))
     assert any("no blends" in loss for loss in report.losses)
-    return sorted(report.files)
+    return sorted(path for path in report.files if path.suffix == ".vrma")
 
 
 def test_each_action_has_a_file_that_the_validator_accepts(project, written):
@@ -46,6 +47,25 @@ def test_each_action_has_a_file_that_the_validator_accepts(project, written):
     for path in written:
         assert path.suffix == ".vrma"
         khronos(path)
+
+
+def test_a_list_says_what_each_file_is(project, written):
+    listed = json.loads((written[0].parent / "Somebody.animations.json").read_text(encoding="utf-8"))
+    assert {entry["file"] for entry in listed} == {path.name for path in written}
+    gesture = next(entry for entry in listed if entry["kind"] == "gesture")
+    assert (gesture["layer"], gesture["stance"], gesture["seconds"]) == (
+        "arms",
+        "rest",
+        pytest.approx(1.2, abs=0.05),
+    )
+
+
+def test_actions_of_one_name_are_told_apart_by_their_stances(toy, tmp_path):
+    made = toy.project()
+    names = [a.id for a in made.actions() if a.kind == "gesture"][:2] + [toy.id(made, "up beat")]
+    made = edits.update_actions(made, names, name="beat")
+    files = {path.name for path in registry.write_for_target(made, "vrma", tmp_path).files}
+    assert {"beat (rest).vrma", "beat (rest)-2.vrma", "beat (up).vrma"} <= files
 
 
 def test_the_nodes_are_the_humanoids_bones_without_eyes_in_a_t(written):

@@ -115,6 +115,10 @@ def test_a_text_becomes_the_value(project, column, typed, shown):
         ("rest beat lf", "clip", "x", "renamed in the library"),
         ("rest beat lf", "start", "early", "'early' is not a number"),
         ("rest beat lf", "start", "-1", "too small"),
+        ("rest beat lf", "end", "99", "after the clip's end, 0.90 s"),
+        ("rest beat lf", "start", "0.9", "not before its end"),
+        ("rest beat lf", "end", "0", "not after its start"),
+        ("rest beat lf", "earliest_exit", "7", "after the clip's end"),
         ("rest beat lf", "likelihood", "0", "too small"),
         ("rest beat lf", "prominence", "120", "over 100 %"),
         ("rest loop", "earliest_exit", "1", "no such value"),
@@ -130,14 +134,14 @@ def test_what_cannot_be_written_is_refused_with_the_reason_and_changes_nothing(
     assert written.project == project
 
 
-def test_the_other_cells_are_written_and_times_after_the_clips_end_are_cut_and_reported(project):
+def test_the_other_cells_are_written_and_long_blends_are_cut_and_reported(project):
     beat, wave = ident(project, "rest beat lf"), ident(project, "rest wave rt")
     written = write_cells(
-        project, {(beat, "end"): "5", (beat, "kind"): "nod", (wave, "start"): "0.3", ("gone", "name"): "x"}
+        project,
+        {(beat, "blend_in"): "5", (beat, "kind"): "nod", (wave, "start"): "0.3", ("gone", "name"): "x"},
     )
     assert set(written.refused) == {(beat, "kind"), ("gone", "name")}
-    assert written.cut == ((beat, "end"),)
-    assert text(written.project, beat, "end") == "0.90"
+    assert written.cut == ((beat, "blend_in"),)
     assert text(written.project, wave, "start") == "0.30"
 
 

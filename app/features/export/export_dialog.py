@@ -171,6 +171,10 @@ class ExportDialog(QDialog):
         self.mesh = QCheckBox(tr("Character mesh in the GLB"), self)
         self.mesh.setChecked(chosen.mesh and project.character is not None)
         self.mesh.setEnabled(project.character is not None)
+        if project.character is None:
+            self.mesh.setToolTip(
+                tr("This project has no character of its own: choose one in File > Character")
+            )
         self.expanded = QCheckBox(tr("Expanded state machine in the JSON"), self)
         self.expanded.setToolTip(
             tr("The ordinary state machine that the graph stands for, with all states and transitions listed")

@@ -33,6 +33,7 @@ class GuideFeature(Feature):
         if self.line is None:
             window = self.shell.widget
             self.line = GuideLine(self.document, self.session, self.find_part, self.take_samples, window)
+            self.line.turned.connect(self.shell.show)
             window.addToolBar(Qt.ToolBarArea.BottomToolBarArea, self.line)
             self.shell.actions["export"].triggered.connect(self.line.notice_export)
         self.line.begin()

@@ -56,10 +56,11 @@ class GuideLine(QToolBar):
     """Shows the step to do next, and goes on by itself when it is done. `left` is emitted when it is over.
 
     find: returns the part of the window that a panel's id names, "" for the export. take_samples: brings the
-    sample's clips.
+    sample's clips. `turned` has the panel of each new step.
     """
 
     left = Signal()
+    turned = Signal(str)
 
     def __init__(
         self,
@@ -153,5 +154,10 @@ class GuideLine(QToolBar):
             self.number.setText("" if over else f"{self.step + 1}/{len(STEPS)}")
             self.take.setVisible(ident == "clips")
             self.skip.setText(tr("Close") if over else tr("Skip"))
+            if ident == "watch":
+                self.session.transport.show_plan()
+                self.session.transport.set_playing(True)
+            if not over and STEPS[self.step].panel:
+                self.turned.emit(STEPS[self.step].panel)
         if self.isVisible():
             self.frame.surround(None if over else self._find(STEPS[self.step].panel))

@@ -64,8 +64,8 @@ WORDS: Mapping[str, str] = lazy_texts(
             "Drag a clip that says nothing, such as a look at a watch, onto Fidget. Or select it and press 3."
         ),
         "watch": tr(
-            "All connections are made. Press the space bar and watch: the character rests, waves and fidgets "
-            "by itself, with a blend at each change."
+            "All connections are made. Watch for a few seconds: the character rests, waves and fidgets by "
+            "itself, with a blend at each change. The space bar pauses and plays."
         ),
         "export": tr("Press Ctrl+E, choose your engine and export. The engine plays what you just saw."),
         "end": tr(

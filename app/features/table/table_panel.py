@@ -44,6 +44,7 @@ TITLES_OF: Mapping[Which, str] = lazy_texts(
         "unplaced": tr("Clips without an action"),
     }
 )
+REASONS = 3  # reasons of refusals that are listed
 HIDDEN_FIRST = "clip"  # mostly the same as the name
 _HIDDEN_KEY = "table/hidden"
 
@@ -56,7 +57,7 @@ class TablePanel(QWidget):
     ) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
-        self._selecting = self._behind = False
+        self._selecting = self._behind = self._writing = False
         self.rows = TableModel(theme(session.look.name))
         self.view = TableView(self.rows, self)
         self.view.written.connect(self.write)
@@ -145,7 +146,9 @@ class TablePanel(QWidget):
         written = write_cells(self.document.project, cells)
         columns = {column for _, column in cells}
         what = TITLES[next(iter(columns))] if len(columns) == 1 else tr("cells")
+        self._writing = True
         self.document.edit(tr("Edit {what} in the table", what=what), lambda _: written.project)
+        self._writing = False
         self.rows.show_refused(written.refused)
         self._say(written.refused, len(written.cut))
 
@@ -186,27 +189,36 @@ class TablePanel(QWidget):
     def _say(self, refused: Mapping[Cell, str], cut: int) -> None:
         words = []
         if refused:
-            (ident, column), why = next(iter(refused.items()))
-            found = self.document.project.action(ident) or self.document.project.clips.get(ident)
             words.append(
                 tr_plural(
-                    "{count:,} cell was left as it was. {name}, {column}: {why}.",
-                    "{count:,} cells were left as they were. {name}, {column}: {why}.",
+                    "{count:,} cell was left as it was. {reasons}.",
+                    "{count:,} cells were left as they were. {reasons}.",
                     len(refused),
-                    name=found.name if found is not None else "?",
-                    column=TITLES[column],
-                    why=tr_error(ValueError(why)),
+                    reasons="; ".join(self._list_reasons(refused)),
                 )
             )
         if cut:
             words.append(
                 tr_plural(
-                    "{count:,} time was moved into its clip.",
-                    "{count:,} times were moved into their clips.",
+                    "{count:,} blend was longer than its action and was cut to it.",
+                    "{count:,} blends were longer than their actions and were cut to them.",
                     cut,
                 )
             )
         self._show_message(" ".join(words))
+
+    def _list_reasons(self, refused: Mapping[Cell, str]) -> list[str]:
+        """Return where cells were refused and why, each reason once and at most `REASONS`."""
+        project, first = self.document.project, dict[str, Cell]()
+        for cell, why in refused.items():
+            first.setdefault(why, cell)
+        out = []
+        for why, (ident, column) in list(first.items())[:REASONS]:
+            found = project.action(ident) or project.clips.get(ident)
+            name = found.name if found is not None else "?"
+            where = tr("{name}, {column}", name=name, column=TITLES[column])
+            out.append(f"{where}: {tr_error(ValueError(why))}")
+        return [*out, "…"] if len(first) > REASONS else out
 
     def _show_message(self, words: str) -> None:
         self.message.setText(words)
@@ -325,10 +337,13 @@ class TablePanel(QWidget):
             or before.marks != after.marks
         ):
             self._fresh.ask()
+        if not self._writing:  # what was refused before is no longer about the present
+            self._loaded()
 
     def _loaded(self) -> None:
-        self.rows.show_refused({})
-        self._show_message("")
+        if self.rows.refused or not self.message.isHidden():
+            self.rows.show_refused({})
+            self._show_message("")
 
     def _selected(self) -> None:
         """Select what the rows stand for."""

@@ -24,7 +24,8 @@ def contribute(shell: Shell) -> Contribution:
         places = shell.services[PanelPlaces]
 
         def rooms() -> list[QWidget]:
-            return [places.dock(name).widget() for name in ("graph", places.large()) if name]
+            there = [name for name in ("graph", places.large(), "table") if name in places.docks]
+            return [places.dock(name).widget() for name in there]
 
         choices = (
             WelcomeChoice(

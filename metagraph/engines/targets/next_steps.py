@@ -42,7 +42,6 @@ STEPS: Mapping[str, NextSteps] = {
             phrase(
                 "Open the address that the server names. Scripts need a server; a double click is not enough."
             ),
-            phrase("For the character in a page of your own, use the lines in README.md."),
         ),
         "engines/web-page",
         "html",
@@ -147,7 +146,9 @@ STEPS: Mapping[str, NextSteps] = {
     "vrma": NextSteps(
         (
             phrase("Load an avatar in a program that plays VRM animations."),
-            phrase("Play a file on it. Each is named after its action."),
+            phrase(
+                "Play a file on it. '{stem}.animations.json' says what each is and in which stance it begins."
+            ),
         ),
         "engines/vrm",
     ),

@@ -6,19 +6,22 @@ whose x is the expression's weight, and where the eyes look is the rotation of t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.file_names import make_file_stems
-from metagraph.common.wording import phrase, plural_phrase
+from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_pose, humanoid
+from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
 from metagraph.graph.face.expression_presets import measure_presets, presets_of
@@ -137,10 +140,8 @@ def _write(order: ExportOrder) -> ExportedFiles:
     bones = humanoid(skeleton, roles)
     stated = {bone: {"node": joint} for bone, joint in bones.items() if bone not in _EYES}
     actions = list(project.actions())
-    made = []
-    for n, (action, stem) in enumerate(
-        zip(actions, make_file_stems(action.name for action in actions), strict=True)
-    ):
+    made, listed = [], []
+    for n, (action, stem) in enumerate(zip(actions, _name_files(project, actions), strict=True)):
         order.tell(n, len(actions), "clips")
         clip = cut_action(project, action)
         if clip is None:
@@ -152,14 +153,41 @@ def _write(order: ExportOrder) -> ExportedFiles:
             path, [faced.renamed(action.name)], engine=ForEngine(stand=pose, extensions={EXTENSION: said})
         )
         made.append(path)
+        listed.append(_describe(project, action, path.name, clip.duration))
     if not made:
         raise ExportError(phrase("there is no action whose clip could be read"))
+    index = order.folder / f"{order.stem}.animations.json"
+    write_atomically(index, msgspec.json.format(msgspec.json.encode(listed)) + b"\n")
     order.tell(len(actions), len(actions), "done")
-    return ExportedFiles(tuple(made))
+    return ExportedFiles((*made, index))
 
 
-def _count_transitions(project: Project) -> int:
-    return sum(action.kind == "transition" for action in project.actions())
+def _name_files(project: Project, actions: Sequence[Action]) -> list[str]:
+    """Return the name of each action's file: the action's own, with its stance if another is called so."""
+    count = Counter(action.name for action in actions)
+    return make_file_stems(
+        f"{action.name} ({_name_stance(project, action.stance)})" if count[action.name] > 1 else action.name
+        for action in actions
+    )
+
+
+def _name_stance(project: Project, ident: str | None) -> str:
+    stance = project.stance(ident or "")
+    return stance.name if stance is not None else ""
+
+
+def _describe(project: Project, action: Action, file: str, seconds: float) -> dict[str, Any]:
+    """Return what the list of the files says about one: what it is, and from where it leads where."""
+    return {
+        "file": file,
+        "action": action.name,
+        "kind": action.kind,
+        "layer": action.layer,
+        "stance": _name_stance(project, action.stance),
+        **({"end_stance": _name_stance(project, action.end_stance)} if action.end_stance else {}),
+        "seconds": round(seconds, 3),
+        **({"tags": list(action.tags)} if action.tags else {}),
+    }
 
 
 TARGETS = (
@@ -173,14 +201,6 @@ TARGETS = (
             Loss(phrase("no blends: an action begins and ends in its stance, and the program blends")),
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
             Loss(UNREPEATED, count_unrepeated),
-            Loss(
-                plural_phrase(
-                    "{count} transition is a file like any other: nothing says from where it leads where",
-                    "{count} transitions are files like any other: nothing says from where they lead where",
-                    0,
-                ),
-                _count_transitions,
-            ),
         ),
     ),
 )

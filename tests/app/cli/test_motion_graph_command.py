@@ -176,7 +176,7 @@ def test_files_that_do_not_go_together_are_told(
     )
     assert "has no clauses" in run(capsys, "evaluate", two[0], "--speech", str(words), code=1)
     assert "--k must be at least 2" in run(capsys, "build", takes, "--k", "1", code=1)
-    assert "--level is a share" in run(capsys, "build", takes, "--level", "95", code=1)
+    assert "--level must be between 0 and 1" in run(capsys, "build", takes, "--level", "95", code=1)
 
 
 def test_takes_of_other_skeletons_and_of_one_frame_are_told(

@@ -155,7 +155,7 @@ def test_the_next_clips_of_that_skeleton_are_retargeted_unasked_and_that_is_told
     drive.wait(lambda: len(drive.document.project.clips) == 3)
     drive.importing.import_paths([str(folder / "other1.glb")])
     drive.wait(lambda: len(drive.document.project.clips) == 4)
-    assert any("as before" in words for words in drive.said)
+    assert any("with the joint map of the project" in words for words in drive.said)
 
 
 def test_a_map_of_the_user_is_offered_in_another_project(own, folder):

@@ -172,6 +172,17 @@ def test_what_cannot_be_written_is_marked_and_explained_and_the_rest_is_written(
     assert not table.panel.message.isVisible()
 
 
+def test_what_was_refused_is_forgotten_with_the_next_change(table):
+    table.click("rest beat lf", "tags")
+    table.type("one")
+    table.click("rest beat lf", "end")
+    table.type("99")
+    assert "after the clip's end" in table.panel.message.text()
+    table.drive.document.undo()
+    table.drive.pause(1)
+    assert not table.panel.message.isVisible() and not table.rows.refused
+
+
 def test_delete_empties_cells_and_removes_no_action(table):
     table.click("rest beat lf", "tags")
     table.type("one, two")
