@@ -17,9 +17,10 @@ from app.project.kept_maps import read_joint_maps
 from app.project.load import Load
 from app.project.opening import take_over
 from app.translation import tr, tr_phrase
+from metagraph.common.wording import Phrase
 from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported
-from metagraph.formats.imports import Imported, Strangers, import_files
+from metagraph.formats.imports import BY_KNOWN_MAP, Imported, Strangers, import_files
 from metagraph.formats.repairs import repairs_of
 from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
@@ -175,8 +176,8 @@ class Importing(QObject):
                 [tr("No clips were found there. Clips are BVH, GLB, glTF, VRM animation or FBX files.")],
             )
             return
-        before = [note for note in result.notes if note.endswith("retargeted as before")]
-        self.told.emit(". ".join([tr_phrase(describe_import(result)), *before]))
+        known = [note for note in result.notes if isinstance(note, Phrase) and note.template == BY_KNOWN_MAP]
+        self.told.emit(". ".join(map(tr_phrase, [describe_import(result), *known])))
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
         if any(

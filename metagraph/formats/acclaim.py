@@ -77,10 +77,10 @@ def read_amc(path: str | Path) -> Clip:
         table = np.array([f.get(name, [0.0] * len(dof)) for f in frames], float)
         turn = rotation.identity_rotations((len(frames),))
         for column, kind in zip(table.T, dof, strict=True):
-            if kind[0] == "r" and kind[1:] in _AXES:
+            if kind[:1] == "r" and kind[1:] in _AXES:
                 about = rotation.from_axis_angle(np.array(_AXES[kind[1:]]), column * unit)
                 turn = rotation.multiply(about, turn)
-            elif kind[0] == "t" and name == "root":
+            elif kind in ("tx", "ty", "tz") and name == "root":
                 places[:, "xyz".index(kind[1:])] = column * metres
         rotations[:, joint] = rotation.multiply(
             rotation.multiply(np.broadcast_to(bone.axis, turn.shape), turn), rotation.conjugate(bone.axis)

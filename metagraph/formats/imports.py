@@ -227,6 +227,9 @@ def _map(
     return joint_map if contacts else replace(joint_map, contacts=False), found is not None
 
 
+BY_KNOWN_MAP = phrase("{whose}: retargeted with the joint map of the project")  # a note's template
+
+
 def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, retarget: str) -> Imported:
     known = bringing.project.joint_maps.get(strangers.fingerprint)
     if known is not None or (retarget == "yes" and not strangers.joint_map.missing):
@@ -234,7 +237,7 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
         count, first = len(strangers.clips), Path(strangers.clips[0][0]).name
         whose = phrase("{count} clips ({first} …)", count=count, first=first) if count > 1 else first
         note = (
-            phrase("{whose}: retargeted with the joint map of the project", whose=whose)
+            phrase(BY_KNOWN_MAP, whose=whose)
             if known is not None
             else phrase(
                 "{whose}: retargeted from a skeleton of {joints} joints",
