@@ -4,6 +4,7 @@ sound tells.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,6 +21,8 @@ from metagraph.graph.conversation.model import SHORTEST, Segment, Word
 from metagraph.speech.activity import HUSH, activity
 from metagraph.speech.pitch import Pitch
 from metagraph.speech.sound import HeardSound
+
+GAPLESS = 0.01  # seconds: words of one subtitle, whose times are shared out, follow each other without a gap
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,6 +169,22 @@ def _one_a_side(
     return tuple(zip(voices, out, strict=True))
 
 
+def _keep_lines_whole(words: Sequence[Word], sides: Sequence[int]) -> list[int]:
+    """Return the side of each word. Words that follow each other without any gap, as in one subtitle, are all
+    of the side that most of their time is.
+    """
+    out: list[int] = []
+    first = 0
+    for n in range(1, len(words) + 1):
+        if n == len(words) or words[n].start - words[n - 1].end > GAPLESS:
+            share: Counter[int] = Counter()
+            for word, side in zip(words[first:n], sides[first:n], strict=True):
+                share[side] += round(1000 * max(0.001, word.end - word.start))
+            out += [share.most_common(1)[0][0]] * (n - first)
+            first = n
+    return out
+
+
 def _one_speaker(
     notes: list[str], voices: Sequence[SideVoice], path: Path, one: TranscribedSide
 ) -> tuple[tuple[SideVoice, TranscribedSide], ...]:
@@ -182,7 +201,7 @@ def _one_speaker(
     if one.segments is not None or not one.words:
         first = _best(voices, [one])[0]
     else:
-        sides = _louder(voices, one.words)
+        sides = _keep_lines_whole(one.words, _louder(voices, one.words))
         shares = [float(np.mean([s == n for s in sides])) for n in range(len(voices))]
         if max(shares) < 0.9:
             notes.append(
@@ -192,6 +211,14 @@ def _one_speaker(
                     name=path.name,
                 )
             )
+            if one.name:
+                notes.append(
+                    phrase(
+                        "The name '{speaker}' of {name} is not used, because others speak without a name.",
+                        speaker=one.name[:40],
+                        name=path.name,
+                    )
+                )
             return tuple(
                 (
                     v,
