@@ -143,7 +143,10 @@ FRAME = {"do": "keypoints", "points": [[0.1 * n, 0.2] for n in range(17)]}
         ({"points": []}, "length >= 17"),
         ({"points": [[0, 0]] * 20}, "20 points are none of the layouts"),
         ({"points": [[0]] * 17}, "length >= 2"),
-        ({"points": [[0, 0]] * 16 + [[0, 0, 0]]}, "all have two numbers, or all have three"),
+        (
+            {"points": [[0, 0]] * 16 + [[0, 0, 0]]},
+            "give two numbers for every point, or three for every point",
+        ),
         ({"points": [[0, 1e9]] * 17}, "<= 10000000"),
         ({"confidence": [1.0]}, "17 keypoints have 17 confidences"),
         ({"confidence": [7.0] * 17}, "<= 1"),

@@ -346,6 +346,13 @@ def _upright(points: Array, confidence: Array, deep: bool, notes: list[str]) -> 
 
     top, has_top = middle("left_shoulder", "right_shoulder")
     low, has_low = middle("left_hip", "right_hip")
+    standing = has_top & has_low
+    if deep and standing.any():
+        trunk = np.median((top - low)[standing], axis=0)
+        if abs(trunk[2]) > 1.5 * abs(trunk[1]):
+            notes.append("z grows upwards in it" if trunk[2] > 0 else "z grows downwards in it")
+            across = (at[:, PLACE["left_shoulder"]] - at[:, PLACE["right_shoulder"]])[standing, 0]
+            return _turn_z_up(points, float(np.sign(trunk[2])), float(np.median(across)) < 0)
     nose, has_nose = middle("nose")
     up, known = (top - low)[:, 1], has_top & has_low
     if not known.any():
@@ -365,6 +372,14 @@ def _upright(points: Array, confidence: Array, deep: bool, notes: list[str]) -> 
         if float(np.median(facing[known])) < 0:
             signs[2] = 1.0
     return np.asarray(points * signs)
+
+
+def _turn_z_up(points: Array, up: float, away: bool) -> Array:
+    """Return points whose z is vertical, with y up. up: -1 if z grows downwards. away: whether the body's
+    left is at smaller x, so that it is turned round to face the camera.
+    """
+    turned = points[..., [0, 2, 1]] * [1.0, up, -up]
+    return np.asarray(turned * ([-1.0, 1.0, -1.0] if away else [1.0, 1.0, 1.0]))
 
 
 def _many(count: int, word: str) -> str:

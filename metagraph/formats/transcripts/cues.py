@@ -136,7 +136,7 @@ def _shared(cue: ShownText, names: SpeakerNames) -> list[tuple[float, float, str
 
 
 def _voices(text: str, names: SpeakerNames) -> Iterator[tuple[str | None, str]]:
-    """Yield who says which part; None where it does not say."""
+    """Yield who says which part; None if it does not say."""
     parts = _VOICE.split(text)
     for n in range(0, len(parts), 2):
         who = html.unescape(parts[n - 1]).strip() if n else None

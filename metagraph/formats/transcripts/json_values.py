@@ -44,7 +44,7 @@ def list_row_dicts(
 
 
 def parse_json_seconds(out: Collected, value: Any, where: str, unit: float | None = None) -> float | None:
-    """Return seconds; None where there are none. unit: seconds of one of the value's units, None for the
+    """Return seconds; None if there are none. unit: seconds of one of the value's units, None for the
     file's. Texts may be numbers, "1.5s", "00:00:01,500" or "PT1.5S"; an object has `seconds` and `nanos`.
     Raises FileError.
     """

@@ -243,7 +243,7 @@ TRANSCRIPT_SUFFIXES = tuple(
 
 
 def find_transcript_reader(source: TranscriptSource) -> TranscriptReader | None:
-    """Return the first reader that knows a file; None where none does. Raises FileError for broken JSON."""
+    """Return the first reader that knows a file; None if none does. Raises FileError for broken JSON."""
     return next((one for one in TRANSCRIPT_READERS if one.begins(source)), None)
 
 

@@ -48,7 +48,7 @@ class TranscriptSource:
     @cached_property
     def data(self) -> Any:
         """What it holds as JSON: of several values, as a program writes one a line, the list of them; None
-        where it is no JSON. Raises FileError where it begins like some and is broken.
+        if it is no JSON. Raises FileError if it begins like some and is broken.
         """
         if _JSON.match(self.head) is None:
             return None

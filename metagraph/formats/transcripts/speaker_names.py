@@ -128,7 +128,7 @@ class SpeakerNames:
             )
 
     def part(self, line: str) -> tuple[str, str] | None:
-        """Return who says a line, and the rest of it; None where it begins with no name."""
+        """Return who says a line, and the rest of it; None if it begins with no name."""
         found = self.way.match(line)
         return (found[1], line[found.end() :]) if found is not None and found[1] in self.known else None
 

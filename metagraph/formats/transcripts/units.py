@@ -29,9 +29,9 @@ UNITS: Sequence[tuple[float, Phrase]] = (
 def infer_time_unit(
     spans: Iterable[tuple[float, float, str]], sound: float | None
 ) -> tuple[float, Phrase | None]:
-    """Return the seconds of one of a file's units of time, and how that was told; None for plain seconds.
+    """Return the seconds of one of a file's units of time, and a note about it; None for plain seconds.
 
-    spans: start, end and text of what is said, in the file's unit. sound: seconds, None where nobody knows.
+    spans: start, end and text of what is said, in the file's unit. sound: seconds, None if nobody knows.
 
     Times are seconds as long as they fit into the sound and no text lasts impossibly long. Else the unit
     counts at which both hold, and of several the one nearest to usual speech. Without the sound, only whole

@@ -78,8 +78,8 @@ class Annotation:
     origins: tuple[float, ...] = ()
 
     def offset_of(self, names: Sequence[str]) -> tuple[float, tuple[Phrase, ...]]:
-        """Return the seconds to add to a time here for the time in one of several files, and what is to be
-        told of that.
+        """Return the seconds to add to a time here for the time in one of several files, and notes about
+        that.
 
         The medium that is called as a file counts; else the one that all media share, else that of the first
         sound among them.

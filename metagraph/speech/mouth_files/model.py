@@ -57,7 +57,7 @@ class MouthShapes:
 @dataclass(frozen=True)
 class MouthFile:
     """A file that says what the mouth does. text: its content. sound: how long the line's sound is, seconds;
-    None where nobody knows.
+    None if nobody knows.
     """
 
     path: Path
@@ -70,7 +70,7 @@ class MouthFile:
 
     @cached_property
     def data(self) -> Any:
-        """What it holds as JSON, of several lines the list of them; None where it is no JSON."""
+        """What it holds as JSON, of several lines the list of them; None if it is no JSON."""
         if not self.head.startswith(("{", "[")):
             return None
         try:

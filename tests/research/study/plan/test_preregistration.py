@@ -65,7 +65,7 @@ def test_a_concealed_study_is_planned_allocated_and_checked(
     assert told["commitment"] in (tiny.parent / FOLDER / "osf.md").read_text()
     assert main(["study", "check", str(tiny)]) == 3, "it has no reference"
     shown = capsys.readouterr().out
-    assert "drawn when they begin" in shown and "preregistered" not in shown
+    assert "drawn at the start" in shown and "preregistered" not in shown
     tiny.write_text(tiny.read_text().replace("own free will", "own will"))
     main(["study", "check", str(tiny)])
     assert "preregistered" in capsys.readouterr().out
