@@ -6,7 +6,7 @@ import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import floor
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,12 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
 from metagraph.live.osc_bytes import pad_osc
-from metagraph.live.vmc import VmcBody
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.posing.overlay import Overlay
+
+if TYPE_CHECKING:
+    from metagraph.live.vmc import VmcBody
 
 Array = NDArray[Any]
 
@@ -69,7 +71,11 @@ class Stream:
         )
         places = np.array([skeleton.names.index(name) for name in names], np.int64)
         faces = (*morphs, *(m for m in project.face.morphs if m not in morphs))
-        body = VmcBody.of(project, faces) if wish.format == "vmc" else None
+        body = None
+        if wish.format == "vmc":
+            from metagraph.live.vmc import VmcBody  # only those who are sent VMC wait for its import
+
+            body = VmcBody.of(project, faces)
         return cls(wish, places, tuple(names), faces, now, body=body)
 
     @property

@@ -14,13 +14,12 @@ RATE = 60.0  # poses a second
 
 
 class VmcLine(asyncio.DatagramProtocol):
-    """Sends every pose to one address. trouble: why no poses come, "" while they do."""
+    """Sends every pose to one address."""
 
     formats = ("vmc",)
 
     def __init__(self, hub: Hub, clock: Callable[[], float]) -> None:
         self.hub, self.clock = hub, clock
-        self.trouble = ""
         self.transport: Any = None  # asyncio.DatagramTransport, whose types lack how much waits
 
     def connection_made(self, transport: Any) -> None:
@@ -30,11 +29,9 @@ class VmcLine(asyncio.DatagramProtocol):
             self.hub.message(number, encode(Hello(name="VMC", poses=Poses(rate=RATE, format="vmc"))))
 
     def send(self, messages: list[tuple[bytes, bool]]) -> None:
-        """Send poses as bundles; keep the words of a reply that refuses them."""
+        """Send poses as bundles. Replies are of no use to who only listens."""
         for data, binary in messages:
-            if not binary:
-                self.trouble = data.decode() if b'"error"' in data or b'"refused"' in data else self.trouble
-            elif self.transport is not None and self.transport.get_write_buffer_size() <= BACKLOG:
+            if binary and self.transport is not None and self.transport.get_write_buffer_size() <= BACKLOG:
                 for bundle in split_bundles(data):
                     self.transport.sendto(bundle)
 

@@ -9,12 +9,19 @@ import pytest
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.next_steps import README, STEPS, list_steps, make_readme
 
-OWN = {"godot", "blender", "unity-controller"}  # these bring a README, or want a .meta beside each file
+
+def test_every_target_says_what_to_do_next():
+    assert STEPS.keys() == registry.targets().keys()
 
 
-def test_every_target_says_what_to_do_next_or_brings_a_readme():
-    assert STEPS.keys() | OWN == registry.targets().keys()
-    assert not STEPS.keys() & OWN
+@pytest.mark.parametrize("target", [name for name, steps in STEPS.items() if steps.guide])
+def test_a_target_with_a_guide_of_its_own_writes_it_and_nothing_beside_it(toy, tmp_path, target):
+    report = registry.write_for_target(toy.project(), target, tmp_path)
+    guide = tmp_path / STEPS[target].guide.replace("{stem}", "toy")
+    assert guide in report.files
+    assert "Made by Metagraph" not in guide.read_text(encoding="utf-8")
+    assert target == "unity-controller" or guide.name == README
+    assert (tmp_path / README in report.files) == (guide.name == README)
 
 
 @pytest.mark.parametrize("target", sorted(STEPS))
@@ -41,8 +48,3 @@ def test_an_export_has_a_readme_with_its_files_its_steps_and_what_it_loses(toy, 
 def test_many_files_of_one_kind_are_counted():
     text = make_readme("vrma", "VRM animations", "files", "a", [f"{n}.vrma" for n in range(20)], ())
     assert "20 files `*.vrma`" in text and "Nothing." in text
-
-
-def test_a_target_with_a_readme_keeps_its_own(toy, tmp_path):
-    registry.write_for_target(toy.project(), "godot", tmp_path)
-    assert "Made by Metagraph" not in (tmp_path / README).read_text(encoding="utf-8")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QPushButton, QWidget
 
-from app.features.guide.guide_line import GuideLine
-from app.features.guide.guide_steps import CLIPS
 from app.project.files import Files
 from app.project.importing import Importing
 from app.shell.actions import Command
@@ -15,6 +15,9 @@ from app.shell.context import Contribution, Shell
 from app.shell.places import PanelPlaces
 from app.shell.workspace_keeper import Workspaces
 from app.translation import tr_noop
+
+if TYPE_CHECKING:
+    from app.features.guide.guide_line import GuideLine
 
 
 class GuideFeature(Feature):
@@ -31,6 +34,8 @@ class GuideFeature(Feature):
                 return
         self.shell.services[Workspaces].choose("graph")
         if self.line is None:
+            from app.features.guide.guide_line import GuideLine
+
             window = self.shell.widget
             self.line = GuideLine(self.document, self.session, self.find_part, self.take_samples, window)
             self.line.turned.connect(self.shell.show)
@@ -45,6 +50,8 @@ class GuideFeature(Feature):
         return self.shell.widget.findChild(QPushButton, "export button")
 
     def take_samples(self) -> None:
+        from app.features.guide.guide_steps import CLIPS
+
         self.shell.services[Importing].import_paths([str(path) for path in CLIPS])
 
 

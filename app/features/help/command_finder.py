@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt, QTimer
 from PySide6.QtGui import QKeyEvent
@@ -43,9 +44,16 @@ class Entry:
     enabled: bool = True
     by_name: bool = False
 
+    @cached_property
+    def name(self) -> str:
+        """The words as they are compared."""
+        return self.words.casefold()
+
     def rank(self, wanted: str) -> int | None:
         """Return how well it matches what was typed, 0 best; None if it does not match."""
-        sought, name = wanted.casefold().split(), self.words.casefold()
+        sought, name = wanted.casefold().split(), self.name
+        if self.by_name and not all(word in name for word in sought):
+            return None  # as nearly all of thousands
         words = name.split()
         if words == sought:
             return 0
@@ -57,8 +65,6 @@ class Entry:
             return 3
         if all(word in name for word in sought):
             return 4
-        if self.by_name:
-            return None
         text = f"{self.group} {name} {self.keys} {self.also}".casefold()
         if all(word in text for word in sought):
             return 5

@@ -8,7 +8,7 @@ from app.look.domain_words import KIND_TITLES
 from app.translation import lazy_texts, tr
 from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import KINDS, Project
-from metagraph.playback.action_table import CHOICES, COLUMNS, Column
+from metagraph.playback.action_table import CHOICES, Column
 
 TITLES: Mapping[Column, str] = lazy_texts(
     lambda: {
@@ -76,8 +76,3 @@ def list_choices(project: Project, column: Column, layer: str) -> Sequence[str]:
     if column == "tags":
         return sorted({tag for action in project.actions() for tag in action.tags})
     return ()
-
-
-def list_columns(hidden: Sequence[str]) -> tuple[Column, ...]:
-    """Return the columns that are shown."""
-    return tuple(c for c in COLUMNS if c not in hidden)

@@ -80,7 +80,7 @@ class TablePanel(QWidget):
         self._fresh = Soon(self.refresh, self)
         self.view.itemDelegate().closeEditor.connect(self._catch_up)
         document.changed.connect(self._edited)
-        document.loaded.connect(self._loaded)
+        document.loaded.connect(self._forget_refused)
         session.selection.changed.connect(self._follow)
         session.look.changed.connect(self._restyle)
         self._offer(verbs)
@@ -338,9 +338,9 @@ class TablePanel(QWidget):
         ):
             self._fresh.ask()
         if not self._writing:  # what was refused before is no longer about the present
-            self._loaded()
+            self._forget_refused()
 
-    def _loaded(self) -> None:
+    def _forget_refused(self) -> None:
         if self.rows.refused or not self.message.isHidden():
             self.rows.show_refused({})
             self._show_message("")

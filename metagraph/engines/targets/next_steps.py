@@ -16,13 +16,15 @@ MORE = 8  # files of one ending that are listed by name; more are counted
 @dataclass(frozen=True)
 class NextSteps:
     """`steps` are what to do, in order, for people; `{stem}` is the name of the export's files. `code` is a
-    first program in `language`, "" for none. `page` is the manual's page.
+    first program in `language`, "" for none. `page` is the manual's page. `guide` is the page that the target
+    writes itself, which then stands for the README; "" for none.
     """
 
     steps: tuple[str, ...]
     page: str
     language: str = ""
     code: str = ""
+    guide: str = ""
 
 
 STEPS: Mapping[str, NextSteps] = {
@@ -60,6 +62,33 @@ STEPS: Mapping[str, NextSteps] = {
         'const graph = load(readFileSync("{stem}.json", "utf8"), readFileSync("{stem}.glb"));\n'
         'const character = new Character(graph, { seed: 7 });\ncharacter.ask({ do: "gesture", after: 1 });\n'
         "character.update(0);\nconsole.log(character.pose());\n",
+    ),
+    "godot": NextSteps(
+        (
+            phrase("Copy this folder into your Godot project, and put '{stem}.glb' into a scene."),
+            phrase("Copy '{stem}.glb' to '{stem}.motion', from which the add-on reads the motion."),
+            phrase("Put the lines of README.md into a script on the scene's root."),
+        ),
+        "engines/godot",
+        guide="README.md",
+    ),
+    "blender": NextSteps(
+        (
+            phrase(
+                "In Blender 4.2 or later, choose Preferences > Get Extensions > Install from Disk. Pick the zip."
+            ),
+            phrase("Choose File > Import > Metagraph export, and pick '{stem}.json'."),
+        ),
+        "engines/blender",
+        guide="README.md",
+    ),
+    "unity-controller": NextSteps(
+        (
+            phrase("Drop this folder, its .meta files included, into the Assets of your Unity project."),
+            phrase("'{stem}.unity.md' says how to set up the Animator, and has the numbers to ask with."),
+        ),
+        "engines/unity",
+        guide="{stem}.unity.md",
     ),
     "unity": NextSteps(
         (
@@ -168,11 +197,8 @@ STEPS: Mapping[str, NextSteps] = {
 
 
 def list_steps(target: str, stem: str) -> tuple[str, ...]:
-    """Return what to do with an export of files called `stem`, in words; nothing for a target that brings a
-    README of its own.
-    """
-    found = STEPS.get(target)
-    return tuple(phrase(str(step), stem=stem) for step in found.steps) if found is not None else ()
+    """Return what to do with an export of files called `stem`, in words."""
+    return tuple(phrase(str(step), stem=stem) for step in STEPS[target].steps)
 
 
 def make_readme(

@@ -121,10 +121,10 @@ def write_for_target(
 def _with_readme(
     made: ExportedFiles, chosen: ExportTarget, order: ExportOrder, lost: Sequence[str]
 ) -> ExportedFiles:
-    """Write a README into an export's folder, unless the target has one of its own."""
-    path = order.folder / README
-    if chosen.name not in STEPS or path in made.files:
+    """Write a README into an export's folder, unless the target writes a guide of its own."""
+    if STEPS[chosen.name].guide:
         return made
+    path = order.folder / README
     names = [file.relative_to(order.folder).as_posix() for file in made.files]
     text = make_readme(chosen.name, chosen.title, chosen.files, order.stem, names, lost)
     write_atomically(path, text.encode())

@@ -58,6 +58,8 @@ def place_complete(project: Project) -> Project:
     """Place every clip whose label is complete: its kind and stance are known, and the end of a transition.
     Loops come first, since they make the stances that others wait for.
     """
+    if all(found.label is None for found in project.marks.values()):
+        return project
     marks = dict(project.marks)
     waiting: dict[str, HalfLabel] = {}
     for clip, found in project.marks.items():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from app.features.guide import guide_line
 from app.features.guide.guide_line import GuideLine
 from app.features.guide.guide_steps import CLIPS, STEPS, WORDS, Seen, find_step
 from metagraph.graph import edits
@@ -34,8 +33,7 @@ def test_a_step_is_asked_for_until_it_is_done_and_never_again(toy):
     assert set(WORDS) == {*(s.ident for s in STEPS), "end"}
 
 
-def test_it_leads_from_an_empty_window_to_an_export(drive, monkeypatch):
-    monkeypatch.setattr(guide_line, "LOOKED", 250)
+def test_it_leads_from_an_empty_window_to_an_export(drive):
     drive.do("guide")
     guide = line(drive)
     assert guide.words.text() == WORDS["clips"] and guide.take.isVisible()
@@ -49,11 +47,11 @@ def test_it_leads_from_an_empty_window_to_an_export(drive, monkeypatch):
     drive.session.selection.select_clips((clip(drive, "wave"),))
     drive.do("label_gesture")
     drive.wait(lambda: guide.words.text() == WORDS["fidget"])
+    drive.session.transport.set_playing(False)
     drive.session.selection.select_clips((clip(drive, "watch"),))
     drive.do("label_fidget")
     drive.wait(lambda: guide.words.text() == WORDS["watch"])
-    drive.session.transport.show_plan()
-    drive.session.transport.set_playing(True)
+    assert drive.session.transport.playing and drive.session.transport.show == "plan", "it plays by itself"
     guide.seen = Seen(drive.document.project, watched=5.9)
     drive.wait(lambda: guide.words.text() == WORDS["export"])
     assert guide.frame.geometry().right() > drive.window.width() * 0.8, "round the button that exports"
