@@ -75,7 +75,7 @@ STEPS: Mapping[str, NextSteps] = {
     "blender": NextSteps(
         (
             phrase(
-                "In Blender 4.2 or later, choose Preferences > Get Extensions > Install from Disk. Pick the zip."
+                "In Blender 4.2 or later, pick the zip in Preferences > Get Extensions > Install from Disk."
             ),
             phrase("Choose File > Import > Metagraph export, and pick '{stem}.json'."),
         ),
