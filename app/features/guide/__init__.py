@@ -39,6 +39,7 @@ class GuideFeature(Feature):
             window = self.shell.widget
             self.line = GuideLine(self.document, self.session, self.find_part, self.take_samples, window)
             self.line.turned.connect(self.shell.show)
+            window.addToolBarBreak(Qt.ToolBarArea.BottomToolBarArea)  # below the line of an import
             window.addToolBar(Qt.ToolBarArea.BottomToolBarArea, self.line)
             self.shell.actions["export"].triggered.connect(self.line.notice_export)
         self.line.begin()

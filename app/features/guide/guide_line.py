@@ -18,6 +18,7 @@ from app.widgets.making import make_widget
 
 LOOKED = 250  # milliseconds between looks at what is played and where the panels are
 WIDTH = 3  # pixels of the frame
+GAP = 4  # pixels between the frame's outside and what it surrounds
 
 
 class Highlight(QWidget):
@@ -38,6 +39,7 @@ class Highlight(QWidget):
             self.hide()
             return
         place = part.rect().translated(part.mapTo(window, part.rect().topLeft()))
+        place = place.adjusted(-GAP, -GAP, GAP, GAP).intersected(window.rect())
         if place != self.geometry():
             self.setGeometry(place)
         self.show()
