@@ -196,9 +196,14 @@ STEPS: Mapping[str, NextSteps] = {
 }
 
 
+def find_steps(target: str) -> NextSteps:
+    """Return the steps of a target. One that names none has the manual's page of all targets."""
+    return STEPS.get(target, NextSteps((), "engines/index"))
+
+
 def list_steps(target: str, stem: str) -> tuple[str, ...]:
     """Return what to do with an export of files called `stem`, in words."""
-    return tuple(phrase(str(step), stem=stem) for step in STEPS[target].steps)
+    return tuple(phrase(str(step), stem=stem) for step in find_steps(target).steps)
 
 
 def make_readme(
@@ -208,9 +213,10 @@ def make_readme(
 
     title, what: the target's title and what it writes, in words. files: names relative to the folder.
     """
-    found = STEPS[target]
-    lines = [f"# {stem}: {title}", "", f"Made by Metagraph {__version__}: {what}.", "", "## Next", ""]
-    lines += [f"{n}. {step}" for n, step in enumerate(list_steps(target, stem), 1)]
+    found = find_steps(target)
+    lines = [f"# {stem}: {title}", "", f"Made by Metagraph {__version__}: {what}."]
+    steps = [f"{n}. {step}" for n, step in enumerate(list_steps(target, stem), 1)]
+    lines += ["", "## Next", "", *steps] if steps else []
     if found.code:
         lines += ["", f"```{found.language}", found.code.replace("{stem}", stem).rstrip(), "```"]
     lines += ["", f"The manual has more, on its page `{found.page}`.", "", "## Files", ""]

@@ -12,7 +12,7 @@ from pathlib import Path
 from metagraph.common.wording import phrase
 from metagraph.engines.export import require_exportable, stem_of
 from metagraph.engines.export_error import ExportError
-from metagraph.engines.targets.next_steps import README, STEPS, list_steps, make_readme
+from metagraph.engines.targets.next_steps import README, find_steps, list_steps, make_readme
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place_files as move
 from metagraph.engines.targets.target import (
@@ -122,7 +122,7 @@ def _with_readme(
     made: ExportedFiles, chosen: ExportTarget, order: ExportOrder, lost: Sequence[str]
 ) -> ExportedFiles:
     """Write a README into an export's folder, unless the target writes a guide of its own."""
-    if STEPS[chosen.name].guide:
+    if find_steps(chosen.name).guide:
         return made
     path = order.folder / README
     names = [file.relative_to(order.folder).as_posix() for file in made.files]
