@@ -162,9 +162,10 @@ def test_a_target_comes_by_its_module_and_its_line(
         report = registry.write_for_target(sample, "uses", tmp_path)
     finally:
         registry.targets.cache_clear()
-    (path,) = report.files
+    path, readme = report.files
     counts = json.loads(path.read_text())
     assert sum(counts.values()) == sum(1 for _ in sample.actions())
+    assert f"`{path.name}`" in readme.read_text(encoding="utf-8")
 
 
 def test_a_project_with_errors_is_not_written(tmp_path: Path) -> None:
