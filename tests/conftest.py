@@ -28,7 +28,7 @@ from tests import kernels
 from tests.browsing import browse
 from tests.once import fitted_once, heard_once, read_once
 from tests.run_notes import KEY, NOTES
-from tests.thorough import THOROUGH
+from tests.thorough import NIGHTLY, THOROUGH
 
 __all__ = ["browse"]
 
@@ -171,7 +171,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_report_header() -> str:
     """Say what is left for the night."""
-    return "" if THOROUGH else "nightly tests run with METAGRAPH_THOROUGH=1, or when their file is named"
+    return "" if NIGHTLY else "nightly tests run with METAGRAPH_NIGHTLY=1, or when their file is named"
 
 
 @cache
@@ -182,7 +182,7 @@ def named_files(words: tuple[str, ...]) -> frozenset[Path]:
 
 def is_for_the_night(node: pytest.Item | pytest.Collector, obj: object = None) -> bool:
     """Return whether something is marked `nightly` and left out now: its file was not named."""
-    if THOROUGH or node.path in named_files(tuple(node.config.args)):
+    if NIGHTLY or node.path in named_files(tuple(node.config.args)):
         return False
     marks = getattr(obj, "pytestmark", ())
     return any(m.name == "nightly" for m in marks) or node.get_closest_marker("nightly") is not None

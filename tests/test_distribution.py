@@ -79,6 +79,7 @@ def test_nobody_is_told_to_install_another_company_s_package() -> None:
     assert [p for p in pages if wrong.search(p.read_text(encoding="utf-8"))] == []
 
 
+@pytest.mark.nightly
 def test_every_file_of_the_packages_is_in_the_wheel(wheel: Path) -> None:
     lies = {
         path.relative_to(ROOT).as_posix()
@@ -109,6 +110,7 @@ def test_every_file_of_the_packages_is_in_the_wheel(wheel: Path) -> None:
         assert needed in held
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(find_spec("pip") is None, reason="pip is not here")
 def test_installed_without_the_desktop_it_plays_an_export_as_the_preview_does(
     wheel: Path, tmp_path: Path

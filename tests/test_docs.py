@@ -116,6 +116,7 @@ def is_needed(words: list[str], later: list[str]) -> bool:
     return any(written in line for line in later)
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 @pytest.mark.parametrize(("page", "n"), of("sh"))
 def test_commands_in_the_pages_run(
@@ -205,6 +206,7 @@ OTHERS_FILES = {
 FOLDERS = ("app", "docs", "metagraph", "preview", "sample_clips", "tests")
 
 
+@pytest.mark.nightly
 def test_python_files_that_pages_name_are_there() -> None:
     """A name in backticks may leave out the folders at its beginning: `live_hours.py`."""
     there = {f"/{path.relative_to(ROOT).as_posix()}" for f in FOLDERS for path in (ROOT / f).rglob("*.py")}

@@ -1,4 +1,7 @@
-"""How thorough the tests are: METAGRAPH_THOROUGH=1 asks for what would take too long each time."""
+"""How thorough the tests are.
+
+METAGRAPH_NIGHTLY=1 also runs the tests marked `nightly`; METAGRAPH_THOROUGH=1 runs them and repeats more.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from typing import TypeVar
 T = TypeVar("T")
 
 THOROUGH = bool(os.environ.get("METAGRAPH_THOROUGH"))
+NIGHTLY = THOROUGH or bool(os.environ.get("METAGRAPH_NIGHTLY"))
 
 
 def many(usual: int, thorough: int) -> int:

@@ -40,6 +40,7 @@ def drop(toys, toy, tmp_path):
     return go
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_files_are_dropped_on_the_library(toys, drop):
     toys.workspaces.choose("label")
@@ -55,12 +56,14 @@ def test_files_are_dropped_on_the_library(toys, drop):
     assert names[-2:] == ["nod ä", "shake it"]
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_files_are_dropped_on_a_node(toys, drop):
     drop(["point.glb"], toys.node("gesture"), lambda: "point" in toys.names("gesture"))
     assert "point" not in toys.names("fidget")
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_files_are_dropped_on_a_lane_and_are_asked_for_there(toys, drop):
     toys.workspaces.choose("perform")

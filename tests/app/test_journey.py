@@ -220,6 +220,7 @@ app.exec()
         return told
 
 
+@pytest.mark.nightly
 def test_sitting_down_and_standing_up_are_transitions_between_two_stances(
     drive, shared_data, tmp_path, monkeypatch
 ):

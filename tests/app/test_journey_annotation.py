@@ -39,6 +39,7 @@ def choose(drive, table, row: int, words: str) -> None:
     drive.pause(30)
 
 
+@pytest.mark.nightly
 def test_an_annotation_is_imported_learned_changed_and_performed(drive, tmp_path, monkeypatch):
     drive.files.open(SAMPLE, template=True)
     drive.wait(

@@ -85,6 +85,7 @@ def cell(heat, row: int, column: int) -> tuple:
     return heat, heat.grid().cell(row, column).center().toPoint()
 
 
+@pytest.mark.nightly
 def test_a_model_is_changed_by_a_drag_on_its_map_loses_a_state_and_goes_back(small):
     drive = small
     drive.workspaces.show("models")
@@ -107,6 +108,7 @@ def test_a_model_is_changed_by_a_drag_on_its_map_loses_a_state_and_goes_back(sma
     assert known() is None and drive.models.model() is ARMS
 
 
+@pytest.mark.nightly
 def test_a_link_is_drawn_between_two_states_blended_by_the_wheel_and_taken_away(small):
     drive = small
     from_menu(

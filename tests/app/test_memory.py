@@ -109,6 +109,7 @@ def test_a_menu_that_was_closed_is_gone(drive):
         assert not any(r() is not None for r in seen)
 
 
+@pytest.mark.nightly
 def test_a_window_that_was_closed_is_gone_with_its_project(qapp, qtbot, monkeypatch):
     # The other tests share the sample's clips, which would live on in what shares them.
     monkeypatch.setattr(store._Loading, "_fitted", store._Loading._fitted.__wrapped__)

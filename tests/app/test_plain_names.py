@@ -142,6 +142,7 @@ def test_no_panel_dialog_or_tooltip_takes_a_name_for_html(
     assert openings() == 0
 
 
+@pytest.mark.nightly
 def test_boxes_and_tooltips_of_qt_show_text_as_it_is(
     drive: Any, picture: Path, openings: Callable[[], int]
 ) -> None:
@@ -174,6 +175,7 @@ def test_text_of_the_programs_own_is_still_rich(drive: Any) -> None:
     box.reject()
 
 
+@pytest.mark.nightly
 def test_a_studys_text_shows_html_as_written_and_a_picture_as_its_words(
     drive: Any, picture: Path, openings: Callable[[], int]
 ) -> None:

@@ -134,6 +134,7 @@ def test_what_is_done_in_a_window_is_seen_in_its_state(toys, do):
     assert differences(before, state_of(toys.window))
 
 
+@pytest.mark.nightly
 def test_nothing_of_a_test_is_in_the_folders_of_the_next(toys, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "next"))
     reset(toys.window)

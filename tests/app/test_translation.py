@@ -65,6 +65,7 @@ def english() -> Iterator[None]:
     translation.choose("en")
 
 
+@pytest.mark.nightly
 def test_values_are_those_of_the_text() -> None:
     for one in marked():
         values = one.values | ({"count"} if len(one.texts) > 1 else set())

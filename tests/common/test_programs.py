@@ -98,6 +98,7 @@ def _starts(module: str, name: str) -> bool:
     return module == "os" and name.startswith(("exec", "spawn"))
 
 
+@pytest.mark.nightly
 def test_one_module_starts_all_programs() -> None:
     found = [said for name, tree in _sources() if name != STARTER for said in _misuses(name, tree)]
     assert not found, "use metagraph/common/programs.py: " + "; ".join(found)
@@ -239,6 +240,7 @@ def test_a_program_that_takes_too_long_is_ended() -> None:
         programs.run_program([sys.executable, "-c", "import time; time.sleep(60)"], 0.2)
 
 
+@pytest.mark.nightly
 def test_numba_takes_no_settings_from_the_working_folder(tmp_path: Path) -> None:
     """It would load compiled code, which is pickled, from wherever a file there says."""
     pytest.importorskip("numba")

@@ -68,6 +68,7 @@ def apart(a: Any, b: Any) -> float:
     return float(np.degrees(4 * np.arcsin(chord.max() / 2)))
 
 
+@pytest.mark.nightly
 def test_poses_go_to_bones_of_any_axes_and_come_back(figure: space.Figure) -> None:
     rotations, translations = posed(figure)
     axes = rotation.normalize(np.random.default_rng(5).normal(size=(len(figure.names), 4)))
@@ -139,6 +140,7 @@ def test_labels_are_what_the_export_says_and_rows_tell_what_changed(document: di
     assert labels.split_tags(" a, b,,a ") == ["a", "b"]
 
 
+@pytest.mark.nightly
 def test_rows_place_and_change_actions_of_a_project_and_say_what_cannot_be(
     sample: Project,
     figure: space.Figure,

@@ -49,6 +49,7 @@ def test_a_request_is_played_answered_and_told(stick: Project) -> None:
     assert character.answer(ident).at == pytest.approx(0.5)
 
 
+@pytest.mark.nightly
 def test_it_plays_what_a_plan_of_the_same_steps_plays(stick: Project) -> None:
     character = Character(stick, seed=5)
     plan = hear_asks(stick, Plan(5, 0.0), 0.0, [], 20.0, {}, True)
@@ -64,6 +65,7 @@ def test_it_plays_what_a_plan_of_the_same_steps_plays(stick: Project) -> None:
         assert np.allclose(pose.rotations, pose_at(plan, stick, now).rotations, atol=1e-6)
 
 
+@pytest.mark.nightly
 def test_an_hour_keeps_a_short_past(stick: Project) -> None:
     character = Character(stick)
     for second in range(0, 3600, 5):
@@ -134,6 +136,7 @@ def test_a_thousand_answers_are_remembered(stick: Project) -> None:
     assert "nothing was asked for" in character.answer(idents[0]).why
 
 
+@pytest.mark.nightly
 def test_a_look_that_another_replaced_was_played_and_is_forgotten(stick: Project) -> None:
     character = Character(stick)
     idents = []
@@ -190,6 +193,7 @@ words = st.sampled_from(
 )
 
 
+@pytest.mark.nightly
 @given(st.lists(st.dictionaries(fields, anything | words, max_size=5).map(lambda d: d), max_size=4))
 @settings(max_examples=80, deadline=None)
 def test_nothing_that_is_asked_raises(requests: list[dict[str, Any]]) -> None:

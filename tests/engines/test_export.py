@@ -115,6 +115,7 @@ def test_the_published_schema_is_the_one_in_the_code() -> None:
     assert SCHEMA.read_bytes() == export_schema_text()
 
 
+@pytest.mark.nightly
 def test_the_schema_is_one_by_its_own_rules() -> None:
     jsonschema.Draft202012Validator.check_schema(export_schema())
 
@@ -136,6 +137,7 @@ def test_the_sample_validates_and_comes_back_equal(sample: Project, exported: An
     assert check_project(back) == [p for p in check_project(sample) if p.clip in (None, *back.clips)]
 
 
+@pytest.mark.nightly
 def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: Path) -> None:
     again = export_project(read_export(exported.json), tmp_path, expanded=True)
     ours, theirs = json.loads(again.json.read_bytes()), json.loads(exported.json.read_bytes())
@@ -167,6 +169,7 @@ def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: 
     assert ours == theirs
 
 
+@pytest.mark.nightly
 def test_the_mesh_says_how_its_targets_make_vrms_presets(sample: Project, tmp_path: Path) -> None:
     made = export_project(sample, tmp_path, character=ROOT / "sample_clips" / "ada.glb")
     khronos(made.glb)
@@ -176,6 +179,7 @@ def test_the_mesh_says_how_its_targets_make_vrms_presets(sample: Project, tmp_pa
     assert extras["expressions"]["aa"]["jawOpen"] == 0.6
 
 
+@pytest.mark.nightly
 def test_the_glb_holds_every_used_clip_under_its_name_and_the_mesh(sample: Project, exported: Any) -> None:
     document, content = json.loads(exported.json.read_bytes()), gltf(exported.glb)
     names = [a["name"] for a in content["animations"]]
@@ -185,6 +189,7 @@ def test_the_glb_holds_every_used_clip_under_its_name_and_the_mesh(sample: Proje
     khronos(exported.glb)
 
 
+@pytest.mark.nightly
 def test_motion_in_the_glb_is_the_clips_motion(sample: Project, exported: Any) -> None:
     for made, entry in zip(
         read_gltf_clips(exported.glb),
@@ -200,6 +205,7 @@ def test_motion_in_the_glb_is_the_clips_motion(sample: Project, exported: Any) -
         assert np.abs(a.translations - b.translations).max() < 2e-4
 
 
+@pytest.mark.nightly
 def test_a_plan_of_what_was_read_back_is_the_same_and_looks_the_same(sample: Project, exported: Any) -> None:
     back = read_export(exported.json)
     ours, theirs = make_plan(sample, 20), make_plan(back, 20)
@@ -258,12 +264,14 @@ def test_the_constants_are_those_the_planner_uses(exported: Any) -> None:
     assert np.allclose(ease_blend(np.array([0.25])), 3 * 0.25**2 - 2 * 0.25**3)
 
 
+@pytest.mark.nightly
 def test_the_same_project_gives_the_same_bytes(sample: Project, exported: Any, tmp_path: Path) -> None:
     again = export_project(sample, tmp_path, expanded=True, character=ROOT / "sample_clips" / "mannequin.glb")
     assert again.json.read_bytes() == exported.json.read_bytes()
     assert again.glb.read_bytes() == exported.glb.read_bytes()
 
 
+@pytest.mark.nightly
 def test_a_project_read_back_is_saved_and_opened_with_its_clips(sample: Project, exported: Any) -> None:
     path = exported.json.with_name("again.metagraph.yaml")
     save_project(read_export(exported.json), path)
@@ -281,6 +289,7 @@ def document_of(project: Project, expanded: bool = False) -> bytes:
 
 
 # Many random projects have no clips yet, and are passed over.
+@pytest.mark.nightly
 @settings(
     max_examples=many(30, 1000),
     deadline=None,
@@ -359,6 +368,7 @@ def test_blends_that_are_only_warned_of_are_exported_as_they_play(tmp_path: Path
     assert document["layers"]["arms"]["actions"][1]["blend_in"] == 0
 
 
+@pytest.mark.nightly
 def test_a_mesh_on_another_skeleton_is_bound_where_joints_match(sample: Project, tmp_path: Path) -> None:
     """Fewer joints than the mannequin has, all at rest in other rotations."""
     project = stick()
@@ -492,6 +502,7 @@ JUNK = st.one_of(
 )
 
 
+@pytest.mark.nightly
 @settings(
     max_examples=many(80, 1000), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
@@ -521,6 +532,7 @@ def test_whatever_stands_in_a_field_an_export_is_read_or_refused(
 # --- clips made by others
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("folder", "pattern", "idle", "gestures"),
     [
@@ -537,6 +549,7 @@ def test_projects_of_real_clips_are_exported_and_validate(
     exported_and_valid(project, list(project.clips), tmp_path, idle, gestures)
 
 
+@pytest.mark.nightly
 def test_a_project_of_the_zoo_is_exported_and_validates(zoo_files: dict[str, Path], tmp_path: Path) -> None:
     """Everybody comes onto the first one's skeleton."""
     project = import_files(Project("zoo"), None, [zoo_files["mixamo"]]).into(Project("zoo"))

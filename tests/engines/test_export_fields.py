@@ -75,6 +75,7 @@ def _cases(folder: Path) -> Any:
     return json.loads((folder / NAME).read_bytes())["cases"]
 
 
+@pytest.mark.nightly
 @needs_node
 @pytest.mark.parametrize("field", CHANGES)
 def test_a_changed_field_is_played_otherwise_and_as_in_python(

@@ -34,11 +34,13 @@ def test_a_change_is_made_in_its_place_alone(tmp_path: Path) -> None:
     assert (tmp_path / "rule.js").read_text(encoding="utf-8") == "a < b; c <= d;\n"
 
 
+@pytest.mark.nightly
 def test_every_runtime_has_hundreds_of_places_to_change() -> None:
     for language in LANGUAGES.values():
         assert len(edits(language, RUNTIMES / language.folder)) > 400
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node")
 def test_vectors_notice_a_rule_that_is_changed_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

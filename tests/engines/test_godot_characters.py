@@ -13,6 +13,7 @@ import pytest
 from tests.engines.godot_runtime import PERFORM, godot, needs_godot, run
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_a_character_does_what_is_asked_and_says_so(game: Path) -> None:
     body = """
@@ -228,6 +229,7 @@ for number in words()[0]:
     assert run(game, body, parts) == [f"{a + b:.3f}" for a, b in parts]
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_the_node_moves_a_skeletons_bones(game: Path) -> None:
     """Bones have other rests and small letters, as importers of Godot 3 leave them."""

@@ -119,6 +119,7 @@ def test_bml_is_not_understood_by_a_runtime() -> None:
     assert run(script)["outcome"] == "not-understood"
 
 
+@pytest.mark.nightly
 def test_random_requests_never_break_a_character() -> None:
     found = run(
         """
@@ -205,6 +206,7 @@ def test_motions_are_made_when_they_first_play_or_are_asked_for_and_are_the_same
     assert (one, none, off) == (first - 1, 0, 0)
 
 
+@pytest.mark.nightly
 def test_posing_makes_no_garbage_to_speak_of() -> None:
     bytes_a_pose = run(
         """
@@ -236,6 +238,7 @@ def shown(number: int) -> str:
     return (RUNTIME / "README.md").read_text().split("```js\n")[1 + number].split("```")[0]
 
 
+@pytest.mark.nightly
 def test_the_readme_plays_as_a_stranger_would_run_it(stranger: Path) -> None:
     assert {"sample.json", "sample.glb", "metagraph"} <= {path.name for path in stranger.iterdir()}
     (stranger / "play.mjs").write_text(shown(0) + shown(2))
@@ -268,6 +271,7 @@ console.log(JSON.stringify(frames.map((frame) => frame.every(Number.isFinite))),
 """
 
 
+@pytest.mark.nightly
 def test_the_readme_plays_in_three_js_as_a_stranger_would_run_it(stranger: Path) -> None:
     modules = ROOT / "tests" / "node_modules"
     if not (modules / "three").is_dir():
@@ -295,6 +299,7 @@ def renamed(document: Any) -> None:
             node["name"] = "He ad:1.x"
 
 
+@pytest.mark.nightly
 def test_it_plays_in_three_js(tmp_path: Path) -> None:
     if not (ROOT / "tests" / "node_modules" / "three").is_dir():
         pytest.skip(

@@ -436,6 +436,7 @@ def test_every_rule_that_could_be_broken_stands_in_its_file_once() -> None:
         broken(RUNTIME / file, rule, instead)
 
 
+@pytest.mark.nightly
 def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
     node: Answering, single: Path, tmp_path: Path, rare: Path, sample_export: Path
 ) -> None:

@@ -46,6 +46,7 @@ def test_an_old_export_loads_and_performs(export: Path) -> None:
     assert np.abs(poses[0] - poses[-1]).max() > 1e-3
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("export", EXPORTS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_the_runtimes_agree_on_an_old_export(export: Path, tmp_path: Path) -> None:
     old = copied(export, tmp_path)
@@ -61,6 +62,7 @@ def test_the_runtimes_agree_on_an_old_export(export: Path, tmp_path: Path) -> No
     assert done.returncode == 0, done.stdout[-1000:]
 
 
+@pytest.mark.nightly
 def test_all_that_was_ever_added_may_be_missing(tmp_path: Path) -> None:
     data = json.loads((STICK / "stick.json").read_bytes())
     shutil.copy(STICK / "stick.glb", tmp_path)

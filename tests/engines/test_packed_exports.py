@@ -66,6 +66,7 @@ def test_it_plays_the_same_in_python(packed: Path) -> None:
     assert outcome.passed > many(5, 15) and not outcome.failures
 
 
+@pytest.mark.nightly
 @needs_node
 def test_it_plays_the_same_in_javascript(packed: Path) -> None:
     done = subprocess.run(
@@ -88,6 +89,7 @@ for (const folder of process.argv.slice(1)) {
 """
 
 
+@pytest.mark.nightly
 @needs_node
 def test_a_damaged_one_is_refused_by_javascript_when_it_is_loaded(damaged: list[Path]) -> None:
     """Not when its clips first play, which is when they are made."""
@@ -130,6 +132,7 @@ console.log(JSON.stringify(cases.map(([data, count, size, mode, filter]) => {
 """
 
 
+@pytest.mark.nightly
 @needs_node
 def test_views_are_unpacked_as_the_extensions_own_library_does(packed: Path) -> None:
     """Which three.js comes with: packed by it and packed by us. Turns may differ in the last digit."""
@@ -163,6 +166,7 @@ def test_it_plays_the_same_in_c_sharp_and_a_damaged_one_is_refused(
     assert all("sample.glb" in line for line in lines[:-1]), lines
 
 
+@pytest.mark.nightly
 @cpp_program.needs_compiler
 def test_it_plays_the_same_in_cpp_and_a_damaged_one_is_refused(
     packed: Path, damaged: list[Path], cpp_probe: Path
@@ -175,12 +179,14 @@ def test_it_plays_the_same_in_cpp_and_a_damaged_one_is_refused(
     assert all("sample.glb" in line for line in told)
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_gdscript_says_that_it_does_not_read_it(packed: Path, game: Path) -> None:
     code, told = godot_runtime.godot(game, "addons/metagraph/conformance.gd", packed)
     assert code == 1 and "without --compress" in told
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", sorted(registry.targets()))
 def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     sample: Project, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
@@ -196,6 +202,7 @@ def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     assert "EXT_meshopt_compression" in parts(glb)[0]["extensionsRequired"]
 
 
+@pytest.mark.nightly
 def test_a_page_shows_it(
     sample: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, browse: Browser
 ) -> None:
@@ -211,6 +218,7 @@ def test_a_page_shows_it(
     assert vertices > 9000 and missing == 0 and 1.4 < top < 2.1
 
 
+@pytest.mark.nightly
 def test_the_size_that_is_said_is_the_size_there_is(packed: Path, sample_export: Path) -> None:
     plain, small = ((folder / "sample.glb").stat().st_size for folder in (sample_export, packed))
     assert small < 0.75 * plain

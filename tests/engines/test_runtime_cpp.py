@@ -40,12 +40,14 @@ def probe(cpp_probe: Path) -> Path:
 # --- conformance
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
 def test_the_runtime_agrees_with_the_vectors(probe: Path, folder: Path, tmp_path: Path) -> None:
     done = ran(probe, "conformance", share_of(folder, "cpp", tmp_path))
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
+@pytest.mark.nightly
 def test_the_runtime_agrees_with_the_sample_project(probe: Path, sample_export: Path) -> None:
     done = ran(probe, "conformance", sample_export)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
@@ -67,6 +69,7 @@ def test_what_is_left_of_a_division_is_what_python_leaves_at_exact_multiples_too
     assert [float.fromhex(line) for line in told.stdout.split()] == [a % b for a, b in pairs]
 
 
+@pytest.mark.nightly
 def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     probe: Path, tmp_path: Path
 ) -> None:
@@ -88,6 +91,7 @@ def test_single_cases_that_notice_mutants_pass_where_nothing_is_broken(probe: Pa
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("number", range(1, len(MUTANTS) + 1), ids=lambda n: MUTANTS[n - 1][1][:40])
 def test_the_vectors_notice_a_broken_rule(probe: Path, single: Path, number: int) -> None:
     hint = MUTANTS[number - 1][3]

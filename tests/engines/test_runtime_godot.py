@@ -42,6 +42,7 @@ def test_vectors_of_the_sample_pass_on_the_engine(game: Path, sample_export: Pat
     assert " 0 failed" in told
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_vectors_that_are_broken_fail(game: Path, tmp_path: Path) -> None:
     folder = shutil.copytree(STICK, tmp_path / "broken")
@@ -126,6 +127,7 @@ def test_every_rule_that_could_be_broken_stands_in_its_file_once() -> None:
         broken(ADDON / "metagraph" / "core" / file, said, instead)
 
 
+@pytest.mark.nightly
 @needs_godot
 @pytest.mark.parametrize("rule", TRIED)
 def test_a_broken_rule_fails_the_vectors(game: Path, single: Path, rule: str) -> None:
@@ -140,6 +142,7 @@ def test_a_broken_rule_fails_the_vectors(game: Path, single: Path, rule: str) ->
     assert "FAIL " in told
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_the_single_cases_that_notice_mutants_pass_where_nothing_is_broken(game: Path, single: Path) -> None:
     tried = [folders_to_try(HINTS[rule], [STICK], single)[0] for rule in TRIED]
@@ -229,6 +232,7 @@ for path in words():
     assert all(error == "" or "$" in error for error in errors)
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_a_glb_of_another_export_is_told(game: Path, tmp_path: Path) -> None:
     data = json.loads(PERFORM.read_bytes())
@@ -276,6 +280,7 @@ out.append([graph.error, graph.problems])
 # --- Godot 4, which is not here
 
 
+@pytest.mark.nightly
 def test_every_script_for_godot_4_is_gdscript_2() -> None:
     parser = pytest.importorskip(
         "gdtoolkit.parser", reason="gdtoolkit is not here (pip install gdtoolkit)"
@@ -286,6 +291,7 @@ def test_every_script_for_godot_4_is_gdscript_2() -> None:
         parser.parse(path.read_text(encoding="utf-8"), gather_metadata=False)
 
 
+@pytest.mark.nightly
 def test_the_readme_names_files_that_its_export_writes_and_calls_the_node_has(
     sample: Project, tmp_path: Path
 ) -> None:

@@ -198,6 +198,7 @@ def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int, browse: Brow
     assert code == 0
 
 
+@pytest.mark.nightly
 def test_the_tree_plays_states_of_any_name_and_the_glb_is_read_without_an_error(
     sample: Project, tmp_path: Path, browse: Browser
 ) -> None:
@@ -224,6 +225,7 @@ def test_the_tree_plays_states_of_any_name_and_the_glb_is_read_without_an_error(
     assert len({tuple(row["hand"]) for row in found["seen"]}) == len(odd)
 
 
+@pytest.mark.nightly
 def test_the_node_plays_five_requests_on_the_glb_that_godot_has_read(
     sample: Project, tmp_path: Path, browse: Browser
 ) -> None:

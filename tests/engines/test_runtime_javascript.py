@@ -25,11 +25,13 @@ def test_it_does_what_the_shipped_vectors_say(folder: Path, tmp_path: Path) -> N
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.nightly
 def test_it_does_what_the_sample_project_does(sample_export: Path) -> None:
     done = conformance(sample_export)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.nightly
 def test_it_does_what_few_exports_need(rare: Path) -> None:
     done = conformance(rare)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -91,6 +93,7 @@ def refused(folder: Path, change: str) -> str:
     )
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -136,6 +139,7 @@ def test_every_truncation_of_the_files_is_refused_clearly() -> None:
     assert found == ["MetagraphError"]
 
 
+@pytest.mark.nightly
 def test_whatever_is_changed_in_an_export_is_refused_or_plays() -> None:
     found = run(
         """
@@ -174,6 +178,7 @@ def test_whatever_is_changed_in_an_export_is_refused_or_plays() -> None:
     assert found["thrown"] == []
 
 
+@pytest.mark.nightly
 def test_unknown_fields_of_an_export_are_passed_over() -> None:
     script = (
         "const d = JSON.parse(text); d.news = 1; d.layers.arms.news = 2; d.joints[0].news = []; "
@@ -182,6 +187,7 @@ def test_unknown_fields_of_an_export_are_passed_over() -> None:
     assert run(script) == []
 
 
+@pytest.mark.nightly
 def test_a_glb_of_another_export_is_told_and_plays_all_the_same() -> None:
     script = """
         const longer = new Uint8Array(glb.byteLength + 4);
@@ -192,6 +198,7 @@ def test_a_glb_of_another_export_is_told_and_plays_all_the_same() -> None:
     assert "is not the GLB that this JSON was written with" in told and none == []
 
 
+@pytest.mark.nightly
 def test_a_clip_that_the_glb_lacks_is_listed_and_shows_its_stance(tmp_path: Path) -> None:
     copy = changed(STICK, tmp_path, lambda document: document["animations"].pop(3))
     found = run(

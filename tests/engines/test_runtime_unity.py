@@ -187,15 +187,18 @@ def test_the_runtime_agrees_with_the_vectors(conformance: Path, folder: Path, tm
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
+@pytest.mark.nightly
 def test_the_runtime_agrees_with_the_sample_project(conformance: Path, sample_export: Path) -> None:
     done = mono(conformance, sample_export)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
+@pytest.mark.nightly
 def test_the_culture_of_the_machine_does_not_matter(conformance: Path) -> None:
     assert mono(conformance, STICK, LANG="tr_TR.UTF-8", LC_ALL="tr_TR.UTF-8").returncode == 0
 
 
+@pytest.mark.nightly
 def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     conformance: Path, tmp_path: Path
 ) -> None:
@@ -209,6 +212,7 @@ def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     assert "update the runtime" in done.stdout
 
 
+@pytest.mark.nightly
 def test_words_move_the_mouth_as_they_do_in_the_library(probe: Probe, tmp_path: Path) -> None:
     texts = [
         "Hello there, how are you?",
@@ -447,6 +451,7 @@ def test_time_never_goes_backwards(probe: Probe, tmp_path: Path) -> None:
     assert live(probe, tmp_path, [[5, []], [2, []], [-1, []], [5.5, []], [0, []]])["now"] == [[5.5]]
 
 
+@pytest.mark.nightly
 def test_no_frame_makes_garbage(probe: Probe) -> None:
     done = mono(probe.path, "garbage", STICK / "stick.json", MONO_GC_PARAMS="nursery-size=512k")
     assert (done.returncode, done.stdout.strip()) == (0, "0"), done.stdout + done.stderr

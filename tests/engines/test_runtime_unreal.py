@@ -43,6 +43,7 @@ def played(program: Path, *words: object) -> subprocess.CompletedProcess[str]:
     return ran(program, "unreal", *words)
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_the_node_shows_the_poses_of_the_vectors(cpp_probe: Path) -> None:
     vectors = json.loads((STICK / "vectors.json").read_bytes())
@@ -150,6 +151,7 @@ def test_the_importer_names_what_is_missing(tmp_path: Path) -> None:
     assert made[-1]["automated"] is True
 
 
+@pytest.mark.nightly
 def test_an_export_brings_the_plugin_with_the_core(sample: Project, tmp_path: Path) -> None:
     report = registry.write_for_target(sample, "unreal", tmp_path / "game")
     written = {p.relative_to(tmp_path / "game").as_posix() for p in report.files}

@@ -78,6 +78,7 @@ def test_links_that_lead_elsewhere_and_pipes_are_not_followed(shown: Served) -> 
         assert asked(shown, "/pipe")[0] == 404
 
 
+@pytest.mark.nightly
 def test_who_says_nothing_takes_no_room_from_others_for_long(
     shown: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -100,6 +100,7 @@ def rounded(value: Any) -> Any:
     return json.loads(json.dumps(value), parse_float=lambda x: round(float(x), 9), parse_int=float)
 
 
+@pytest.mark.nightly
 def test_words_and_their_gestures_are_those_of_python(told: Any, sample: Project) -> None:
     some = 0
     for (language, text, times, seconds, seed), (words, gestures) in zip(cases(), told["cases"], strict=True):
@@ -136,6 +137,7 @@ def test_the_lists_of_words_are_made_of_the_files() -> None:
         )
 
 
+@pytest.mark.nightly
 def test_an_agent_in_a_page_talks_with_gestures(
     sample: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, browse: Browser
 ) -> None:

@@ -257,6 +257,7 @@ def same(found: Any, wanted: Any) -> None:
         assert bool(mine.get("why")) == bool(theirs.get("why"))
 
 
+@pytest.mark.nightly
 def test_what_is_said_gestures_and_what_cannot_be_read_is_refused(wanted: Any) -> None:
     """Or the comparisons with it would be of nothing."""
     *_, nonsense, long, empty = wanted
@@ -270,6 +271,7 @@ def test_what_is_said_gestures_and_what_cannot_be_read_is_refused(wanted: Any) -
     assert len(states) > 40 and states.count("refused") < 0.2 * len(states)
 
 
+@pytest.mark.nightly
 @csharp_runtime.needs_mono
 def test_c_sharp_says_what_javascript_says(
     wanted: Any, sample_export: Path, core: Path, tmp_path: Path
@@ -296,6 +298,7 @@ def test_a_lexicon_that_is_none_is_an_error_with_a_remedy_in_c_sharp(core: Path,
     assert "'rules' should be a list" in told and "docs/agents/text-to-gestures.md" in told
 
 
+@pytest.mark.nightly
 @cpp_program.needs_compiler
 def test_cpp_says_what_javascript_says(
     wanted: Any, sample_export: Path, cpp_probe: Path, tmp_path: Path
@@ -325,6 +328,7 @@ def test_small_letters_are_pythons_in_cpp(cpp_probe: Path) -> None:
     assert found[len(letters) :] == [b"\xc3", b"\xe2\x82 a", b"\xff\x80a"]
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_gdscript_says_what_javascript_says(wanted: Any, sample_export: Path, game: Path) -> None:
     (game / "asked.json").write_text(json.dumps(asked(sample_export)))

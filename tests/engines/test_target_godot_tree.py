@@ -102,6 +102,7 @@ def resting(sample: Project, seconds: float) -> Pose:
 # --- in Godot 3
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, sample: Project) -> None:
     arms, head = layer_of(sample, "arms"), layer_of(sample, "head")
@@ -144,6 +145,7 @@ def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, 
     assert back["states"] == {**there["states"], "arms": arms.start.name}
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_travel_goes_from_every_state_to_every_stance_by_as_few_transitions_as_the_planner(
     folder: Path, sample: Project
@@ -212,6 +214,7 @@ def resources(text: str) -> list[tuple[str, str, dict[str, str]]]:
     return out
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("ending", "reference"),
     [(".tres", r'SubResource\("(\d+)"\)'), (".godot3.tres", r"SubResource\( (\d+) \)")],
@@ -269,6 +272,7 @@ def test_the_tree_adds_every_layer_to_nothing_and_filters_what_it_moves(
     assert filters == [[f"Skeleton3D:{joint}" for joint in m.joints] for m in machines(sample)]
 
 
+@pytest.mark.nightly
 def test_gestures_and_transitions_alone_end_by_themselves_and_loops_loop(
     folder: Path, sample: Project
 ) -> None:

@@ -144,6 +144,7 @@ def paths(skeleton: Skeleton) -> dict[str, str]:
 # --- whole files
 
 
+@pytest.mark.nightly
 def test_every_file_has_a_meta_of_its_kind_and_all_there_is_is_said(made: ExportedFiles) -> None:
     folder = made.files[0].parent
     assert {*folder.iterdir()} == {*made.files}
@@ -160,6 +161,7 @@ def test_every_file_has_a_meta_of_its_kind_and_all_there_is_is_said(made: Export
             )  # Unity wants assets called as their files are
 
 
+@pytest.mark.nightly
 def test_whatever_is_referred_to_is_there(made: ExportedFiles, controller: Objects) -> None:
     known = guids(made)
     for path in made.files:
@@ -319,6 +321,7 @@ def pairs(project: Project) -> list[tuple[Machine, EngineState, Clip]]:
     return [(m, s, clip) for (m, s), clip in zip(states, animations(project, built), strict=True)]
 
 
+@pytest.mark.nightly
 def test_curves_mirrored_back_are_the_machines_clips(
     sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:
@@ -343,6 +346,7 @@ def test_curves_mirrored_back_are_the_machines_clips(
         assert (path["Hips"] in {c["path"] for c in fields["m_PositionCurves"]}) == ("Hips" in machine.joints)
 
 
+@pytest.mark.nightly
 def test_clips_have_their_lengths_loop_where_they_loop_and_are_additive_to_the_base_pose(
     sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:

@@ -252,6 +252,7 @@ def test_the_text_holds_every_frame_where_pixars_library_is_not_at_hand(still: C
     assert np.abs(read - still.rotations[..., [3, 0, 1, 2]]).max() < 5e-7
 
 
+@pytest.mark.nightly
 def test_a_performance_is_baked_as_one_animation(tmp_path: Path) -> None:
     from app.cli.parser import main
 

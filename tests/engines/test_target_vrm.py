@@ -54,6 +54,7 @@ def turned(nodes: list[Any]) -> tuple[dict[str, Any], list[Any]]:
     return at, globals_
 
 
+@pytest.mark.nightly
 def test_the_figure_stands_in_a_t_on_its_feet(written: Path) -> None:
     assert written.suffix == ".vrm"
     khronos(written)

@@ -42,6 +42,7 @@ def written(project: Project, tmp_path_factory: pytest.TempPathFactory) -> list[
     return sorted(path for path in report.files if path.suffix == ".vrma")
 
 
+@pytest.mark.nightly
 def test_each_action_has_a_file_that_the_validator_accepts(project, written):
     assert len(written) == len(list(project.actions())) == 2
     for path in written:

@@ -52,6 +52,7 @@ PICTURE = """(() => { const { stage } = metagraph; stage.scene.background.set("#
   stage.draw(); return [stage.canvas.clientWidth, stage.canvas.clientHeight, stage.canvas.toDataURL("image/png")]; })()"""
 
 
+@pytest.mark.nightly
 def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matches(
     sample: Project, page: Path, browse: Browser
 ) -> None:
@@ -112,6 +113,7 @@ def test_buttons_ask_and_the_answers_and_the_plan_show_it(page: Path, browse: Br
     assert before
 
 
+@pytest.mark.nightly
 def test_speech_moves_the_jaw_and_a_look_the_eyes(page: Path, browse: Browser) -> None:
     turns = """Object.fromEntries(metagraph.object.joints.filter(({ bone }) => /Jaw|LeftEye/.test(bone.name))
       .map(({ bone }) => [bone.name, bone.quaternion.toArray()]))"""
@@ -135,6 +137,7 @@ def test_the_page_takes_the_systems_colours(browse: Browser, page: Path, scheme:
     assert not errors and color == {"dark": "rgb(23, 24, 27)", "light": "rgb(233, 235, 238)"}[scheme]
 
 
+@pytest.mark.nightly
 def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(
     page: Path, tmp_path: Path, browse: Browser
 ) -> None:
@@ -157,6 +160,7 @@ def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(
     assert "cut.glb" in told[2] or "GLB" in told[2]
 
 
+@pytest.mark.nightly
 def test_the_vectors_hold_in_the_browser(
     page: Path, sample_export: Path, tmp_path: Path, browse: Browser
 ) -> None:
@@ -237,6 +241,7 @@ def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path, br
     assert row[0] <= row[1] + 0.5  # a row that shares its width is no wider than the window
 
 
+@pytest.mark.nightly
 def test_lines_that_cannot_be_read_are_left_out_and_told(sample: Project, tmp_path: Path) -> None:
     report = registry.write_for_target(sample, "metagraph", tmp_path, Contents(base=tmp_path))
     assert sum("the sound of line" in words for words in report.warnings) == len(

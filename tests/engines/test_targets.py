@@ -202,6 +202,7 @@ def test_a_stance_is_reached_from_every_other_by_following_its_arrows(sample: Pr
                 assert at == goal
 
 
+@pytest.mark.nightly
 def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose(
     sample: Project, written: Any
 ) -> None:
@@ -219,6 +220,7 @@ def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose
     assert [c.name for c in read_gltf_clips(path)] == [c.name for c in made]
 
 
+@pytest.mark.nightly
 def test_an_animation_of_an_action_that_moves_a_joint_in_part_has_it_as_far_from_how_its_stance_begins(
     sample: Project,
 ) -> None:
@@ -246,6 +248,7 @@ def test_an_animation_of_an_action_that_moves_a_joint_in_part_has_it_as_far_from
 # --- engines
 
 
+@pytest.mark.nightly
 def test_playcanvas_rests_as_the_preview_does_changes_stance_and_adds_a_gesture(
     sample: Project, written: Any, tmp_path: Path
 ) -> None:
@@ -317,6 +320,7 @@ def test_xstate_goes_to_a_stance_and_plays_a_gesture_on_its_clock(written: Any, 
     ], "what comes too early is told, and only for its layer"
 
 
+@pytest.mark.nightly
 def test_babylon_plays_the_behaviour_graph_without_code(written: Any, tmp_path: Path) -> None:
     report = written("interactivity")
     events = json.loads(named(report, "events.json").read_bytes())
@@ -387,6 +391,7 @@ def test_the_scxml_is_run_by_qt(written: Any, qtbot: Any) -> None:
     machine.stop()
 
 
+@pytest.mark.nightly
 def test_the_scxml_names_an_animation_a_blend_and_a_state_there_is_everywhere(
     sample: Project, written: Any
 ) -> None:
@@ -438,6 +443,7 @@ def test_the_gesture_map_runs_in_smartbodys_place_and_names_motions_that_are_the
     assert read_bvh(next(path for path in report.files if path.stem == rows[0][0])).frames > 1
 
 
+@pytest.mark.nightly
 def test_gesture_json_goes_in_holds_and_comes_out_in_order(written: Any) -> None:
     report = written("sumerian")
     clips = {clip.name: clip for clip in read_gltf_clips(named(report, ".glb"))}
@@ -460,6 +466,7 @@ def test_gesture_json_holds_a_gesture_that_repeats_for_its_whole_cycles(sample: 
     assert edges == [(0, 18), (18, 54), (54, 72)]
 
 
+@pytest.mark.nightly
 def test_control_characters_in_names_and_texts_spoil_no_export(sample: Project, tmp_path: Path) -> None:
     """Whatever a target writes as XML is read by a parser; what was replaced is reported, and the rest is
     whole.

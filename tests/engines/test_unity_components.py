@@ -182,6 +182,7 @@ def scene(core: Path) -> Path:
     return compiled(core.with_name("scene.exe"), program, references=(core, types, component))
 
 
+@pytest.mark.nightly
 def test_the_component_moves_joints_as_unity_shows_them(scene: Path) -> None:
     done = mono(scene, STICK / "stick")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -245,6 +246,7 @@ public static class Sharing
 """
 
 
+@pytest.mark.nightly
 def test_characters_of_the_same_assets_read_them_once(scene: Path) -> None:
     source = scene.with_name("sharing.cs")
     source.write_text(SHARING)

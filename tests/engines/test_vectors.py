@@ -122,6 +122,7 @@ def test_characters_whose_times_are_exact_are_looked_at_on_boundaries_and_others
     assert not any("waits as long as it may" in name for name in names["stick"])
 
 
+@pytest.mark.nightly
 def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path) -> None:
     back = read_export(export_project(sample, tmp_path).json, resolved=True)
     assert sample.skeleton is not None

@@ -158,6 +158,7 @@ def test_a_truncated_json_is_told_and_its_glb_is_read(game: Path) -> None:
     assert [*said(path)] == ["JSON"]
 
 
+@pytest.mark.nightly
 def test_a_sound_that_is_missing_or_none_is_told(game: Path) -> None:
     without_record(game)
     (sound,) = (game / "lines").iterdir()
@@ -174,6 +175,7 @@ def test_a_sound_on_another_computer_is_not_opened(game: Path) -> None:
     assert "another computer" in said(path)["sounds"][0]
 
 
+@pytest.mark.nightly
 def test_an_export_that_was_interrupted_is_told_with_the_files_of_before(
     game: Path, toy, tmp_path: Path
 ) -> None:
@@ -189,6 +191,7 @@ def test_an_export_that_was_interrupted_is_told_with_the_files_of_before(
     assert any(line.startswith(f"{json_of(game).name}: ") for line in told["files"])
 
 
+@pytest.mark.nightly
 def test_a_killed_export_leaves_its_record_and_staging_and_both_are_told(
     game: Path, toy, monkeypatch
 ) -> None:
@@ -270,6 +273,7 @@ def test_a_pipe_is_refused_and_nothing_waits_for_it(tmp_path: Path) -> None:
         verify(tmp_path / f"pipe{SUFFIX}")
 
 
+@pytest.mark.nightly
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_no_flipped_byte_of_an_export_goes_unseen(game: Path, data: st.DataObject) -> None:

@@ -37,6 +37,7 @@ def _lay_out(modules: Path, ran: Path) -> None:
         program.chmod(0o755)
 
 
+@pytest.mark.nightly
 def test_nothing_is_taken_from_folders_around_the_export_or_the_working_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project, without_npm: None
 ) -> None:
@@ -51,6 +52,7 @@ def test_nothing_is_taken_from_folders_around_the_export_or_the_working_folder(
     assert any("three.js" in words for words in report.warnings)
 
 
+@pytest.mark.nightly
 def test_without_them_the_page_says_so_and_the_browser_compares_digests(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project, without_npm: None
 ) -> None:
@@ -67,6 +69,7 @@ def test_without_them_the_page_says_so_and_the_browser_compares_digests(
     assert "./metagraph/element.js" in (tmp_path / "out" / web.CHARACTER).read_text()
 
 
+@pytest.mark.nightly
 def test_a_page_that_gets_no_three_js_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project, without_npm: None, browse: Browser
 ) -> None:
@@ -79,6 +82,7 @@ def test_a_page_that_gets_no_three_js_says_so(
     assert words.startswith(f"The character cannot be shown: three.js {web_tools.THREE} could not be loaded")
 
 
+@pytest.mark.nightly
 def test_what_is_kept_is_used_as_one_file(tmp_path: Path, sample: Project) -> None:
     with kept_web_tools(tmp_path / "kept"):
         registry.write_for_target(sample, "web", tmp_path / "out")
@@ -98,6 +102,7 @@ def test_a_three_js_with_one_byte_changed_is_none(tmp_path: Path, without_npm: N
         assert not web_tools.is_three_at_hand() and web_tools.bundle_module(ELEMENT) is None
 
 
+@pytest.mark.nightly
 def test_a_bundler_with_another_digest_is_not_run(tmp_path: Path, sample: Project) -> None:
     ran = tmp_path / "ran"
     with kept_web_tools(tmp_path / "kept") as kept:

@@ -50,6 +50,7 @@ def long_named(project: Project) -> Project:
     return replace(project, name="n" * 400, graphs=graphs)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", TARGETS)
 def test_names_of_any_length_are_exported_whole(small: Project, tmp_path: Path, name: str) -> None:
     project = long_named(small)
@@ -96,6 +97,7 @@ def failing(real: Callable[..., Any], after: int) -> Callable[..., Any]:
     return replaced
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("stood", [False, True])
 def test_what_fails_half_way_leaves_everything_as_it_was(
     small: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stood: bool
@@ -283,6 +285,7 @@ def test_the_plain_export_is_whole_as_well(
     assert files(tmp_path) == before
 
 
+@pytest.mark.nightly
 def test_an_export_killed_at_any_step_is_whole_or_reported_and_the_next_one_is_whole(
     small: Project, tmp_path: Path
 ) -> None:

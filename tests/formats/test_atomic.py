@@ -94,6 +94,7 @@ while True:
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="there is no kill -9 on Windows")
 def test_after_kills_nothing_stays_but_the_file(tmp_path: Path) -> None:
     for n in range(6):

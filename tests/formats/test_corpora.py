@@ -174,6 +174,7 @@ def test_pairs_share_one_sound_of_two_channels(tmp_path: Path) -> None:
     assert kinds(one.conversation, 1) == ["response", "clause"]
 
 
+@pytest.mark.nightly
 def test_a_number_that_tells_no_side_is_part_of_the_name(tmp_path: Path) -> None:
     for name in ("job interview 1", "job interview 2"):
         motion(tmp_path / f"{name}_female.bvh")

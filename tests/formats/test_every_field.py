@@ -340,6 +340,7 @@ def test_what_can_be_read_can_be_saved_and_the_rest_is_refused_by_name(top: str)
     assert read or top == "metagraph" or FEW > 1, "of a few of the values it may be none"
 
 
+@pytest.mark.nightly
 def test_odd_names_of_fields_are_read_and_saved_or_refused() -> None:
     path = Path(f"whole{SUFFIX}")
     named = [place for place in PLACES if isinstance(place[-1], str)]

@@ -123,6 +123,7 @@ def sitting(path: Path, journal: Path, made: list[Project], done: list[int]) -> 
         kept.close()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("how", "ever"), WAYS)
 def test_a_sitting_is_read_back_as_far_as_it_was_written_whichever_call_fails(
     tmp_path: Path, how: str, ever: bool

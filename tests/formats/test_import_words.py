@@ -78,6 +78,7 @@ def test_lines_that_say_the_same_of_several_files_are_one(lines: list[str], want
     assert count_alike(lines) == wanted
 
 
+@pytest.mark.nightly
 def test_the_notes_of_a_real_set_are_few(shared_data: Path) -> None:
     result = import_files(Project(), None, [shared_data / "sumerian-hosts/glTF/animations/adult_female"])
     lines = count_alike(result.notes)

@@ -181,6 +181,7 @@ def test_a_file_whose_name_is_no_text_is_left_out_since_it_could_not_be_saved(fo
     assert "not text" in result.failures[0]
 
 
+@pytest.mark.nightly
 def test_what_is_true_of_many_files_is_said_once(shared_data: Path) -> None:
     result = import_files(Project(), None, [shared_data / "bandai-namco-1"])
     assert len(result.notes) == 1
@@ -207,6 +208,7 @@ def test_a_bvh_and_a_glb_of_one_character_go_together(tmp_path: Path) -> None:
     assert result.failures == ()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("name", "pattern", "clips", "joints"),
     [("sumerian-hosts", "alien", 60, 93), ("kaykit-rogue", "", 76, 0), ("bandai-namco-1", "", 63, 22)],

@@ -145,6 +145,7 @@ SHAPES = {
 }
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("shape", list(SHAPES))
 @pytest.mark.parametrize("word", ["j", "left_hand", "hips", "head", "neck", "jaw"])
 def test_what_joints_mean_is_found_in_steps_that_grow_with_their_number(shape: str, word: str) -> None:

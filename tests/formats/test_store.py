@@ -50,6 +50,7 @@ def text_of(project: Project) -> str:
 # --- text
 
 
+@pytest.mark.nightly
 @settings(max_examples=80, deadline=None)
 @given(projects())
 def test_a_project_comes_back_from_its_text_and_is_written_the_same_again(project: Project) -> None:
@@ -174,6 +175,7 @@ def test_an_older_file_is_upgraded_step_by_step(monkeypatch: pytest.MonkeyPatch)
     assert steps == [1, 2, 1, 2]
 
 
+@pytest.mark.nightly
 @settings(max_examples=150, deadline=None)
 @given(st.randoms(use_true_random=False), st.integers(1, 6))
 def test_a_file_with_letters_changed_is_read_or_refused(chance: random.Random, count: int) -> None:
@@ -210,6 +212,7 @@ def test_a_file_with_letters_changed_is_read_or_refused(chance: random.Random, c
         assert str(error).isprintable()
 
 
+@pytest.mark.nightly
 @settings(max_examples=100, deadline=None)
 @given(st.integers(0, 4000))
 def test_a_file_cut_off_anywhere_is_read_or_refused(length: int) -> None:

@@ -45,6 +45,7 @@ def test_every_bind_pose_put_into_the_sample_clips_goes_and_nothing_else(takes: 
     assert np.mean(list(shares.values())) > 0.98
 
 
+@pytest.mark.nightly
 def test_sample_clips_that_start_fast_or_from_a_bind_pose_stay_whole(takes: list[Clip]) -> None:
     shares = share(takes, made.without_stray_poses)
     # A rest pose taken out of the middle of a swing is the one thing that may deceive.

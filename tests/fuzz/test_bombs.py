@@ -66,6 +66,7 @@ def test_a_textgrid_of_a_day_is_no_line(tmp_path: Path, end: float) -> None:
     assert "1800 s" in refused(make_voice_from_phones, tmp_path / "a.TextGrid").cause
 
 
+@pytest.mark.nightly
 def test_intervals_over_each_other_cost_no_more_than_in_turn(tmp_path: Path) -> None:
     """Kept apart, 800 sounds of 425 s would be 17 million shapes at 50 a second, of 32 bytes and more each."""
     (tmp_path / "a.TextGrid").write_text(grid(425, [(n * 1e-3, 425) for n in range(800)]))
@@ -115,6 +116,7 @@ def test_a_bvh_s_claims_are_not_believed(tmp_path: Path, frames: str, step: str)
     refused(read_clips, tmp_path / "a.bvh")
 
 
+@pytest.mark.nightly
 def test_joints_that_cost_a_file_nothing_are_paid_for(tmp_path: Path) -> None:
     still = "".join(f"JOINT j{n}\n{{\nOFFSET 0 1 0\nCHANNELS 0\n}}\n" for n in range(4000))
     (tmp_path / "a.bvh").write_text(f"{HEAD}{still}{END}Frames: 50000\nFrame Time: 0.03\n" + "0\n" * 50000)
@@ -239,6 +241,7 @@ def test_keypoints_do_not_lie_years_apart(tmp_path: Path, late: float) -> None:
     assert "apart" in refused(read_keypoints, tmp_path / "k.json").cause
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("backwards", [False, True])
 def test_long_chains_of_annotations_are_read_in_their_length_and_not_its_square(
     tmp_path: Path, backwards: bool

@@ -101,6 +101,7 @@ def test_files_cut_off_anywhere(tmp_path: Path, seeds: dict[str, bytes], suffix:
         check(tmp_path, suffix, data[:end])
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("suffix", [".bvh", ".glb"])
 def test_files_with_bytes_changed(tmp_path: Path, seeds: dict[str, bytes], suffix: str) -> None:
     rng = random.Random(1)
@@ -168,6 +169,7 @@ def unpacked(data: bytes) -> tuple[Any, bytes]:
     return json.loads(data[20 : 20 + size]), data[28 + size :]
 
 
+@pytest.mark.nightly
 def test_every_value_of_a_gltf_file_may_be_hostile(tmp_path: Path, seeds: dict[str, bytes]) -> None:
     document, body = unpacked(seeds[".glb"])
     rng = random.Random(2)
@@ -185,6 +187,7 @@ def test_every_value_of_a_gltf_file_may_be_hostile(tmp_path: Path, seeds: dict[s
         check(tmp_path, ".glb", packed(mutant, body))
 
 
+@pytest.mark.nightly
 def test_keys_and_vertices_may_be_any_bits(tmp_path: Path, seeds: dict[str, bytes]) -> None:
     document, body = unpacked(seeds[".glb"])
     rng = np.random.default_rng(3)
@@ -310,6 +313,7 @@ WORDS = (
 )
 
 
+@pytest.mark.nightly
 def test_every_word_of_a_bvh_file_may_be_hostile(tmp_path: Path, seeds: dict[str, bytes]) -> None:
     words = seeds[".bvh"].decode().replace("\n", " \n ").split(" ")
     rng = random.Random(4)

@@ -157,6 +157,7 @@ values = st.recursive(
 )
 
 
+@pytest.mark.nightly
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(values)
 def test_any_json_is_read_or_refused(tmp_path: Path, value: object) -> None:

@@ -52,6 +52,7 @@ def test_sizes_that_cannot_be_are_told():
         MatchingSizes(pose=6)
 
 
+@pytest.mark.nightly
 def test_using_models_brings_in_no_torch():
     """Nor Qt: what is imported is counted in a process of its own."""
     code = (

@@ -52,6 +52,7 @@ def test_without_temperature_nothing_happens_by_chance(kind):
     assert cold[0].std(0).sum() < _made(kind, temperature=1.0).rotations.std(0).sum()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", KINDS)
 @settings(max_examples=8)
 @given(cuts=st.lists(st.integers(0, SOUND.shape[1]), max_size=6), lookahead=st.sampled_from([None, 0, 3]))
@@ -69,6 +70,7 @@ def test_in_pieces_motion_is_the_same_to_the_bit(kind, cuts, lookahead):
     assert run([0, *sorted(cuts), end]).tobytes() == run([0, end]).tobytes()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", [*KINDS, "window"])
 @pytest.mark.parametrize("lookahead", [None, 0, 9])
 def test_of_the_sizes_in_use_too_frames_one_by_one_are_the_same_to_the_bit(kind, lookahead):

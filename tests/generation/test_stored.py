@@ -107,6 +107,7 @@ def test_in_16_bits_it_is_smaller_and_nearly_the_same(tmp_path, kept):
         assert np.abs(back.weights[n] - w).max() < 2e-3
 
 
+@pytest.mark.nightly
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(share=st.floats(0, 1, exclude_max=True), bit=st.integers(0, 7))
 def test_a_flipped_bit_is_refused_or_changes_nothing(kept, tmp_path, share, bit):

@@ -93,6 +93,7 @@ def test_of_several_animations_the_longest_is_taken_and_that_is_told(tmp_path):
     assert note.startswith("talk.glb: holds 2 animations") and "'long', 9.0 s" in note
 
 
+@pytest.mark.nightly
 def test_a_bad_take_spoils_no_other(tmp_path):
     _write(tmp_path, "good", seed=1)
     _write(tmp_path, "short", seconds=2.0, seed=2)

@@ -84,6 +84,7 @@ def test_another_skeleton_and_one_that_does_not_move_are_refused():
         make_take(rig(), still, TakeSound(sound, RATE), TakeSource("still"), conversation(10))
 
 
+@pytest.mark.nightly
 def test_what_can_be_learned_from_all_the_same_is_told():
     assert "only one voice" in " ".join(_take(samples=babble(12, 1), talk=False).notes)
     assert "one channel" in " ".join(_take(samples=babble(12, 1)).notes)
@@ -101,6 +102,7 @@ def test_two_tracks_of_one_voice_leave_the_other_silent():
     assert np.ptp(take.features[:, 27:54]) == 0
 
 
+@pytest.mark.nightly
 def test_whole_takes_are_held_out_with_all_that_shares_a_file():
     takes = [_take(6, n, digests=(f"motion {n}", f"sound {n // 2}")) for n in range(6)]
     learned, held = split_takes(takes, 0.3)
@@ -111,6 +113,7 @@ def test_whole_takes_are_held_out_with_all_that_shares_a_file():
     assert any(split_takes(takes, 0.3, seed)[1] != held for seed in range(2, 9))
 
 
+@pytest.mark.nightly
 def test_one_recording_gives_a_block_with_six_seconds_cut_away():
     take = _take(60)
     learned, held = split_takes([take], 0.2)
@@ -122,6 +125,7 @@ def test_one_recording_gives_a_block_with_six_seconds_cut_away():
         split_takes([_take(12)])
 
 
+@pytest.mark.nightly
 def test_pieces_of_one_recording_are_cut_at_the_same_moment():
     take = _take(90)
     learned, held = split_takes([take.part(0, 700), take.part(700, 1500), take.part(1500, 2251)], 0.2)
@@ -131,6 +135,7 @@ def test_pieces_of_one_recording_are_cut_at_the_same_moment():
     assert len(take.part(300, 100).poses) == 0
 
 
+@pytest.mark.nightly
 def test_a_mirror_twin_goes_where_its_take_goes():
     clip = moving(60, 1)
     take = _take(60)
@@ -152,6 +157,7 @@ def test_a_mirror_twin_in_the_other_half_fails():
         check_split([take], [stranger])
 
 
+@pytest.mark.nightly
 def test_an_overlapping_window_in_the_other_half_fails():
     take = _take(40)
     with pytest.raises(SplitError, match="a stretch of it"):
@@ -169,6 +175,7 @@ def test_an_overlapping_window_in_the_other_half_fails():
         check_split([whole], [window])
 
 
+@pytest.mark.nightly
 def test_the_same_speech_performed_again_is_another_take():
     one, other = _take(20, 1), _take(20, 2)
     again = replace(other, features=one.features)

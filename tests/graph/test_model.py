@@ -152,6 +152,7 @@ def apply(project: Project, step: tuple[Any, ...]) -> Project:
     return edits.remove_clips(project, [some(clips, rest[0])])
 
 
+@pytest.mark.nightly
 @given(steps())
 @settings(max_examples=60, deadline=None)
 def test_after_any_edits_the_index_is_what_building_it_anew_gives_and_old_projects_are_as_they_were(

@@ -59,6 +59,7 @@ def test_what_has_the_ids_of_parts_that_are_gone_is_found_anew(found) -> None:
     assert len(count) == 50
 
 
+@pytest.mark.nightly
 def test_poses_faces_and_phases_keep_no_closed_project(toy) -> None:
     def ask() -> list[ref[object]]:
         project = toy.project()

@@ -87,6 +87,7 @@ def flood(data: bytes) -> tuple[Unread, Hub]:
     return asyncio.run(play())
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "data",
     [frame(9, b"p" * 125), frame(9, b""), frame(9, b"x") + frame(1, b"[]")],

@@ -46,6 +46,7 @@ def watch(session: LiveSession, talk: Any, until: float = 18.0, client: int = 1,
     return out
 
 
+@pytest.mark.nightly
 def test_every_frame_is_answered_and_says_what_is_seen(sample: Project, talk: Any) -> None:
     session = LiveSession(sample)
     replies = watch(session, talk, mirror=False)
@@ -79,6 +80,7 @@ def test_in_a_mirror_sides_change_over(sample: Project, talk: Any) -> None:
     assert watch(LiveSession(sample), talk, 12.0)[-1]["seen"]["body"] == "weight right"
 
 
+@pytest.mark.nightly
 def test_a_session_with_a_camera_performs_again_as_it_was_played(sample: Project, talk: Any) -> None:
     session = LiveSession(sample)
     watch(session, talk, mirror=False, gaze=True)
@@ -125,6 +127,7 @@ def test_a_wish_that_changes_begins_anew_and_ids_are_not_used_twice(sample: Proj
     assert len(ids) == len(set(ids)) == 6
 
 
+@pytest.mark.nightly
 def test_an_edited_project_is_mimicked_with_at_once(sample: Project, talk: Any) -> None:
     session = LiveSession(sample)
     watch(session, talk, 2.0)

@@ -157,12 +157,14 @@ def run(name: str, words: list[str], port: str, folder: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.nightly
 def test_the_python_client_runs(port: str, tmp_path: Path) -> None:
     first, second = run("client.py", [sys.executable], port, tmp_path).splitlines()
     assert "'state': 'planned'" in first or "'state': 'late'" in first
     assert "nod" in second
 
 
+@pytest.mark.nightly
 def test_the_talking_agent_talks_with_voice_lips_and_gestures(port: str, tmp_path: Path) -> None:
     """It hears something, and what it does about it is what was played: most gestures on their words."""
     if shutil.which("espeak-ng") is None:

@@ -153,6 +153,7 @@ def test_what_cannot_be_generated_is_said_in_words(session, request_, words):
     assert session.generating.motion is None
 
 
+@pytest.mark.nightly
 def test_a_model_of_another_skeleton_and_one_too_large_are_refused(session, sample, models, tmp_path):
     other = stance()
     names = tuple(f"x{n}" for n in other.skeleton.names)

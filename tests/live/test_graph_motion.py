@@ -75,6 +75,7 @@ def speak(session: LiveSession, samples: np.ndarray, piece: float = 0.1) -> None
         go_on(session, piece)
 
 
+@pytest.mark.nightly
 def test_arms_and_head_move_as_the_takes_and_the_legs_as_the_body_does(session, sample, graph) -> None:
     assert ask(session, {"do": "describe"})["graphs"] == ["takes"]
     reply = ask(session, {"do": "generate", "model": "takes", "side": "speaker", "id": "g"})

@@ -651,6 +651,7 @@ def test_a_layer_takes_only_so_many_waiting_requests(session: LiveSession) -> No
     assert more["state"] in ("planned", "late")
 
 
+@pytest.mark.nightly
 def test_an_hours_script_fits_and_more_is_refused(session: LiveSession) -> None:
     states = []
     for n in range(0, 1040, 40):
@@ -713,6 +714,7 @@ def test_poses_come_at_their_rate_and_are_the_players(session: LiveSession) -> N
 # --- replaying
 
 
+@pytest.mark.nightly
 @settings(max_examples=many(3, 6))
 @example(460481, False)  # asked for twice within a second, far from the horizon
 @given(st.integers(0, 2**32), st.booleans())

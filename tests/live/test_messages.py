@@ -152,6 +152,7 @@ values = st.recursive(
 )
 
 
+@pytest.mark.nightly
 @given(
     st.sampled_from(WORDS),
     st.dictionaries(

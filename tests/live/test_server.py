@@ -199,6 +199,7 @@ def test_poses_are_streamed_as_json_and_as_packed_numbers(sample: Project) -> No
     play(sample, work)
 
 
+@pytest.mark.nightly
 def test_a_client_that_stops_reading_is_dropped_and_others_go_on(
     sample: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -345,6 +346,7 @@ def test_a_name_that_was_bent_to_this_machine_is_turned_away(sample: Project) ->
     play(sample, work)
 
 
+@pytest.mark.nightly
 def test_the_token_is_asked_for_in_the_header_or_in_hello(
     sample: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -80,6 +80,7 @@ def test_shapes_that_do_not_fit_are_refused(somebody: Project, points: Any, sure
         Mimic(somebody).feed(0.0, points, sure)
 
 
+@pytest.mark.nightly
 @settings(max_examples=40)
 @given(
     hnp.arrays(
@@ -251,6 +252,7 @@ def test_frames_out_of_order_are_passed_over_and_gaps_begin_anew(somebody: Proje
 # --- what the character does
 
 
+@pytest.mark.nightly
 def test_a_stance_the_character_is_not_in_is_asked_for_again_and_less_and_less_often(
     somebody: Project,
 ) -> None:
@@ -343,6 +345,7 @@ def scored(
     return out
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("turn", "mirror"), VIEWS)
 def test_in_space_nine_tenths_of_the_time_every_layer_is_right(talk: Talk, turn: float, mirror: bool) -> None:
     for layer, (share, extra) in scored(talk, 3, View(turn=turn), mirror).items():
@@ -350,6 +353,7 @@ def test_in_space_nine_tenths_of_the_time_every_layer_is_right(talk: Talk, turn:
         assert extra <= 1, layer
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("turn", "mirror"), VIEWS)
 def test_in_a_picture_too_but_for_leaning_towards_the_camera(talk: Talk, turn: float, mirror: bool) -> None:
     found = scored(talk, 2, View(turn=turn), mirror)
@@ -360,12 +364,14 @@ def test_in_a_picture_too_but_for_leaning_towards_the_camera(talk: Talk, turn: f
     assert max(extra for _, extra in found.values()) <= 4
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("layout", ["openpose body_25", "openpose coco", "coco"])
 def test_every_layout_does(talk: Talk, layout: str) -> None:
     found = scored(talk, 3, View(), layout=layout)
     assert found["arms"][0] >= 0.94 and found["body"][0] >= 0.94 and found["head"][0] >= 0.8
 
 
+@pytest.mark.nightly
 def test_twice_the_jitter_is_borne(talk: Talk) -> None:
     found = scored(talk, 3, View(jitter=0.012))
     assert min(share for share, _ in found.values()) >= 0.88
@@ -380,6 +386,7 @@ def test_a_camera_held_askew_is_got_used_to(talk: Talk) -> None:
         assert found["body"][0] >= 0.75 and found["head"][0] >= 0.9, roll
 
 
+@pytest.mark.nightly
 def test_at_a_desk_arms_and_head_are_mimicked_without_hips_and_legs(talk: Talk) -> None:
     project, plan = talk
     names = LAYOUTS["mediapipe"]

@@ -50,6 +50,7 @@ def test_what_is_seen_is_asked_for_when_it_is_seen(somebody: Project) -> None:
     assert found.performance.length == pytest.approx(8.95)
 
 
+@pytest.mark.nightly
 def test_the_performance_goes_through_the_stances_of_the_recording(
     sample: Project, talk: KeypointTrack
 ) -> None:
@@ -67,6 +68,7 @@ def test_the_performance_goes_through_the_stances_of_the_recording(
         assert good / total > 0.9, layer
 
 
+@pytest.mark.nightly
 def test_the_models_gesture_on_but_leave_the_stances_alone(sample: Project, talk: KeypointTrack) -> None:
     found = mimic_performance(sample, talk, mirror=False)
     plan = plan_performance(sample, found.performance.asks, found.performance.length)
@@ -76,6 +78,7 @@ def test_the_models_gesture_on_but_leave_the_stances_alone(sample: Project, talk
     assert [c for c in plan.layers["arms"].cues if c.meta.startswith("auto/")]
 
 
+@pytest.mark.nightly
 def test_kept_and_placed_it_performs_the_same(sample: Project, talk: KeypointTrack) -> None:
     found = mimic_performance(sample, talk)
     project, ident = add_performance(sample, place_requests(sample, found.performance))
@@ -89,6 +92,7 @@ def test_kept_and_placed_it_performs_the_same(sample: Project, talk: KeypointTra
         ]
 
 
+@pytest.mark.nightly
 def test_other_requests_are_mixed_in_and_met(sample: Project, talk: KeypointTrack) -> None:
     asks = (a.Gesture(id="g", tags=("positive",), at=2.0, priority=2), a.Nod(at=10.0))
     found = mimic_performance(sample, talk, mirror=False, into=a.Performance(name="mixed", asks=asks))
@@ -97,6 +101,7 @@ def test_other_requests_are_mixed_in_and_met(sample: Project, talk: KeypointTrac
     assert found.performance.asks[:2] == asks
 
 
+@pytest.mark.nightly
 def test_what_leads_the_character_away_is_taken_back_by_what_is_seen(
     sample: Project, talk: KeypointTrack
 ) -> None:
@@ -142,6 +147,7 @@ def test_with_no_models_only_the_person_moves_the_character(somebody: Project) -
     assert [c.action.kind for c in plan.layers["arms"].cues] == ["transition"]
 
 
+@pytest.mark.nightly
 def test_a_performance_is_mixed_into_with_its_seed_stances_and_what_was_told_on_the_way(
     sample: Project, talk: KeypointTrack
 ) -> None:

@@ -103,6 +103,7 @@ def test_heads_that_look_five_ways(shared_data: Path, who: str) -> None:
         assert seen(project, "head", 2) == {name: name for name in HEADS}
 
 
+@pytest.mark.nightly
 def test_arms_of_a_rogue_with_short_limbs(shared_data: Path) -> None:
     project = project_of(shared_data / "kaykit-rogue" / "Rogue.glb", ARMS, "arms")
     for turn in (0.0, 0.5):

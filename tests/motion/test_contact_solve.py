@@ -139,6 +139,7 @@ def test_the_guard_is_smooth() -> None:
     assert steps.max() < 5 * 0.55 * 0.001
 
 
+@pytest.mark.nightly
 def test_an_arm_that_goes_through_the_body_does_not_jump_out_on_the_other_side() -> None:
     one = rig(TRUNK, *forearms(), guard=True)
     for straight in np.linspace(-0.3, 0.3, 7):

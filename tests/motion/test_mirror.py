@@ -103,6 +103,7 @@ def test_a_mirrored_pose_is_the_mirror_image(toy: Any) -> None:
     np.testing.assert_allclose(after, before[:, pairs] * MIRROR, atol=1e-5)
 
 
+@pytest.mark.nightly
 @given(st.integers(0, 2**31), st.integers(1, 4))
 def test_a_clip_mirrored_twice_is_itself_whatever_the_axes_of_its_bones(
     toy: Any, seed: int, frames: int
@@ -113,6 +114,7 @@ def test_a_clip_mirrored_twice_is_itself_whatever_the_axes_of_its_bones(
     assert degrees < 1e-4 and metres < 1e-6
 
 
+@pytest.mark.nightly
 @given(st.integers(0, 2**31))
 def test_the_mirror_image_does_not_depend_on_the_axes_of_the_bones(toy: Any, seed: int) -> None:
     skeleton = twisted(toy.skeleton, seed)

@@ -34,6 +34,7 @@ def both(clip: Clip, target: Any) -> list[Clip]:
     return [retarget(clip, target, replace(joint_map, contacts=on)) for on in (False, True)]
 
 
+@pytest.mark.nightly
 @given(st.floats(0.9, 1.3), st.floats(0.8, 1.4), st.floats(0.8, 1.2))
 @hypothesis_settings(max_examples=8, deadline=None)
 def test_hands_meet_their_own_body_on_figures_built_otherwise(

@@ -227,6 +227,7 @@ def test_a_target_whose_rest_pose_does_not_stand_needs_a_pose_that_does(toy: Any
 # --- what comes out
 
 
+@pytest.mark.nightly
 def test_onto_itself_a_clip_stays_what_it_is(sample: Any) -> None:
     for entry in list(sample.clips.values())[::12]:
         out = retarget(entry.motion, sample.skeleton, propose_joint_map(sample.skeleton, sample.skeleton))
@@ -234,6 +235,7 @@ def test_onto_itself_a_clip_stays_what_it_is(sample: Any) -> None:
         np.testing.assert_allclose(places(out), places(entry.motion), atol=1e-4)
 
 
+@pytest.mark.nightly
 @given(st.integers(0, 2**31), st.floats(0.2, 5), st.floats(0, 1.2), st.integers(0, 3))
 @example(642, 1.0, 0.0, 0)  # a leg that is bent by half a degree, and not forwards
 @example(2400, 1.0, 0.0, 0)
@@ -249,6 +251,7 @@ def test_size_rest_pose_bone_axes_and_facing_make_no_difference_to_the_motion(
     assert np.abs(places(out) - wanted).max() < 2e-3 * scale
 
 
+@pytest.mark.nightly
 @given(st.integers(0, 2**31), st.floats(0.5, 2), st.floats(0.6, 1.5), st.floats(0, 1.2))
 @hypothesis_settings(max_examples=40)
 def test_there_and_back_a_clip_is_itself_within_two_degrees(
@@ -261,6 +264,7 @@ def test_there_and_back_a_clip_is_itself_within_two_degrees(
     assert np.degrees(rotation.angle_between(clip.rotations, back.rotations).mean()) < 2
 
 
+@pytest.mark.nightly
 @given(st.integers(0, 2**31), st.floats(0.5, 2), st.floats(0, 1.2), st.floats(-0.6, 0.6), st.floats(0.5, 2))
 @hypothesis_settings(max_examples=40, deadline=None)
 def test_feet_turned_out_otherwise_and_hips_of_another_width_come_back_in_every_joint_and_frame(
@@ -278,6 +282,7 @@ def test_feet_turned_out_otherwise_and_hips_of_another_width_come_back_in_every_
         assert max(float(angle[fine[role]].max(initial=0)) for role, angle in degrees.items()) < 2
 
 
+@pytest.mark.nightly
 @given(st.integers(0, 2**31), st.floats(0.5, 2), st.floats(0.6, 1.5))
 @hypothesis_settings(max_examples=40)
 def test_wrists_and_ankles_keep_their_height_and_elbows_their_side(

@@ -127,6 +127,7 @@ def blended(project: Project, plan: Plan) -> float:
     return float(ContinuityLaw(project).blended(plan, times, shown).breaks.max())
 
 
+@pytest.mark.nightly
 def test_a_blend_that_throws_a_hand_breaks_the_law_and_a_fast_clip_does_not(sample: Project) -> None:
     plan = make_plan(sample, 40.0, seed=SEED)
     assert blended(sample, plan) < 1

@@ -72,6 +72,7 @@ def lanes(performances: list[Performance]) -> list[tuple[Layer, tuple[Cue, ...],
     return [(layer, p.plan.layers[layer].cues, p) for p in performances for layer in LAYERS]
 
 
+@pytest.mark.nightly
 def test_every_layer_has_something_to_do(performances: list[Performance]) -> None:
     least = {"body": 40, "arms": 100, "head": 80}
     assert all(len(cues) >= least[layer] for layer, cues, _ in lanes(performances))
@@ -229,6 +230,7 @@ def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(
     )
 
 
+@pytest.mark.nightly
 def test_composed_no_joint_is_faster_than_the_clips_of_all_layers_together(
     performances: list[Performance], sample: Project
 ) -> None:

@@ -250,6 +250,7 @@ def test_any_plan_is_sound(rows: list[Any], idle: bool, seed: int) -> None:
     assert_sound(make_plan(PROJECT, 60, build(rows), seed, idle=idle), PROJECT)
 
 
+@pytest.mark.nightly
 @given(request_rows, st.lists(st.floats(0.1, 45), max_size=4), st.integers(0, 3), st.booleans())
 @settings(max_examples=100, deadline=None)
 def test_extending_with_nothing_new_is_planning_at_once(
@@ -278,6 +279,7 @@ def test_a_performance_planned_piece_by_piece_is_the_one_planned_at_once(
     assert played(plan)["arms"][0] == played(whole)["arms"][0]
 
 
+@pytest.mark.nightly
 @given(request_rows, request_rows, st.floats(0.1, 40), st.integers(0, 3))
 @settings(max_examples=60, deadline=None)
 def test_what_started_before_now_stays_exactly_as_it_was(

@@ -152,6 +152,7 @@ def test_progress_is_told_and_a_cancelled_rehearsal_ends(sound: Project) -> None
     assert rehearse(changed(sound, lifted(1.0)), SECONDS, cancelled=lambda: True) == []
 
 
+@pytest.mark.nightly
 def test_what_is_added_to_clips_is_reported_where_it_breaks_the_law_of_continuity(
     sound: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:

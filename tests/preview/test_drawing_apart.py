@@ -49,6 +49,7 @@ def children(monkeypatch):
     return made
 
 
+@pytest.mark.nightly
 def test_pictures_are_the_same_and_in_order_wherever_they_are_drawn(offscreen, mannequin, monkeypatch):
     """As many as it takes until others have drawn some."""
     scenes = list(waving(SkinnedFigure(mannequin)))
@@ -66,6 +67,7 @@ def test_pictures_are_the_same_and_in_order_wherever_they_are_drawn(offscreen, m
     assert any(not np.array_equal(here[0], other) for other in here)
 
 
+@pytest.mark.nightly
 def test_all_come_in_one_array_for_who_asks_so(offscreen):
     into = np.zeros((SIZE[1], SIZE[0], 4), np.uint8)
     figure = StickFigure(mannequin_skeleton())
@@ -77,6 +79,7 @@ def test_all_come_in_one_array_for_who_asks_so(offscreen):
     assert sums == expected
 
 
+@pytest.mark.nightly
 def test_processes_that_end_leave_no_hole(offscreen, children):
     scenes = list(waving(StickFigure(mannequin_skeleton())))
     here = [offscreen.render(scene, camera, DARK, SIZE).copy() for scene, camera in scenes]
@@ -93,6 +96,7 @@ def test_processes_that_end_leave_no_hole(offscreen, children):
     assert killed
 
 
+@pytest.mark.nightly
 def test_who_comes_in_later_is_drawn_as_well(offscreen):
     figure, other = StickFigure(mannequin_skeleton()), StickFigure(chain("a", "b", "c"))
     scenes = [*waving(figure, 40), *waving(other, 40)]
@@ -102,6 +106,7 @@ def test_who_comes_in_later_is_drawn_as_well(offscreen):
         np.testing.assert_array_equal(one, two)
 
 
+@pytest.mark.nightly
 def test_who_stops_early_leaves_no_process(offscreen, children):
     figure = StickFigure(chain("a", "b", "c"))
     pictures = draw_scenes(waving(figure, 500), 500, SIZE, DARK, processes=1)
@@ -115,6 +120,7 @@ def test_no_scenes_are_no_pictures(offscreen):
     assert list(draw_scenes(iter(()), 0, SIZE, DARK, processes=1)) == []
 
 
+@pytest.mark.nightly
 def test_of_many_pictures_figures_have_levels_of_detail_and_of_few_they_have_none(mannequin):
     for count, made in ((WORTH_LEVELS - 1, False), (WORTH_LEVELS, True)):
         figure = SkinnedFigure(mannequin)

@@ -252,6 +252,7 @@ def test_what_is_exported_of_a_mesh_on_another_skeleton_is_what_is_drawn() -> No
     assert np.linalg.norm(skinned(*drawn, *posed) - skinned(*drawn, *rest), axis=1).max() > 0.1
 
 
+@pytest.mark.nightly
 def test_a_bound_mesh_names_no_joint_twice_for_a_vertex() -> None:
     body = bind_character(read_character(MANNEQUIN), stick_skeleton())
     for joints, weights in zip(body.joints, body.weights, strict=True):

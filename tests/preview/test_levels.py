@@ -43,6 +43,7 @@ def test_levels_are_made_once_and_read_from_then_on(folder, monkeypatch):
     assert same(levels_of(a_ball(), 1.0), first)
 
 
+@pytest.mark.nightly
 def test_another_mesh_or_height_is_another_matter(folder):
     levels_of(a_ball(), 1.0)
     levels_of(a_ball(), 2.0)
@@ -51,6 +52,7 @@ def test_another_mesh_or_height_is_another_matter(folder):
     assert len(list(folder.glob("*/*"))) == 3
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("content", [b"", b"no archive", b"PK\x03\x04 cut"])
 def test_what_is_broken_is_made_again(folder, content):
     first = levels_of(a_ball(), 1.0)
@@ -60,6 +62,7 @@ def test_what_is_broken_is_made_again(folder, content):
     assert kept.read_bytes() != content
 
 
+@pytest.mark.nightly
 def test_what_points_beyond_the_mesh_is_made_again(folder):
     first = levels_of(a_ball(), 1.0)
     (kept,) = folder.glob("*/*")

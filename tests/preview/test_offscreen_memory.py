@@ -15,6 +15,7 @@ pytestmark = pytest.mark.gl
 STATM = Path("/proc/self/statm")
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not STATM.is_file(), reason="this system does not tell what a process holds")
 def test_what_was_drawn_in_another_size_is_given_back():
     def held() -> float:

@@ -310,6 +310,7 @@ def test_a_broken_texture_is_drawn_white(offscreen):
     assert offscreen.render(scene, camera, DARK, SIZE)[..., :3].max() > 120
 
 
+@pytest.mark.nightly
 def test_meshes_no_longer_drawn_are_let_go(offscreen):
     for _ in range(KEEP_MESHES + 3):
         scene = Scene((resting(StickFigure(mannequin_skeleton())),))

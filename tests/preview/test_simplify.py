@@ -118,6 +118,7 @@ def test_it_ends_once_it_is_cancelled():
     assert list(simplify(mesh, [1e-3, 1e-2], lambda: True)) == []
 
 
+@pytest.mark.nightly
 def test_the_sample_character_is_less_with_each_level_and_as_wide_and_tall(mannequin):
     mesh = SkinnedFigure(mannequin).mesh
     counts = [len(mesh.triangles)]

@@ -142,6 +142,7 @@ def test_the_fakes_are_run_by_what_looks_for_them(hostile: tuple[Path, Path, dic
     assert {"module-json", "program-node"} <= set(_was_run(ran))
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "words",
     [
@@ -169,6 +170,7 @@ def test_commands_run_nothing_of_it(
     assert not _was_run(ran)
 
 
+@pytest.mark.nightly
 def test_an_export_with_the_bundler_at_hand_runs_that_one(
     hostile: tuple[Path, Path, dict[str, str]], few: Path
 ) -> None:
@@ -184,6 +186,7 @@ def test_an_export_with_the_bundler_at_hand_runs_that_one(
     assert len(content) > 500_000 and b"hostile" not in content
 
 
+@pytest.mark.nightly
 def test_helpers_run_nothing_of_it(hostile: tuple[Path, Path, dict[str, str]]) -> None:
     folder, ran, environ = hostile
     code = f"import sys; sys.path.insert(0, {str(ROOT)!r})\n" + HELPERS

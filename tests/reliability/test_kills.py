@@ -14,6 +14,7 @@ from tests.processes import started
 HERE = Path(__file__).resolve().parent
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no kill -9 on Windows")
 def test_nothing_that_was_finished_is_lost_by_kills_that_follow_each_other() -> None:
     command = (sys.executable, HERE / "kills.py", "--count", 12, "--seed", 3)

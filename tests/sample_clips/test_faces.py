@@ -56,6 +56,7 @@ def test_shut_lids_meet_along_one_line_and_stay_outside_the_eye(lids: openings.P
     assert np.linalg.norm(rim, axis=1).min() > EYE_RADIUS - 0.0006
 
 
+@pytest.mark.nightly
 def test_lips_are_closed_at_rest_and_part_when_the_jaw_opens() -> None:
     patch = openings.mouth(face_form())
     contact = patch.positions[2]

@@ -94,6 +94,7 @@ def test_the_closing_angles_bring_the_lids_edges_together():
         assert np.degrees(np.arcsin(closed[1])) == pytest.approx(-13.5, abs=1.0), name
 
 
+@pytest.mark.nightly
 def test_a_sculpted_ball_is_closed_even_and_on_its_surface():
     field = sculpt.ellipsoid((0, 0, 0), (0.1, 0.1, 0.1))
     positions, triangles = sculpt.polygonise(field, (-0.15,) * 3, (0.15,) * 3, 0.008)

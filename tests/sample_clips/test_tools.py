@@ -130,6 +130,7 @@ def test_a_pinned_hand_stays_where_it_was_while_the_torso_bends() -> None:
     assert np.ptp(held[:, at("LeftHand")], axis=0).max() < 1e-6
 
 
+@pytest.mark.nightly
 def test_a_clip_is_drawn_before_and_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for folder in ("old", "new"):
         (tmp_path / folder).mkdir()

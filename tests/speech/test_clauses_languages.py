@@ -151,6 +151,7 @@ def read(folder: Path, text: str, voice: str, speaking: Speaking | None = None) 
     return read_conversation([folder / "talk.wav"], [folder / "talk.json"], folder, speaking=speaking), of
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("code", VOICES)
 def test_a_spoken_conversation_is_read_in_its_language(code: str, tmp_path: Path) -> None:
     got, of = read(tmp_path, TALKS[code], VOICES[code])
@@ -169,6 +170,7 @@ def test_a_spoken_conversation_is_read_in_its_language(code: str, tmp_path: Path
     assert len(told) == (code != "en") and len(got.notes) == len(told)
 
 
+@pytest.mark.nightly
 def test_a_spoken_language_that_nobody_knows_is_told_by_sound(tmp_path: Path) -> None:
     got, of = read(tmp_path, OTHERS["Swedish"], "sv")
     assert any("no lists for the language" in n for n in got.notes)

@@ -107,6 +107,7 @@ def test_the_choice_is_worth_as_much_as_the_best_of_all(
     assert worth(found) == pytest.approx(max(best, 0.0), abs=1e-9)
 
 
+@pytest.mark.nightly
 def test_as_many_clauses_are_performed_as_are_asked_for_within_five_points(sample: Project) -> None:
     """Clauses as near to each other as people say them; each gesture's stroke on a peak."""
     rng = np.random.default_rng(5)

@@ -92,6 +92,7 @@ def shares(sample: Project) -> dict[str, GazeShare]:
     return {str(share.doing): share for share in join_shares(found)}
 
 
+@pytest.mark.nightly
 def test_of_looks_at_faces_as_many_as_were_observed_are_at_the_speaker_and_the_one_addressed(
     shares: dict[str, GazeShare],
 ) -> None:
@@ -126,6 +127,7 @@ def test_two_are_not_asked_where_else_they_look(sample: Project) -> None:
     assert gaze_shares(group(2, said(0, 1, 2)), 0, sample, made.parts[0].plan) == ()
 
 
+@pytest.mark.nightly
 def test_eyes_are_on_the_eyes_of_whom_they_look_at(sample: Project) -> None:
     """In the poses as they are shown, where each stands."""
     talk = made_up(3, 2, 40.0)

@@ -114,6 +114,7 @@ WORDS = [(one.code, kind, phrase) for one in PACKS for kind in ("response", "hes
     one.responses if kind == "response" else one.hesitations)]  # fmt: skip
 
 
+@pytest.mark.nightly
 @settings(max_examples=400, deadline=None)
 @given(
     st.sampled_from(WORDS),

@@ -240,6 +240,7 @@ def test_a_sound_of_one_sample_is_survived(tmp_path: Path) -> None:
     assert read_line_voice(tmp_path / "tick.wav").duration < 0.001
 
 
+@pytest.mark.nightly
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_a_damaged_sound_is_read_or_refused(tmp_path: Path, data: st.DataObject) -> None:

@@ -126,6 +126,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
         read_textgrid(tmp_path / "none.TextGrid")
 
 
+@pytest.mark.nightly
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_a_damaged_file_is_read_or_refused(tmp_path: Path, data: st.DataObject) -> None:

@@ -60,6 +60,7 @@ def test_a_hand_that_stays_has_one_key_and_one_that_rubs_has_many() -> None:
     assert len(of("hands_clasped__rub_hands_bt_01")[1][0].keys) > 5
 
 
+@pytest.mark.nightly
 def test_of_two_hands_on_each_other_one_carries_the_other() -> None:
     for action in sample().actions():
         spans = find_contacts(sample(), action) if action.layer == "arms" else ()
@@ -80,6 +81,7 @@ def test_spans_lie_in_their_action_in_order_with_keys_in_order() -> None:
             assert all(abs(np.linalg.norm(k.turn) - 1) < 1e-5 for k in span.keys)
 
 
+@pytest.mark.nightly
 def test_the_sample_has_the_contacts_that_are_found_in_it() -> None:
     ids = [a.id for a in sample().graphs["arms"].actions.values()]
     again = with_contacts(sample(), ids)

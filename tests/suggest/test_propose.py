@@ -56,6 +56,7 @@ def test_an_empty_project_has_no_proposals() -> None:
     assert accept(Project(), propose(Project())).placed == ()
 
 
+@pytest.mark.nightly
 def test_with_names_and_motion_the_practice_project_labels_itself(practice: Project, truth: Any) -> None:
     found = propose(practice)
     assert right(found, truth, "kind") >= 0.98 and right(found, truth, "layer") >= 0.98
@@ -70,6 +71,7 @@ def test_with_names_and_motion_the_practice_project_labels_itself(practice: Proj
     assert sum(1 for _ in taken.project.actions()) == len(practice.clips)
 
 
+@pytest.mark.nightly
 def test_layers_begin_in_their_most_used_stance_and_the_base_pose_is_the_arms(practice: Project) -> None:
     bare = replace(practice, base=type(practice.base)())
     after = accept(bare, propose(bare)).project
@@ -80,6 +82,7 @@ def test_layers_begin_in_their_most_used_stance_and_the_base_pose_is_the_arms(pr
     assert again.base == practice.base
 
 
+@pytest.mark.nightly
 def test_names_alone_do_and_so_does_motion_alone(practice: Project, truth: Any) -> None:
     assert right(propose(practice, sources=("name",)), truth, "kind") >= 0.98
     found = propose(practice, sources=("motion",))
@@ -92,6 +95,7 @@ def test_names_alone_do_and_so_does_motion_alone(practice: Project, truth: Any) 
     assert all(len(stances) == 1 for stances in together.values())
 
 
+@pytest.mark.nightly
 def test_what_is_placed_is_not_proposed_again_and_teaches_the_rest(practice: Project, truth: Any) -> None:
     taken = accept(practice, propose(practice), clips=list(practice.clips)[:100])
     rest = propose(taken.project, sources=("learned", "motion"))
@@ -99,6 +103,7 @@ def test_what_is_placed_is_not_proposed_again_and_teaches_the_rest(practice: Pro
     assert any("like '" in p.kind.reason for p in rest.proposals.values())
 
 
+@pytest.mark.nightly
 def test_a_name_that_lies_is_told_from_the_motion(practice: Project, truth: Any) -> None:
     transition = next(i for i, (a, _) in truth.items() if a.kind == "transition" and a.layer == "arms")
     loop = next(i for i, (a, _) in truth.items() if a.kind == "stance" and a.layer == "arms")
@@ -110,6 +115,7 @@ def test_a_name_that_lies_is_told_from_the_motion(practice: Project, truth: Any)
     assert propose(practice).proposals[loop].confidence > p.confidence
 
 
+@pytest.mark.nightly
 def test_only_what_is_sure_enough_is_taken_over_and_the_rest_says_why(practice: Project) -> None:
     found = propose(practice, sources=("motion",))
     sure = sorted(p.confidence for p in found.proposals.values())
@@ -165,6 +171,7 @@ def test_without_motion_nothing_shows_a_stance_and_the_reason_is_told(practice: 
     assert taken.project.graphs == bare.graphs and set(LAYERS) == set(taken.project.graphs)
 
 
+@pytest.mark.nightly
 def test_transitions_that_are_accepted_unseen_end_in_the_right_stance(practice: Project, truth: Any) -> None:
     taken = accept(practice, propose(practice))
     count = 0
@@ -197,6 +204,7 @@ def test_so_they_do_on_sets_made_by_others(name: str, count: int) -> None:
     assert count == 0 and all(len(names) == 1 for names in stances.values())
 
 
+@pytest.mark.nightly
 def test_every_part_of_a_proposal_has_a_confidence_and_a_reason(practice: Project, truth: Any) -> None:
     found = propose(practice)
     usual = {"start", "end", "blend_in", "blend_out", "earliest_exit", "loop", "mask", "likelihood"}
@@ -206,6 +214,7 @@ def test_every_part_of_a_proposal_has_a_confidence_and_a_reason(practice: Projec
         assert p.timing.get("stroke") == (p.details["stroke"].value if "stroke" in p.details else None)
 
 
+@pytest.mark.nightly
 def test_numbered_variants_share_the_weight_of_one(practice: Project, truth: Any) -> None:
     found = propose(practice)
     mine = [
@@ -237,6 +246,7 @@ def test_a_clip_that_nothing_says_the_stance_of_goes_where_most_are(practice: Pr
     assert found.proposals["c1"].stance.confidence > 0.5  # type: ignore[union-attr]
 
 
+@pytest.mark.nightly
 def test_walks_and_fights_are_left_aside_with_a_word() -> None:
     folder = ROOT.parent / "shared" / "data" / "kaykit-rogue"
     if not folder.is_dir():

@@ -202,6 +202,7 @@ def test_a_mirrored_clip_has_mirrored_traits(swing: float, end: float, seconds: 
         assert np.allclose(other.layers["arms"].last[m], one.layers["arms"].last[n] * [-1, 1, 1], atol=1e-4)
 
 
+@pytest.mark.nightly
 @given(st.floats(0.01, 100))
 def test_size_does_not_matter(factor: float) -> None:
     from tests.conftest import Toy
@@ -212,6 +213,7 @@ def test_size_does_not_matter(factor: float) -> None:
     assert big.height == pytest.approx(one.height * factor, rel=1e-4)
 
 
+@pytest.mark.nightly
 @given(st.floats(-3.1, 3.1), st.floats(-3, 3))
 def test_neither_place_nor_facing_matter(angle: float, x: float) -> None:
     from tests.conftest import Toy
@@ -308,6 +310,7 @@ def test_clips_of_the_zoo_have_finite_traits(zoo_files: dict[str, Path]) -> None
             assert np.isfinite(numbers(found)).all(), path.name
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["mesh2motion-cmu", "robot-expressive", "fbx-pab"])
 def test_real_clips_have_finite_traits(shared_data: Path, name: str) -> None:
     from metagraph.errors import FileError

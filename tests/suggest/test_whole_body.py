@@ -60,11 +60,13 @@ def test_a_skeleton_that_is_no_figure_was_not_recorded_whole(frames: int) -> Non
         assert np.isfinite(whole.first).all() and np.isfinite([whole.extent, whole.loop_error]).all()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", WHOLE)
 def test_takes_of_the_whole_body_are_noticed_by_names_or_by_motion(name: str) -> None:
     assert propose(named(name).project).whole
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", LAYERED)
 def test_clips_of_single_layers_are_not(name: str) -> None:
     project = named(name).project
@@ -76,6 +78,7 @@ def talker() -> dict[str, Traits]:
     return traits_of(named("standing talker").project)
 
 
+@pytest.mark.nightly
 @settings(max_examples=25)  # what one order in eight would change is found 96 times of 100
 @given(st.randoms())
 def test_the_order_of_clips_does_not_matter(random: Any) -> None:
@@ -94,6 +97,7 @@ def _known(name: str) -> dict[str, Traits]:
     return _TRAITS[name]
 
 
+@pytest.mark.nightly
 def test_names_alone_tell_it_where_one_stance_stands_before_what_several_layers_do(
     talker: dict[str, Traits],
 ) -> None:
@@ -137,6 +141,7 @@ def test_traits_without_any_layer_stay_as_they_are(talker: dict[str, Traits]) ->
     assert with_whole_body(bare) is bare
 
 
+@pytest.mark.nightly
 def test_a_project_carries_the_whole_body_once_such_takes_are_accepted() -> None:
     made = named("standing talker").project
     assert not is_whole_body_carried(Project()) and not is_whole_body_carried(made)

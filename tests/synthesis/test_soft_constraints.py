@@ -98,6 +98,7 @@ def test_what_is_said_louder_is_gestured_faster_where_it_was_so_in_the_takes(
     assert told["fast"][1] > 0.5 > told["none"][1] + 0.15, told
 
 
+@pytest.mark.nightly
 def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
     sound = find_heard_at(studio.states, studio.said)
     _, _, new = recorded(103, 20, 0.0)
@@ -146,6 +147,7 @@ def test_what_cannot_be_compared_is_told(studio: Studio) -> None:
             SoftWish(**wrong)
 
 
+@pytest.mark.nightly
 def test_an_evaluation_tells_what_became_of_a_wish() -> None:
     few = Studio(3, 24)
     wish = SoftWish(0.25, 0.25, WORDS, retime=0.15)

@@ -32,6 +32,7 @@ def run(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[int, Any, s
     return code, json.loads(told.out), told.err
 
 
+@pytest.mark.nightly
 def test_without_anything_wanted_it_only_tells(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = project.read_bytes()
     code, data, notes = run(capsys, "annotate", project, EAF)
@@ -47,6 +48,7 @@ def test_without_anything_wanted_it_only_tells(project: Path, capsys: pytest.Cap
     assert "nothing was saved" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_models_are_learned_and_a_performance_kept(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, data, _ = run(capsys, "annotate", project, EAF, "--learn", "--states", "--perform", "casual talk")
     assert (code, data["learned"], data["saved"]) == (0, ["body", "arms", "head"], True)

@@ -35,6 +35,7 @@ def test_senseless_lengths_are_refused(
     assert "--play" in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 def test_the_sample_plays_without_an_error(few: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A tenth of its clips, or all of them where asked to be thorough: each is played once."""
     assert main(["check", str(SAMPLE if THOROUGH else few), "--play", "10", "--json"]) == 0

@@ -37,6 +37,7 @@ def test_a_target_is_written_and_its_losses_are_told(few, tmp_path, capsys):
     assert data["losses"] and f"loses: {data['losses'][0]}" in shown.err
 
 
+@pytest.mark.nightly
 def test_vectors_are_written_beside_the_graph_they_are_of(few, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(vectors, "list_cases", lambda project: list(list_cases(project))[::8])
     assert main(["export", str(few), "-o", str(tmp_path), "--vectors", "--no-mesh"]) == 0
@@ -59,6 +60,7 @@ def test_what_is_missing_or_misspelt_is_told(arguments, code, words, capsys):
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
 def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(few, tmp_path):
     project = tmp_path / "sample.metagraph.yaml"
@@ -100,6 +102,7 @@ def nothing_fetched(tmp_path: Path) -> dict[str, str]:
     return {**os.environ, "XDG_CACHE_HOME": str(blocked)}
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
 def test_the_web_page_is_served_until_it_is_stopped(few, tmp_path, nothing_fetched):
     import urllib.request
@@ -127,6 +130,7 @@ def test_the_web_page_is_served_until_it_is_stopped(few, tmp_path, nothing_fetch
     assert running.returncode == 0
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
 @pytest.mark.parametrize(
     ("how", "number"),

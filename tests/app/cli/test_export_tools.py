@@ -12,6 +12,7 @@ from metagraph.formats.store import read_project
 from metagraph.graph.offered import tools
 
 
+@pytest.mark.nightly
 def test_tools_are_written_beside_the_export_and_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -102,6 +102,7 @@ def test_help_tells_the_guidance_in_use(capsys: pytest.CaptureFixture[str]) -> N
     assert f"default: {GUIDANCE:g})" in " ".join(capsys.readouterr().out.split())
 
 
+@pytest.mark.nightly
 def test_planted_takes_are_made_once(takes: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = run(capsys, "planted", "-o", takes, "--count", 2, "-s", 20)
     assert "2 conversations, 4 takes" in text and "(0 new, 2 made earlier)" in text
@@ -109,6 +110,7 @@ def test_planted_takes_are_made_once(takes: Path, capsys: pytest.CaptureFixture[
     assert "0 or more" in run(capsys, "planted", "-o", takes, "--moves", -1, code=1)
 
 
+@pytest.mark.nightly
 def test_a_model_is_told_of_in_words(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = run(capsys, "info", model)
     assert "plain.mgmodel: matching, " in text and "13 joints of 61" in text
@@ -197,6 +199,7 @@ def test_a_model_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.Captur
 # --- sample, cut
 
 
+@pytest.mark.nightly
 def test_motion_is_sampled_and_the_same_seed_gives_the_same(
     model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -211,6 +214,7 @@ def test_motion_is_sampled_and_the_same_seed_gives_the_same(
     assert clip.frames == data["frames"] and data["activity"]["speaking"] > 0.2
 
 
+@pytest.mark.nightly
 def test_a_role_can_be_set_by_hand(
     model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -223,6 +227,7 @@ def test_a_role_can_be_set_by_hand(
     assert (tmp_path / "speaking.bvh").read_bytes() != (tmp_path / "listening.bvh").read_bytes()
 
 
+@pytest.mark.nightly
 def test_sampling_goes_on_from_a_clip_of_the_same_skeleton(
     model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -245,6 +250,7 @@ def sound(path: Path, samples: np.ndarray, subtype: str = "PCM_16") -> Path:
     return path
 
 
+@pytest.mark.nightly
 def test_sounds_that_nobody_can_move_to_are_refused_in_words(
     model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -270,6 +276,7 @@ def _sampled(model: Path, speech: Path) -> Path:
     return out
 
 
+@pytest.mark.nightly
 def test_what_is_odd_about_a_sound_is_told_and_it_is_used(
     model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -288,6 +295,7 @@ def test_what_is_odd_about_a_sound_is_told_and_it_is_used(
         assert words in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 def test_two_files_are_a_side_each(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     one, two = (sound(tmp_path / f"{n}.wav", babble(4.0, n)[None]) for n in (1, 2))
     both = sound(tmp_path / "both.wav", np.stack([babble(4.0, 1), babble(4.0, 2)]))
@@ -297,6 +305,7 @@ def test_two_files_are_a_side_each(model: Path, tmp_path: Path, capsys: pytest.C
         assert (tmp_path / "a.bvh").read_bytes() == (tmp_path / "b.bvh").read_bytes()
 
 
+@pytest.mark.nightly
 def test_pieces_are_cut_and_know_model_and_seed(
     model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -363,6 +372,7 @@ def test_a_floor_of_ones_own_stands_beside(
     assert "no other motion" in run(capsys, *words[:-1], "--floor", tmp_path / "empty", code=1)
 
 
+@pytest.mark.nightly
 def test_a_model_is_not_judged_on_what_it_has_learned(
     model: Path, takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -388,6 +398,7 @@ def _take(folder: Path, name: str, clip: Clip, samples: np.ndarray) -> None:
     sound(folder / f"{name}.wav", samples)
 
 
+@pytest.mark.nightly
 def test_each_bad_take_fails_alone_and_in_words(
     model: Path, takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -474,6 +485,7 @@ def test_a_model_is_trained_judged_and_gone_on_with(
     assert rows[-1]["name"] == "m" and read_model(out).card.steps == more["steps"]
 
 
+@pytest.mark.nightly
 def test_stopping_a_training_keeps_what_was_learned(
     takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -50,6 +50,7 @@ def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.Ca
     assert "name begins with" in page and "hands at sides" in page
 
 
+@pytest.mark.nightly
 def test_what_is_not_sure_enough_is_left_with_its_reason(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -80,6 +81,7 @@ def test_what_is_not_sure_enough_is_left_with_its_reason(
     assert "<img" not in Path(data["report"]).read_text()
 
 
+@pytest.mark.nightly
 def test_a_project_is_labelled_on_from_where_it_is(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -123,6 +125,7 @@ def test_a_stance_that_nothing_leads_to_is_told_as_check_tells_it(
     assert "cannot be reached" in shown.out and "exit code 3: " in shown.err
 
 
+@pytest.mark.nightly
 def test_such_a_stance_is_reached_by_blending_and_that_is_told(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -216,6 +219,7 @@ def test_what_was_taught_is_used_only_when_asked_for(
         assert {k for name, k in kinds(out).items() if "shrug" in name} == {kind}
 
 
+@pytest.mark.nightly
 def test_a_stance_that_no_clip_rests_in_is_held_and_told(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -233,6 +237,7 @@ def test_a_stance_that_no_clip_rests_in_is_held_and_told(
     )
 
 
+@pytest.mark.nightly
 def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     folder: Path, capsys: pytest.CaptureFixture[str], zoo_files: dict[str, Path]
 ) -> None:
@@ -266,6 +271,7 @@ def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     assert [x.contacts for x in project.joint_maps.values()] == [False]
 
 
+@pytest.mark.nightly
 def test_labelling_again_leaves_the_earlier_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["label", str(folder), "--json", "--no-pictures", "--play", "0"]
     assert main(command) == 0

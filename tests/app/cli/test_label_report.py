@@ -60,6 +60,7 @@ def labelled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder.with_name("talk.metagraph.yaml")
 
 
+@pytest.mark.nightly
 def test_the_page_filters_sorts_and_tells_of_each_stance(labelled: Path, tmp_path: Path) -> None:
     if CHROMIUM is None:
         pytest.skip("needs Chromium")
@@ -167,6 +168,7 @@ sys.exit(app.exec())
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 @pytest.mark.parametrize(

@@ -38,6 +38,7 @@ def lines(text: str) -> list[Any]:
     return [json.loads(line) for line in text.splitlines()]
 
 
+@pytest.mark.nightly
 def test_lines_in_are_answered_by_lines_out_until_the_end_of_input(few: Path) -> None:
     asked = '{"do":"nod","id":"n"}\nnonsense\n{"do":"gesture","tags":["beat"],"in":2}\n'
     done = subprocess.run(
@@ -59,6 +60,7 @@ def test_lines_in_are_answered_by_lines_out_until_the_end_of_input(few: Path) ->
     assert done.stderr == ""
 
 
+@pytest.mark.nightly
 def test_people_are_told_in_words_on_standard_error(few: Path) -> None:
     done = subprocess.run(
         command(few, "--port", "0", "--no-osc"),
@@ -72,6 +74,7 @@ def test_people_are_told_in_words_on_standard_error(few: Path) -> None:
     assert "ws://127.0.0.1:" in done.stderr and "OSC" not in done.stderr
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGTERM to catch")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_ends_it_cleanly(number: signal.Signals, few: Path) -> None:
@@ -85,6 +88,7 @@ def test_an_interrupt_ends_it_cleanly(number: signal.Signals, few: Path) -> None
         assert process.stdout.read() == "" and process.stderr.read() == ""
 
 
+@pytest.mark.nightly
 def test_what_was_asked_can_be_kept_and_performed_again(
     few: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -120,6 +124,7 @@ def test_what_is_not_safe_is_refused_in_words(
     assert error in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 def test_the_token_may_come_from_the_environment(few: Path) -> None:
     environ = {**os.environ, "METAGRAPH_TOKEN": "secret"}
     done = subprocess.run(

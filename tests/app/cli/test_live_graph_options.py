@@ -74,6 +74,7 @@ def test_options_that_do_not_go_together_are_said(
     assert told in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 def test_takes_of_another_skeleton_are_refused_or_brought_onto_the_characters(
     folder: Path, sample: Project, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -94,6 +95,7 @@ def test_takes_of_another_skeleton_are_refused_or_brought_onto_the_characters(
     assert graph.fits(sample) and "states and" in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
 def test_a_file_is_moved_to_kept_and_made_again(few: Path, folder: Path, tmp_path: Path) -> None:
     project = tmp_path / "few.metagraph.yaml"

@@ -166,6 +166,7 @@ def branch(folder: Path, name: str, project: Project) -> None:
     git(folder, "commit", "-qam", name)
 
 
+@pytest.mark.nightly
 def test_git_merges_two_branches_without_a_conflict(shared: Path) -> None:
     branch(shared, "mine", with_gesture(beginning(), "wave"))
     branch(shared, "theirs", with_gesture(beginning(), "point"))
@@ -174,6 +175,7 @@ def test_git_merges_two_branches_without_a_conflict(shared: Path) -> None:
     assert git(shared, "status", "--porcelain") == ""
 
 
+@pytest.mark.nightly
 def test_git_stops_at_a_conflict_and_the_project_can_be_opened(shared: Path) -> None:
     branch(shared, "mine", edits.rename_project(beginning(), "mine"))
     branch(shared, "theirs", edits.rename_project(beginning(), "theirs"))

@@ -59,6 +59,7 @@ def test_what_is_seen_is_listed_with_when_the_character_goes_there(
     assert 6.5 < row["at"] < 8.0 and row["at"] < row["goes"] < row["there"]
 
 
+@pytest.mark.nightly
 def test_it_mirrors_unless_told_not_to(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sides = [
         [row["name"] for row in run(capsys, project, DEEP, *words)[1]["seen"] if row["layer"] == "body"]
@@ -68,6 +69,7 @@ def test_it_mirrors_unless_told_not_to(project: Path, capsys: pytest.CaptureFixt
     assert sides[0] == swapped and "weight left" in sides[0]
 
 
+@pytest.mark.nightly
 def test_in_words_it_says_the_same(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mimic", str(project), str(DEEP)]) == 0
     text = capsys.readouterr().out
@@ -106,6 +108,7 @@ def test_the_requests_are_written_as_a_performance(
     assert {ask.__struct_config__.tag for ask in kept.asks} == {"stance", "look"}
 
 
+@pytest.mark.nightly
 def test_plain_motion_is_written(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     from metagraph.formats.bvh.file import read_bvh
 
@@ -114,6 +117,7 @@ def test_plain_motion_is_written(project: Path, tmp_path: Path, capsys: pytest.C
     assert read_bvh(out).duration == pytest.approx(21.9, abs=0.1)
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_the_persons_own_motion_becomes_a_take(
     project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -130,6 +134,7 @@ def test_the_persons_own_motion_becomes_a_take(
     assert np.abs(turns[0] - turns[1]).max() > 0.1
 
 
+@pytest.mark.nightly
 def test_flat_keypoints_make_no_take_and_it_says_what_would(
     project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -137,6 +142,7 @@ def test_flat_keypoints_make_no_take_and_it_says_what_would(
     assert "no depth" in capsys.readouterr().err and not (tmp_path / "x.bvh").exists()
 
 
+@pytest.mark.nightly
 def test_a_contact_sheet_is_drawn(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "sheet.png"
     assert run(capsys, project, DEEP, "-o", out, "--size", "96x64")[0] == 0

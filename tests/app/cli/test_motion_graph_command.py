@@ -46,6 +46,7 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> s
     return told.out if code == 0 else told.err
 
 
+@pytest.mark.nightly
 def test_a_graph_is_built_and_told(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     takes = str(folder / "takes")
     text = run(capsys, "build", takes)
@@ -82,6 +83,7 @@ def test_the_papers_table_of_k_grows(folder: Path, capsys: pytest.CaptureFixture
     assert run(capsys, "table", str(folder / "takes")).count("\n") == 4
 
 
+@pytest.mark.nightly
 def test_motion_is_made_for_a_takes_speech_and_for_new_speech(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -106,6 +108,7 @@ def test_motion_is_made_for_a_takes_speech_and_for_new_speech(
     )
 
 
+@pytest.mark.nightly
 def test_held_out_speech_is_counted(folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     given = [str(folder / "takes"), *said(folder), "--quick"]
     text = run(capsys, "evaluate", *given, "-o", str(tmp_path / "cases.csv"))
@@ -134,6 +137,7 @@ def test_an_evaluation_that_is_stopped_keeps_its_cases(
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.nightly
 def test_what_goes_with_what_is_counted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     rows = json.loads(run(capsys, "co-occurrence", str(folder / "takes"), *said(folder), "--json"))
     by = {r["hypothesis"]: r for r in rows}
@@ -146,6 +150,7 @@ def test_what_goes_with_what_is_counted(folder: Path, capsys: pytest.CaptureFixt
     assert "chance" in run(capsys, "co-occurrence", str(folder / "takes"), *said(folder))
 
 
+@pytest.mark.nightly
 def test_files_that_do_not_go_together_are_told(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -216,6 +221,7 @@ def test_a_graph_that_falls_apart_says_what_to_do(
     assert "level" in run(capsys, "build", str(tmp_path / "bend.bvh"), "--k", "2", "--level", "0.01", code=1)
 
 
+@pytest.mark.nightly
 def test_live_motion_is_evaluated_for_speech_that_is_heard_and_announced(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -256,6 +262,7 @@ def asked(folder: Path) -> list[str]:
     return [*takes, "--sounds", *(str(folder / f"take{n}.wav") for n in range(3))]
 
 
+@pytest.mark.nightly
 def test_loudness_rate_words_and_speed_are_asked_for_and_told(
     aloud_folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

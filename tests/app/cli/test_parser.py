@@ -246,6 +246,7 @@ def test_a_missing_clip_is_noted_and_checked(small: Path, capsys: pytest.Capture
     assert "clip 'wave'" in out
 
 
+@pytest.mark.nightly
 def test_plan_lists_actions_in_time_and_the_seed_changes_them(
     small: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -300,6 +301,7 @@ def test_export_of_a_project_with_errors_says_what_to_mend(
 # --- as a process
 
 
+@pytest.mark.nightly
 def test_a_whole_day_from_the_command_line_on_real_clips(
     shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -327,6 +329,7 @@ def test_a_whole_day_from_the_command_line_on_real_clips(
     assert "5 placed" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_pictures_a_video_and_motion_are_rendered(small: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, first in (("a.png", b"\x89PNG"), ("a.mp4", b""), ("a.glb", b"glTF"), ("a.bvh", b"HIERARCHY")):
@@ -380,6 +383,7 @@ def test_without_a_screen_the_same_job_runs_headless(tmp_path: Path, small: Path
     assert all(Path(p).stat().st_size > 1000 for p in results.values())
 
 
+@pytest.mark.nightly
 def test_errors_come_without_a_traceback(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     bad = tmp_path / f"bad{SUFFIX}"
     bad.write_bytes(b"\x00\xff")
@@ -398,6 +402,7 @@ def test_errors_come_without_a_traceback(tmp_path: Path, capsys: pytest.CaptureF
     assert "Traceback" not in made.stderr
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="pipes break otherwise on Windows")
 def test_a_reader_that_has_read_enough_is_no_error(few: Path) -> None:
     made = subprocess.run(
@@ -442,12 +447,14 @@ def test_commands_without_a_window_import_neither_qt_nor_anything_heavy(code: st
     assert not loaded(code.format(str(few))) & {"PySide6", "moderngl", *HEAVY}
 
 
+@pytest.mark.nightly
 def test_the_window_starts_without_anything_heavy() -> None:
     found = loaded("import app.shell.window")
     assert "PySide6" in found
     assert not found & set(HEAVY)
 
 
+@pytest.mark.nightly
 def test_sums_are_not_shared_among_threads_since_numpy_is_loaded_after_that_is_said():
     words = "import sys; from app.cli.parser import main; assert 'numpy' not in sys.modules; main(['check', '-h'])"
     code = (

@@ -34,6 +34,7 @@ def drawn(folder: Path, shade: int, seconds: float = 1.2, sound: float = 0.0) ->
     write_video(folder, frames, 10, sound=(tone, 44100) if sound else None)
 
 
+@pytest.mark.nightly
 def test_simulated_raters_are_reported_and_the_planted_preference_is_found(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -121,6 +122,7 @@ def test_a_plan_says_how_many_answers_and_people_are_needed(capsys: pytest.Captu
     assert "12 people: shown in" in capsys.readouterr().out
 
 
+@pytest.mark.nightly
 def test_videos_of_others_are_shown_with_one_size_length_and_loudness(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -230,6 +232,7 @@ def test_what_is_not_there_to_be_shown_is_named(
     assert error in capsys.readouterr().err and not (tmp_path / "out" / "key.json").exists()
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_plain_motion_is_drawn_on_the_default_body_or_on_its_character(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -245,6 +248,7 @@ def test_plain_motion_is_drawn_on_the_default_body_or_on_its_character(
     assert told(capsys)["alike"] == []
 
 
+@pytest.mark.nightly
 def test_serving_ends_when_it_is_told_to(tmp_path: Path) -> None:
     drawn(tmp_path / "a.mp4", 40)
     (tmp_path / "perceive.yaml").write_text(

@@ -25,6 +25,7 @@ def project():
     return project
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypatch):
     under = []

@@ -56,6 +56,7 @@ def test_a_report_and_its_data_are_written(capsys: pytest.CaptureFixture[str], t
     assert data["exhibits"][1]["numbers"]["no constraints"]["exact"] == pytest.approx(0.028, abs=5e-4)
 
 
+@pytest.mark.nightly
 def test_somebodys_own_takes_are_read_and_what_is_odd_is_told(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

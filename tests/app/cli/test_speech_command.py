@@ -65,6 +65,7 @@ def test_it_writes_what_can_be_read_back(
     ]
 
 
+@pytest.mark.nightly
 def test_it_keeps_a_conversation_in_a_project(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -95,6 +96,7 @@ def test_bad_usage_says_what_is_right(
     assert "gone.wav" in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 def test_a_language_can_be_chosen_brought_or_is_what_the_project_says(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -145,6 +147,7 @@ def three(tmp_path: Path) -> tuple[Path, Path]:
     return audio, words
 
 
+@pytest.mark.nightly
 def test_three_are_kept_and_it_says_where_each_looks(
     three: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

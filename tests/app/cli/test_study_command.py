@@ -37,6 +37,7 @@ def test_without_an_action_the_actions_are_listed(capsys: pytest.CaptureFixture[
     assert all(name in shown for name in ("report", "export", "example", "simulate"))
 
 
+@pytest.mark.nightly
 def test_a_report_is_written_and_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["study", "report", str(folder), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
@@ -52,6 +53,7 @@ def test_a_report_is_written_and_told(folder: Path, capsys: pytest.CaptureFixtur
     assert "times as long as with the meta-graph" in shown.out and (folder / "else" / "tasks.csv").is_file()
 
 
+@pytest.mark.nightly
 def test_data_are_exported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["study", "export", str(folder), "--bids", str(folder / "bids")]) == 0
     assert "files" in capsys.readouterr().out
@@ -96,6 +98,7 @@ def copied(folder: Path, tmp_path: Path) -> Path:
     )
 
 
+@pytest.mark.nightly
 def test_figures_of_the_same_data_are_the_same_papers(folder: Path, tmp_path: Path) -> None:
     for name in ("one", "two"):
         assert (
@@ -129,6 +132,7 @@ def test_what_is_frozen_and_changed_is_refused_unless_told_why(
     assert "was changed by hand" in capsys.readouterr().err
 
 
+@pytest.mark.nightly
 def test_who_withdraws_is_left_out_and_who_asks_is_deleted(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -53,6 +53,7 @@ def test_an_unknown_theme_is_the_dark_one():
     assert theme("no such") is DARK
 
 
+@pytest.mark.nightly
 def test_applying_a_theme_reaches_palette_and_style(qapp):
     for look in (LIGHT, DARK):
         apply_theme(QApplication.instance(), look)

@@ -144,6 +144,7 @@ def children(saved: Path, state: Path):
             child.process.stdout.close()
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_the_second_window_says_who_has_it_and_takes_over_what_a_killed_one_left(qapp, toy, tmp_path):
@@ -223,6 +224,7 @@ sys.exit(app.exec())
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="there is no kill -9 on Windows")
 def test_killed_at_any_moment_of_saving_and_editing_no_finished_edit_is_lost(tmp_path, toy):
     chance = random.Random(20261122)

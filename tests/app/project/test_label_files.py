@@ -35,6 +35,7 @@ def labels(tmp_path, toys):
     return tmp_path / "back.labels.json", known.id
 
 
+@pytest.mark.nightly
 def test_chosen_labels_are_taken_in_as_one_step(toys, labels, monkeypatch):
     path, known = labels
     before = toys.document.project
@@ -54,6 +55,7 @@ def test_chosen_labels_are_taken_in_as_one_step(toys, labels, monkeypatch):
     assert toys.document.project is before
 
 
+@pytest.mark.nightly
 def test_dropped_labels_are_taken_in_and_a_broken_file_is_told(toys, labels, tmp_path, monkeypatch):
     path, known = labels
     toys.importing.import_paths([str(path)])

@@ -60,6 +60,7 @@ def _opened(drive, path: Path) -> None:
     drive.wait(lambda: drive.document.path == path and not drive.window.shell.jobs.running, 30)
 
 
+@pytest.mark.nightly
 def test_they_are_opened_when_the_user_says_so_and_not_asked_about_again(drive, project: Path) -> None:
     answer = Answer("Open them")
     _opened(drive, project)
@@ -75,6 +76,7 @@ def test_they_are_opened_when_the_user_says_so_and_not_asked_about_again(drive, 
     assert len(answer.asked) == 1
 
 
+@pytest.mark.nightly
 def test_they_stay_closed_when_the_user_says_no_and_can_be_opened_later(drive, project: Path) -> None:
     answer = Answer("Keep them closed")
     _opened(drive, project)

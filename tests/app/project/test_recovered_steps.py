@@ -79,6 +79,7 @@ def undo_all(document: Document) -> int:
 MOVES = st.lists(st.sampled_from(["edit", "edit", "edit", "merge", "undo", "redo", "save"]), max_size=14)
 
 
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(histories(8), MOVES, st.booleans())
 def test_undo_leads_back_to_what_was_saved_and_redo_to_what_was_there(

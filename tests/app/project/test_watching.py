@@ -46,6 +46,7 @@ def write(drive, name: str, seconds: float) -> None:
     write_glb(drive.place / f"{name}.glb", [drive.toy.clip(name, seconds)])
 
 
+@pytest.mark.nightly
 def test_a_file_written_again_is_read_in_place_and_can_be_undone(opened):
     drive = opened
     clip = drive.ids["wave"]
@@ -59,6 +60,7 @@ def test_a_file_written_again_is_read_in_place_and_can_be_undone(opened):
     assert drive.document.project.clips[clip].frames == before
 
 
+@pytest.mark.nightly
 def test_a_file_touched_but_not_changed_is_no_edit(opened):
     drive = opened
     project = drive.document.project
@@ -67,6 +69,7 @@ def test_a_file_touched_but_not_changed_is_no_edit(opened):
     assert drive.document.project is project
 
 
+@pytest.mark.nightly
 def test_a_broken_file_is_told_and_nothing_is_lost(opened):
     drive = opened
     said = []
@@ -77,6 +80,7 @@ def test_a_broken_file_is_told_and_nothing_is_lost(opened):
     assert "wave.glb" in said[0] and drive.document.project is project
 
 
+@pytest.mark.nightly
 def test_a_file_that_is_gone_for_a_moment_is_waited_for(opened):
     drive = opened
     clip = drive.ids["wave"]
@@ -87,6 +91,7 @@ def test_a_file_that_is_gone_for_a_moment_is_waited_for(opened):
     drive.wait(lambda: drive.document.project.clips[clip].frames > before)
 
 
+@pytest.mark.nightly
 def test_nothing_is_followed_when_it_is_switched_off(opened):
     drive = opened
     drive.actions["watch"].trigger()
@@ -99,6 +104,7 @@ def test_nothing_is_followed_when_it_is_switched_off(opened):
     assert drive.watcher.on
 
 
+@pytest.mark.nightly
 def test_a_file_that_was_missing_when_the_project_was_opened_and_is_put_back_is_read(opened, qtbot):
     drive = opened
     project_file = drive.place / "mine.metagraph.yaml"
@@ -120,6 +126,7 @@ def test_a_file_that_was_missing_when_the_project_was_opened_and_is_put_back_is_
     drive.wait(lambda: not any(p.clip == clip for p in drive.problems.problems))
 
 
+@pytest.mark.nightly
 def test_a_missing_file_that_comes_back_broken_is_told_once(opened):
     drive = opened
     project_file = drive.place / "mine.metagraph.yaml"

@@ -37,6 +37,7 @@ def choose(keeper: WindowKeeper, name: str) -> None:
     QCoreApplication.processEvents()
 
 
+@pytest.mark.nightly
 def test_the_new_window_goes_on_where_the_old_one_was(toys: Any, keeper: WindowKeeper) -> None:
     document, chosen = toys.document, toys.id("rest beat lf")
     for number in (2.0, 3.0):
@@ -67,6 +68,7 @@ def test_the_new_window_goes_on_where_the_old_one_was(toys: Any, keeper: WindowK
     assert there.project.action(chosen).likelihood == 1.0 and not there.dirty
 
 
+@pytest.mark.nightly
 def test_fields_and_texts_write_numbers_alike(keeper: WindowKeeper) -> None:
     choose(keeper, "Deutsch")
     field = QDoubleSpinBox()
@@ -79,6 +81,7 @@ def test_fields_and_texts_write_numbers_alike(keeper: WindowKeeper) -> None:
     assert QLocale().language() == QLocale.Language.English
 
 
+@pytest.mark.nightly
 def test_while_something_runs_the_window_stays_and_changes_once_it_has_ended(
     toys: Any, keeper: WindowKeeper
 ) -> None:
@@ -92,6 +95,7 @@ def test_while_something_runs_the_window_stays_and_changes_once_it_has_ended(
     assert keeper.window is not toys.window
 
 
+@pytest.mark.nightly
 def test_while_a_live_session_runs_the_window_stays(toys: Any, keeper: WindowKeeper) -> None:
     live = toys.shell.stage.performance.live
     live.begin()

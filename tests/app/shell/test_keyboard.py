@@ -19,6 +19,7 @@ def fields(drive):
     return (drive.library.search, drive.canvas, panel.name, panel.start, panel.stance, drive.library.list)
 
 
+@pytest.mark.nightly
 def test_a_commands_key_is_its_own_wherever_the_focus_is(toys):
     drive = toys
     done = []
@@ -45,6 +46,7 @@ def test_a_commands_key_is_its_own_wherever_the_focus_is(toys):
                 action.triggered.connect(lambda _=False, run=command.run: run())
 
 
+@pytest.mark.nightly
 def test_what_a_field_does_with_its_own_text_stays_the_fields(toys):
     field = toys.library.search
     field.setFocus()
@@ -57,6 +59,7 @@ def test_what_a_field_does_with_its_own_text_stays_the_fields(toys):
     assert field.text() != "a 1 b"
 
 
+@pytest.mark.nightly
 def test_a_key_that_comes_in_one_go_with_an_edit_can_take_it_back(toys):
     drive = toys
     before = drive.document.project
@@ -67,6 +70,7 @@ def test_a_key_that_comes_in_one_go_with_an_edit_can_take_it_back(toys):
     assert drive.document.project is before
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("modal", [False, True])
 def test_a_dialog_gives_the_focus_back(toys, modal):
     drive = toys
@@ -85,6 +89,7 @@ def test_a_dialog_gives_the_focus_back(toys, modal):
     dialog.deleteLater()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("where", ["clips", "canvas"])
 def test_the_number_pad_turns_the_view_and_labels_nothing(toys, where):
     drive = toys
@@ -100,6 +105,7 @@ def test_the_number_pad_turns_the_view_and_labels_nothing(toys, where):
     assert drive.document.project is before
 
 
+@pytest.mark.nightly
 def test_the_number_pad_types_numbers_in_a_field(toys):
     field = toys.library.search
     field.setFocus()
@@ -120,6 +126,7 @@ def test_the_space_bar_plays_after_something_was_chosen_from_a_list(toys):
     assert not chooser.view().isVisible()
 
 
+@pytest.mark.nightly
 @pytest.mark.fresh_window
 def test_no_field_has_the_focus_when_the_window_opens(toys):
     focus = toys.window.focusWidget()

@@ -28,6 +28,7 @@ def choose(drive, workspace: str, *wanted: str) -> None:
     drive.pause(50)
 
 
+@pytest.mark.nightly
 def test_what_a_workspace_shows_is_made_when_it_is_chosen_and_what_stands_behind_when_it_comes_forward(toys):
     drive = toys
     choose(drive, "graph", "properties")
@@ -42,6 +43,7 @@ def test_what_a_workspace_shows_is_made_when_it_is_chosen_and_what_stands_behind
     assert drive.lines.isVisible()
 
 
+@pytest.mark.nightly
 def test_a_dock_that_was_never_seen_is_filled_when_it_is_opened_from_its_menu(toys):
     drive = toys
     choose(drive, "graph", "properties")
@@ -51,6 +53,7 @@ def test_a_dock_that_was_never_seen_is_filled_when_it_is_opened_from_its_menu(to
     assert drive.shell.panel("history").isVisible()
 
 
+@pytest.mark.nightly
 def test_a_command_and_a_service_find_a_panel_nobody_has_seen(toys):
     drive = toys
     assert "notes" not in made(drive)
@@ -61,6 +64,7 @@ def test_a_command_and_a_service_find_a_panel_nobody_has_seen(toys):
     assert drive.machine.isVisible()
 
 
+@pytest.mark.nightly
 def test_each_mode_fills_the_same_dock_when_it_is_entered(toys):
     drive = toys
     drive.session.set_mode("manual")
@@ -73,6 +77,7 @@ def test_each_mode_fills_the_same_dock_when_it_is_entered(toys):
     assert drive.properties.isVisible() and not drive.shell.panel("inspector").isVisible()
 
 
+@pytest.mark.nightly
 def test_the_page_of_actions_comes_with_the_first_of_them(toys):
     drive = toys
     choose(drive, "graph", "properties")
@@ -86,6 +91,7 @@ def test_the_page_of_actions_comes_with_the_first_of_them(toys):
     assert panel.pages.currentIndex() == 0
 
 
+@pytest.mark.nightly
 def test_a_panel_that_is_made_late_knows_what_was_selected_before_and_how_it_was_then(toys):
     drive = toys
     action = gesture(drive)

@@ -10,6 +10,7 @@ from metagraph.graph import edits
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 
+@pytest.mark.nightly
 def test_entering_another_mode_makes_the_window_no_wider(toys):
     drive = toys
     size = drive.window.size()
@@ -42,6 +43,7 @@ def test_a_panel_that_does_not_exist_is_said_so(toys):
         toys.shell.panel("nonsense")
 
 
+@pytest.mark.nightly
 def test_the_character_alone_has_the_whole_window_and_gives_it_back(toys):
     drive = toys
     drive.workspaces.choose("graph")

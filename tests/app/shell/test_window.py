@@ -182,6 +182,7 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
     assert (tmp_path / "by keys.metagraph.yaml").is_file()
 
 
+@pytest.mark.nightly
 def test_single_keys_yield_to_typing_and_to_focused_buttons(toys):
     drive = toys
     drive.session.jump(action=drive.id("rest beat lf"))
@@ -279,6 +280,7 @@ def test_every_control_says_what_it_is(toys):
     assert len(keys) == len(set(keys)), "a shortcut that stands for two commands does neither"
 
 
+@pytest.mark.nightly
 def test_twenty_clips_are_dropped_at_once(drive, toy):
     project = edits.add_clips(
         toy.project(),
@@ -300,6 +302,7 @@ def test_twenty_clips_are_dropped_at_once(drive, toy):
     assert len(drive.names("fidget")) == fidgets
 
 
+@pytest.mark.nightly
 def test_rows_are_dragged_to_another_node_and_to_another_stance(toys):
     drive = toys
     beat, cough, up = drive.id("rest beat lf"), drive.id("rest cough"), drive.id("up")
@@ -317,6 +320,7 @@ def test_rows_are_dragged_to_another_node_and_to_another_stance(toys):
     assert drive.session.place.stance() == up, "the window goes where they went"
 
 
+@pytest.mark.nightly
 def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch):
     drive.importing.import_paths([str(folder)])
     drive.wait(lambda: len(drive.document.project.clips) == 5)
@@ -349,6 +353,7 @@ def test_a_new_window_and_its_frame_fit_the_screen(room, size):
     assert fit_screen(QSize(*room)).toTuple() == size
 
 
+@pytest.mark.nightly
 def test_a_key_changes_the_kind_of_actions_of_several_stances_and_nothing_else(toys):
     drive = toys
     chosen = tuple(drive.id(name) for name in ("rest beat lf", "up beat"))
@@ -367,6 +372,7 @@ def test_a_key_changes_the_kind_of_actions_of_several_stances_and_nothing_else(t
     assert [drive.document.project.action(i) for i in chosen] == before
 
 
+@pytest.mark.nightly
 def test_a_likelihood_bar_is_dragged_in_one_step_and_escape_takes_it_back(toys):
     drive = toys
     beat = drive.id("rest beat lf")
@@ -398,6 +404,7 @@ def test_a_likelihood_bar_is_dragged_in_one_step_and_escape_takes_it_back(toys):
     assert drive.session.transport.show == "plan"
 
 
+@pytest.mark.nightly
 def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     drive, p = toys, toys.properties.action
     beat, wave, short = drive.id("rest beat lf"), drive.id("rest wave rt"), drive.id("rest short")
@@ -510,6 +517,7 @@ def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
     assert p.base.currentText() == "Rest pose of the skeleton"
 
 
+@pytest.mark.nightly
 def test_problems_are_found_shown_and_jumped_to(toys):
     drive = toys
     drive.document.edit(
@@ -536,6 +544,7 @@ def test_problems_are_found_shown_and_jumped_to(toys):
     assert drive.properties.action.trouble.text() == ""
 
 
+@pytest.mark.nightly
 def test_machine_theme_and_the_character_alone_come_and_go(toys):
     drive = toys
     drive.key(KEY.Key_M)
@@ -571,6 +580,7 @@ def test_machine_theme_and_the_character_alone_come_and_go(toys):
     assert drive.docks["timeline"].isVisible() and drive.window.size() == size
 
 
+@pytest.mark.nightly
 def test_menus_say_how_things_are(toys):
     drive = toys
     drive.preview.loop_button.click()
@@ -596,6 +606,7 @@ def test_menus_say_how_things_are(toys):
     assert drive.session.transport.seconds > 1.0, "the slider's keys move the playhead"
 
 
+@pytest.mark.nightly
 def test_files_are_dropped_on_the_library_and_on_a_node(drive, folder, tmp_path):
     library = drive.library.list.viewport()
     assert not drive.drop_files((drive.canvas, drive.node("gesture")[1]), folder / "beat.bvh"), (
@@ -613,6 +624,7 @@ def test_files_are_dropped_on_the_library_and_on_a_node(drive, folder, tmp_path)
     assert not drive.drop_files(drive.middle(), tmp_path / "notes.txt")
 
 
+@pytest.mark.nightly
 @pytest.mark.fresh_window
 def test_closing_asks_about_changes_and_windows_follow_each_other(toys, qtbot, monkeypatch):
     from app.main import make_window
@@ -634,6 +646,7 @@ def test_closing_asks_about_changes_and_windows_follow_each_other(toys, qtbot, m
     second.deleteLater()
 
 
+@pytest.mark.nightly
 def test_a_skeletons_correction_is_an_edit_like_any_other(toys):
     from app.features.skeleton.skeleton_dialog import SkeletonDialog
 
@@ -677,6 +690,7 @@ def test_an_actions_joints_are_ticked_in_a_tree(toys):
     drive.pause(50)  # painted with its joints marked
 
 
+@pytest.mark.nightly
 def test_an_export_that_fails_says_why(toys, tmp_path):
     from app.features.export.export_dialog import ExportDialog
 
@@ -697,6 +711,7 @@ def test_an_export_that_fails_says_why(toys, tmp_path):
     dialog.reject()
 
 
+@pytest.mark.nightly
 def test_a_project_whose_character_is_missing_opens_as_the_default_body(drive, toy, folder, tmp_path):
     drive.importing.import_paths([str(folder)])
     drive.wait(lambda: len(drive.document.project.clips) == 5)
@@ -714,6 +729,7 @@ def test_a_project_whose_character_is_missing_opens_as_the_default_body(drive, t
     drive.wait(lambda: drive.preview.frames > frames + 2)
 
 
+@pytest.mark.nightly
 def test_requests_and_another_seed_change_the_performance(toys):
     from app.widgets.request_menu import make_request_menu
 
@@ -769,6 +785,7 @@ def test_a_missing_clip_can_be_looked_at_without_harm(toys):
     drive.pause(60)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "command", ["keys", "patterns", "skeleton", "compatibility", "render", "export", "repairs"]
 )

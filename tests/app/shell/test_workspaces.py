@@ -42,6 +42,7 @@ def again(drive, qtbot) -> Driver:
     return Driver(other, qtbot)
 
 
+@pytest.mark.nightly
 def test_a_click_on_a_tab_opens_its_workspace_and_keeps_the_selection(toys):
     drive = toys
     action = next(iter(drive.document.project.actions())).id
@@ -59,6 +60,7 @@ def test_a_click_on_a_tab_opens_its_workspace_and_keeps_the_selection(toys):
     assert drive.places.large() == "character"
 
 
+@pytest.mark.nightly
 def test_keys_open_workspaces_and_those_of_stances_stay(toys):
     drive = toys
     for n, ident in enumerate(IDS, 1):
@@ -71,6 +73,7 @@ def test_keys_open_workspaces_and_those_of_stances_stay(toys):
     assert drive.session.place.stance() == stances[1] and drive.workspaces.current == "talk"
 
 
+@pytest.mark.nightly
 def test_the_keyboard_goes_to_what_is_large_where_what_had_it_is_gone(toys):
     drive = toys
     drive.workspaces.choose("graph")
@@ -83,6 +86,7 @@ def test_the_keyboard_goes_to_what_is_large_where_what_had_it_is_gone(toys):
     assert focus is not None and focus.isVisible() and drive.preview.isAncestorOf(focus)
 
 
+@pytest.mark.nightly
 @pytest.mark.fresh_window
 def test_a_workspace_is_found_as_it_was_left_also_another_time(drive, qtbot):
     drive.workspaces.choose("perform")
@@ -115,6 +119,7 @@ def test_what_an_earlier_version_kept_is_not_misread(drive, qtbot):
     assert QSettings().value(OLD) is None
 
 
+@pytest.mark.nightly
 @pytest.mark.fresh_window
 def test_a_workspace_of_ones_own_is_saved_renamed_reset_and_deleted(drive, qtbot, monkeypatch):
     drive.workspaces.choose("talk")
@@ -149,6 +154,7 @@ def test_a_workspace_of_ones_own_is_saved_renamed_reset_and_deleted(drive, qtbot
         close(other.window)
 
 
+@pytest.mark.nightly
 def test_a_feature_opens_where_it_is_only_if_it_has_no_place_here(toys):
     drive = toys
     drive.workspaces.choose("graph")
@@ -169,6 +175,7 @@ def test_a_feature_opens_where_it_is_only_if_it_has_no_place_here(toys):
     assert drive.workspaces.current == "talk"
 
 
+@pytest.mark.nightly
 def test_a_window_becomes_as_small_whatever_was_opened_before(toys):
     drive = toys
     least: dict[str, tuple[int, int]] = {}
@@ -182,6 +189,7 @@ def test_a_window_becomes_as_small_whatever_was_opened_before(toys):
     drive.session.set_mode("meta")
 
 
+@pytest.mark.nightly
 def test_what_a_window_wins_is_shared_out(toys):
     drive = toys
     drive.workspaces.choose("graph")
@@ -196,6 +204,7 @@ def test_what_a_window_wins_is_shared_out(toys):
     fit(drive, 1680, 1020)
 
 
+@pytest.mark.nightly
 def test_no_word_is_cut_at_the_least_size(toys):
     drive = toys
     action = next(a for a in drive.document.project.actions() if a.kind == "gesture")

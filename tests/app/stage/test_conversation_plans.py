@@ -81,6 +81,7 @@ def staged(drive, talking):
     return drive
 
 
+@pytest.mark.nightly
 def test_both_are_seen_each_on_its_place_and_the_camera_sees_both(staged):
     staged.wait(lambda: len(staged.preview.scene().actors) == 2)
     low, high = staged.preview.scene().bounds()
@@ -89,6 +90,7 @@ def test_both_are_seen_each_on_its_place_and_the_camera_sees_both(staged):
     assert scene.actors[0].positions[..., 0].mean() < 0 < scene.actors[1].positions[..., 0].mean()
 
 
+@pytest.mark.nightly
 def test_the_timeline_shows_one_sides_plan_and_the_other_when_it_is_chosen(staged):
     names = [staged.timeline.stage.itemText(n) for n in range(staged.timeline.stage.count())]
     assert names[-2:] == ["Greeting: Ada", "Greeting: Ben"]
@@ -109,6 +111,7 @@ def test_improvised_takes_the_conversation_off_stage(staged):
     staged.wait(lambda: not staged.performance.shown.others)
 
 
+@pytest.mark.nightly
 def test_both_are_heard_each_where_it_speaks(staged):
     staged.wait(lambda: len(staged.sound.parts) == 2)
     heard = [np.flatnonzero(np.abs(samples) > 0.1) / 44100 + at for at, samples in staged.sound.parts]
@@ -116,6 +119,7 @@ def test_both_are_heard_each_where_it_speaks(staged):
     assert [round(float(h.max())) for h in heard] == [3, 6]
 
 
+@pytest.mark.nightly
 def test_it_plays_to_its_end_and_stops_there(staged):
     staged.session.transport.loop = False
     staged.session.transport.seek(7.9)
@@ -137,6 +141,7 @@ def test_another_seed_is_the_conversations_own_and_undone(staged):
     assert staged.timeline.seed.text() == "4294967295"
 
 
+@pytest.mark.nightly
 def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
     before = staged.document.project
     staged.performance.keep_conversation()
@@ -156,6 +161,7 @@ def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
     )
 
 
+@pytest.mark.nightly
 def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_cannot_be_read_is_told(talking):
     folder = talking.parent
     project = open_project(talking).project
@@ -176,6 +182,7 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
         assert any("missing" in note for note in shown.notes) == told
 
 
+@pytest.mark.nightly
 def test_a_side_is_drawn_with_a_character_of_its_own_whose_face_it_has(talking):
     folder = talking.parent
     project = open_project(talking).project
@@ -241,6 +248,7 @@ def test_two_other_projects_are_each_read_once(talking, monkeypatch):
     assert len(read) == 4, "what no side needs is not kept"
 
 
+@pytest.mark.nightly
 def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a_lost_one_is_told(talking):
     project = open_project(talking).project
     talk = project.conversations["v9000"]
@@ -268,6 +276,7 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
     assert lost.motion is None and any("missing" in note for note in lost.notes)
 
 
+@pytest.mark.nightly
 def test_a_generated_clip_moves_what_is_above_the_hips_and_is_written_so(talking, tmp_path):
     from app.cli.render_command import bake_to
     from metagraph.formats.bvh.file import read_bvh
@@ -349,6 +358,7 @@ def three(talking: Path) -> Path:
     return talking
 
 
+@pytest.mark.nightly
 def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> None:
     project = open_project(three).project
     for side in (0, 2, 7):
@@ -358,6 +368,7 @@ def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> N
         assert all(one.stand is not None for one in shown.everyone)
 
 
+@pytest.mark.nightly
 def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: Path) -> None:
     from metagraph.playback.planning.running_plan import plan_performance
     from tests.posing import pose_at

@@ -90,6 +90,7 @@ def test_a_character_that_cannot_be_read_is_told_once_and_the_default_body_is_dr
     assert "broken.glb" in told[0]
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_thumbnails_are_drawn_elsewhere_and_a_loop_moves(document, figures, toy, qtbot):
     document.load(toy.project(), None)
@@ -119,6 +120,7 @@ def test_thumbnails_are_drawn_elsewhere_and_a_loop_moves(document, figures, toy,
     assert thumbnails.picture(clip) is None, "stopped, it orders nothing"
 
 
+@pytest.mark.nightly
 def test_a_figure_is_drawn_at_once_and_gets_its_levels_of_detail_later(document, figures, sample, qtbot):
     document.load(replace(sample, character=str(MANNEQUIN)), None)
     qtbot.waitUntil(lambda: figures.figure(sample.skeleton) is not None)

@@ -59,6 +59,7 @@ def drag(view, button, held=NONE):
     return before, view.camera
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_drag_with_the_middle_button_orbits_as_in_blender_once_it_is_chosen(toys):

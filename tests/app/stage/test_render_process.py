@@ -26,6 +26,7 @@ def talk():
     return performance_edits.add_performance(project, kept)
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_a_video_is_written_and_its_progress_told(qapp, talk, tmp_path):
     project, ident = talk
@@ -41,6 +42,7 @@ def test_a_video_is_written_and_its_progress_told(qapp, talk, tmp_path):
     assert [p.name for p in folder.iterdir()] == ["a.mp4"]
 
 
+@pytest.mark.nightly
 def test_a_range_of_it_is_what_the_whole_has_there(qapp, talk, tmp_path):
     project, ident = talk
     for name, seconds, start in (("all", 2.0, 0.0), ("range", 0.5, 1.0)):
@@ -51,6 +53,7 @@ def test_a_range_of_it_is_what_the_whole_has_there(qapp, talk, tmp_path):
     assert abs(abs((whole.rotations[30:46] * part.rotations).sum(-1)) - 1).max() < 1e-4
 
 
+@pytest.mark.nightly
 def test_motion_is_the_performance(qapp, talk, tmp_path):
     from metagraph.playback.planning.running_plan import plan_performance
     from tests.posing import pose_at
@@ -72,6 +75,7 @@ def test_motion_is_the_performance(qapp, talk, tmp_path):
     assert abs(float((mine * there.rotations[arm]).sum())) == pytest.approx(1.0, abs=1e-3)
 
 
+@pytest.mark.nightly
 def test_a_place_that_cannot_be_written_is_said(qapp, talk, tmp_path):
     project, ident = talk
     (tmp_path / "file").write_text("in the way")

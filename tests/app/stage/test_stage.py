@@ -52,6 +52,7 @@ def mark(drive, ident: str):
     return next(m for m in board(drive).marks() if m.ask.id == ident)
 
 
+@pytest.mark.nightly
 def test_a_double_click_asks_for_something_there_and_a_drag_moves_it(stage):
     drive = stage
     # The lane is empty at 6 s above the cues: what is chosen is asked for there, and kept in a performance.
@@ -117,6 +118,7 @@ def test_a_request_is_changed_in_its_fields_and_says_why_it_does_not_play(stage)
     editor.accept()
 
 
+@pytest.mark.nightly
 def test_the_lost_requests_are_found_by_a_click_and_say_why_without_hovering(stage):
     drive = stage
     panel = drive.timeline
@@ -194,6 +196,7 @@ def test_a_dragged_request_is_given_up_with_escape_and_copied_with_ctrl(stage):
     assert drive.session.onstage.requests == (ask.id,)
 
 
+@pytest.mark.nightly
 def test_all_of_it_works_from_the_keyboard(stage):
     drive = stage
     key = lambda k, m=Qt.KeyboardModifier.NoModifier: QTest.keyClick(board(drive), k, m)  # noqa: E731
@@ -227,6 +230,7 @@ def test_all_of_it_works_from_the_keyboard(stage):
     assert QApplication.focusWidget() is not board(drive), "the keyboard can leave"
 
 
+@pytest.mark.nightly
 def test_while_it_plays_only_the_playhead_is_painted_anew(stage):
     drive = stage
     drive.performance.requests.ask(a.Gesture(at=2.0))
@@ -242,6 +246,7 @@ def test_while_it_plays_only_the_playhead_is_painted_anew(stage):
     assert board(drive).painted == before + 1
 
 
+@pytest.mark.nightly
 def test_a_request_that_vanishes_while_its_fields_are_open_says_so(stage):
     drive = stage
     drive.performance.requests.ask(a.Gesture(at=3.0))
@@ -286,6 +291,7 @@ def test_performances_are_made_renamed_and_removed_from_the_panel(stage, monkeyp
     assert drive.document.project.performances
 
 
+@pytest.mark.nightly
 def test_a_point_is_put_somewhere_and_looked_at(stage):
     from app.widgets.request_menu import make_request_menu
 
@@ -342,6 +348,7 @@ def live(stage):
     drive.performance.live.end()
 
 
+@pytest.mark.nightly
 def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
     """An agent in another process asks for an action by its name; the character in the window makes it."""
     drive = live
@@ -376,6 +383,7 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
     drive.wait(lambda: "no clients" in drive.performance.live.stage.words())
 
 
+@pytest.mark.nightly
 def test_the_past_of_a_live_session_can_be_scrubbed_and_now_is_found_again(live):
     drive = live
     drive.wait(lambda: drive.performance.live.stage.now > 1.5)
@@ -391,6 +399,7 @@ def test_the_past_of_a_live_session_can_be_scrubbed_and_now_is_found_again(live)
     assert drive.session.transport.seconds == pytest.approx(drive.performance.live.stage.now, abs=0.3)
 
 
+@pytest.mark.nightly
 def test_what_was_played_live_is_kept_and_plays_again_as_it_was(live):
     drive = live
     drive.wait(lambda: drive.performance.live.stage.now > 0.5)

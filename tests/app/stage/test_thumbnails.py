@@ -117,6 +117,7 @@ def test_a_clip_that_is_removed_takes_its_pictures_along(pictures, started, qtbo
     assert pictures.picture(clips[0]) is None and pictures.picture(clips[1]) is not None
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_a_process_that_ends_is_started_anew_and_draws_the_rest(pictures, qtbot, monkeypatch):
     real, processes = module.start, []

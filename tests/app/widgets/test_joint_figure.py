@@ -41,6 +41,7 @@ def below(skeleton: Skeleton, joint: str) -> set[str]:
     return out
 
 
+@pytest.mark.nightly
 def test_a_click_unticks_a_joint_and_what_hangs_on_it_and_a_second_ticks_them_again(toys, dialog):
     skeleton = toys.document.project.skeleton
     arm = next(n for n in skeleton.names if n.endswith("Arm"))

@@ -155,6 +155,7 @@ def bare_style(qapp):
     qapp.setStyleSheet(sheet)
 
 
+@pytest.mark.nightly
 def test_an_arrow_that_is_held_with_the_mouse_is_one_step(bare_style, page, qtbot):
     field = page.add(SpinBox(page))
     field.setValue(10)

@@ -40,6 +40,7 @@ def shipped() -> dict[str, Vectors]:
     return {name: read_vectors(SHIPPED / name) for name in NAMES}
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", NAMES)
 def test_the_pages_words_pose_a_character_as_its_vectors_say(shipped: dict[str, Vectors], name: str) -> None:
     character, vectors = shipped[name]
@@ -137,11 +138,13 @@ def many_ways(project: Project) -> Project:
     return project
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["biped", "japanese"])
 def test_the_pages_words_pose_the_zoo(zoo_files: dict[str, Path], tmp_path: Path, name: str) -> None:
     poses_as_exported(project_of([zoo_files[name]], name), tmp_path)
 
 
+@pytest.mark.nightly
 def test_the_pages_words_pose_clips_nobody_here_made(shared_data: Path, tmp_path: Path) -> None:
     files = gather([shared_data / "bandai-namco-1"])[:4]
     poses_as_exported(project_of(files, "others"), tmp_path)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from metagraph.graph.model import Project, Settings
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
@@ -61,6 +63,7 @@ def test_in_cpp_models_write_and_plans_are_made_anew_as_in_python(cpp_probe: Pat
     assert said_by(cpp_probe, "replanned") == said
 
 
+@pytest.mark.nightly
 def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, cpp_probe: Path) -> None:
     """An hour of the sample's arms: what the model writes, with requests of every kind between, each action,
     rest and report.

@@ -64,6 +64,7 @@ def test_javascript_says_the_same(means: dict[str, str], tmp_path: Path) -> None
     assert _plain(done.stdout) == SAID, done.stderr
 
 
+@pytest.mark.nightly
 def test_csharp_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
     if shutil.which("mcs") is None or shutil.which("mono") is None:
         pytest.skip("needs Mono's compiler and runtime (mcs, mono)")
@@ -78,6 +79,7 @@ def test_csharp_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
     assert _plain(done.stdout) == SAID, done.stderr
 
 
+@pytest.mark.nightly
 def test_cpp_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
     if shutil.which("g++") is None:
         pytest.skip("needs g++")
@@ -168,6 +170,7 @@ def untranslatable(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Source
     return {one.module: source for one, source in sources.items()}
 
 
+@pytest.mark.nightly
 def test_what_is_outside_the_subset_is_refused_with_its_place_and_a_remedy(
     untranslatable: dict[str, SourceModule],
 ) -> None:
@@ -191,6 +194,7 @@ def test_what_no_language_knows_is_told(untranslatable: dict[str, SourceModule])
             print_modules({Translated(name, name): module_of(untranslatable[name])}, {})
 
 
+@pytest.mark.nightly
 def test_what_mypy_finds_wrong_is_told(tmp_path: Path) -> None:
     (tmp_path / "wrong.py").write_text("def f() -> int:\n    return 'x'\n")
     with pytest.raises(SubsetError, match=r"wrong.py:2: error"):

@@ -55,6 +55,7 @@ def test_any_numbers_come_back_as_float_reads_them(words: list[str], between: st
     assert np.array(found).tobytes() == np.array([float(word) for word in words]).tobytes()
 
 
+@pytest.mark.nightly
 @given(st.lists(st.text("0123456789.eE+-_ ", max_size=9)))
 def test_whatever_is_refused_or_read_float_refuses_or_reads(words: list[str]) -> None:
     text = " ".join(words).encode()
@@ -67,6 +68,7 @@ def test_whatever_is_refused_or_read_float_refuses_or_reads(words: list[str]) ->
         assert np.array(read(text)).tobytes() == np.array(expected).tobytes()
 
 
+@pytest.mark.nightly
 def test_where_a_text_is_taken_apart_and_by_how_many_threads_does_not_show(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

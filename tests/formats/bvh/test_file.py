@@ -496,6 +496,7 @@ def test_importing_the_reader_does_not_import_numba() -> None:
 # --- real files
 
 
+@pytest.mark.nightly
 def test_real_files_read_as_people_of_human_size(shared_data: Path) -> None:
     from metagraph.motion.roles import find_roles, is_humanoid
 

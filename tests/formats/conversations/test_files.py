@@ -62,6 +62,7 @@ def sound(path: Path, *channels: Any, rate: int = RATE) -> Path:
 # --- what is brought together
 
 
+@pytest.mark.nightly
 def test_two_channels_and_one_transcript_make_two_sides(files: tuple[Path, Path]) -> None:
     read = read_conversation([files[0]], [files[1]], files[0].parent)
     made, spoken = read.conversation, talk.speak()
@@ -234,6 +235,7 @@ def test_clipping_says_how_much(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.nightly
 def test_an_mp3_named_wav_is_read_as_what_it_is(files: tuple[Path, Path], tmp_path: Path) -> None:
     spoken = talk.speak()
     sound(tmp_path / "a.mp3", *spoken.samples, rate=spoken.rate)
@@ -422,6 +424,7 @@ def test_of_more_speakers_than_may_talk_those_who_say_most_are_kept(tmp_path: Pa
     assert said(read, "10 speakers", "'S0', 'S1'")
 
 
+@pytest.mark.nightly
 def test_three_who_speak_a_language_each_are_read_each_in_theirs_and_name_each_other(tmp_path: Path) -> None:
     try:
         spoken = maker.three()

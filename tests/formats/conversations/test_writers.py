@@ -134,6 +134,7 @@ marks = st.lists(
 )
 
 
+@pytest.mark.nightly
 @settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(marks, st.lists(st.tuples(spoken, st.integers(0, 9000), st.integers(0, 900)), max_size=5))
 def test_any_conversation_keeps_its_segments(

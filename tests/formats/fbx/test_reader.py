@@ -107,6 +107,7 @@ def test_a_child_that_dies_hangs_or_talks_nonsense_costs_one_file_only(
     assert words in str(caught.value) and caught.value.remedy
 
 
+@pytest.mark.nightly
 @needs_ufbx
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
 def test_of_many_files_one_that_crashes_hangs_or_is_broken_fails_alone(
@@ -133,6 +134,7 @@ def test_of_many_files_one_that_crashes_hangs_or_is_broken_fails_alone(
     assert not fbx_readers._idle
 
 
+@pytest.mark.nightly
 @needs_ufbx
 def test_files_read_one_after_another_by_one_process_are_as_read_alone(
     shared_data: Path, monkeypatch: pytest.MonkeyPatch

@@ -65,6 +65,7 @@ def one_by_one(track: Array, tolerance: float, turning: bool) -> list[int]:
     return list(range(last + 1)) if len(kept) > key_thinning.WORTH * (last + 1) else sorted(kept)
 
 
+@pytest.mark.nightly
 @given(
     st.lists(st.tuples(st.integers(1, 40), st.integers(1, 4)), min_size=1, max_size=5),
     st.sampled_from([0.0, 1e-3, 0.05, 0.4]),

@@ -82,6 +82,7 @@ def test_what_no_yaml_may_hold_is_left_to_it_to_refuse_in_comments_too(letter: s
     assert canonical(f"#{letter} A project\nmetagraph: 1\n") is None
 
 
+@pytest.mark.nightly
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(words, values, min_size=1, max_size=4))
 def test_data_comes_back_from_its_text_or_is_left_to_yaml(data: dict[str, Any]) -> None:

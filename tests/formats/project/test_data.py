@@ -42,6 +42,7 @@ def small() -> Project:
     return edits.set_base(project, "c1", 3)
 
 
+@pytest.mark.nightly
 @settings(max_examples=80, deadline=None)
 @given(projects())
 def test_a_project_comes_back_from_its_data(project: Project) -> None:
@@ -293,6 +294,7 @@ JUNK = st.one_of(
 )
 
 
+@pytest.mark.nightly
 @settings(max_examples=many(120, 1000), deadline=None)
 @given(st.randoms(use_true_random=False), JUNK)
 def test_whatever_stands_in_a_field_the_error_says_where(chance: random.Random, junk: Any) -> None:

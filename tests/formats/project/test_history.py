@@ -36,6 +36,7 @@ def begun(folder: Path | str, base: Project) -> Journal:
     return journal
 
 
+@pytest.mark.nightly
 @settings(max_examples=80, deadline=None)
 @given(histories())
 def test_every_state_on_the_way_is_there_again(states: list[Project]) -> None:

@@ -57,6 +57,7 @@ def large(count: int) -> Project:
 # --- changes
 
 
+@pytest.mark.nightly
 @settings(max_examples=120, deadline=None)
 @given(histories())
 def test_changes_worked_into_the_old_data_give_the_new(states: list[Project]) -> None:
@@ -193,6 +194,7 @@ def test_undone_edits_are_recovered_undone(saved: Path) -> None:
     assert list(found[0].graphs["arms"].actions) == list(a.graphs["arms"].actions)
 
 
+@pytest.mark.nightly
 def test_a_torn_file_gives_every_edit_before_the_tear(saved: Path) -> None:
     path = journal_path(saved)
     states = written(saved, path, 6)
@@ -445,6 +447,7 @@ def test_a_folder_that_cannot_be_written_is_told_in_words(tmp_path: Path) -> Non
         journal.edit(large(1), large(2))
 
 
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.randoms(use_true_random=False))
 def test_a_journal_with_bytes_changed_gives_a_project_or_an_error_in_words(

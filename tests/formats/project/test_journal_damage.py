@@ -20,6 +20,7 @@ from tests.reliability.flips import flip, journals
 FEW = 53  # every so many bytes are damaged; `tests/reliability/flips.py` damages all
 
 
+@pytest.mark.nightly
 def test_no_damaged_byte_loses_an_edit_without_a_word(tmp_path: Path) -> None:
     count: Counter[str] = Counter()
     wrong: list[str] = []

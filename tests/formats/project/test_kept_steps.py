@@ -28,6 +28,7 @@ def seeds(count: int) -> list[UndoStep]:
     return steps_between([edits.set_settings(Project(), seed=n) for n in range(count + 1)])
 
 
+@pytest.mark.nightly
 @settings(max_examples=80, deadline=None)
 @given(histories())
 def test_every_state_is_there_again_from_the_last_one_alone(states: list[Project]) -> None:
@@ -58,6 +59,7 @@ def test_the_latest_steps_are_kept_where_there_are_too_many(monkeypatch: pytest.
     assert 0 < len(few) < 20 and few[-1].text == "edit 119"
 
 
+@pytest.mark.nightly
 @settings(max_examples=200, deadline=None)
 @given(st.data())
 def test_damage_leaves_the_steps_after_it_and_raises_nothing(data: st.DataObject) -> None:

@@ -67,6 +67,7 @@ def flat(data: Any, where: str = "") -> dict[str, Any]:
     return {where: data} if data != [] else {}
 
 
+@pytest.mark.nightly
 @settings(max_examples=200, deadline=None)
 @given(st.data())
 def test_no_edit_of_two_people_is_lost_without_a_report(data: st.DataObject) -> None:

@@ -21,12 +21,14 @@ values = st.recursive(
 )
 
 
+@pytest.mark.nightly
 @settings(max_examples=200, deadline=None)
 @given(st.dictionaries(words, values, min_size=1, max_size=4))
 def test_data_comes_back_from_its_text(data: dict[str, Any]) -> None:
     assert parse_yaml(to_text(data))[0] == data
 
 
+@pytest.mark.nightly
 @settings(max_examples=150, deadline=None)
 @given(st.dictionaries(words, values, min_size=1, max_size=4))
 def test_other_yaml_readers_read_the_same(data: dict[str, Any]) -> None:
@@ -133,6 +135,7 @@ def test_an_empty_text_holds_nothing() -> None:
     assert parse_yaml("# only words\n")[0] is None
 
 
+@pytest.mark.nightly
 @settings(max_examples=300, deadline=None)
 @given(st.text(max_size=60))
 def test_any_text_at_all_is_read_or_refused(text: str) -> None:

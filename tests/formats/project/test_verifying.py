@@ -285,6 +285,7 @@ def test_a_lock_of_another_computer_is_judged_without_writing_anything(home: Pat
     assert state(home.parent) == before
 
 
+@pytest.mark.nightly
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_no_flipped_byte_of_a_clip_goes_unseen_and_a_project_is_told_or_another_that_can_be_saved(

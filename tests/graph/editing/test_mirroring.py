@@ -193,6 +193,7 @@ def test_a_clip_that_is_missing_the_original_or_of_another_length_is_refused(toy
             place_twins(project, {ident: clip})
 
 
+@pytest.mark.nightly
 @given(st.data())
 @hypothesis_settings(max_examples=15)
 def test_the_twin_of_a_twin_is_the_original_but_for_its_ids(sample: Project, data: Any) -> None:

@@ -100,6 +100,7 @@ def test_a_chain_that_lingers_is_further_off_and_one_that_alternates_never() -> 
     assert np.allclose(deviation([[0, 1], [1, 0]], half, 100), 0)
 
 
+@pytest.mark.nightly
 def test_the_deviation_is_that_of_many_performances() -> None:
     off = np.array([compare_model(DEFAULTS["arms"], None, HOUR, seed).surprises() for seed in range(60)])
     assert np.abs(off.mean(axis=0)).max() < 0.7  # 60 draws of mean 0: more than 5 deviations off

@@ -156,6 +156,7 @@ def test_rotations_stay_rotations(sample: Project) -> None:
     assert np.abs(np.linalg.norm(after.rotations, axis=-1) - 1).max() < 1e-5
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("seed", range(1, many(2, 3)))
 def test_nothing_jumps(sample: Project, seed: int) -> None:
     rate = 240
@@ -589,6 +590,7 @@ def test_a_morph_faces_eyes_hold_while_the_head_moves(morphed: Project) -> None:
     assert weights(morphed, life, track, 9.0, pose)["eyeLookOutLeft"] == pytest.approx(0.5, abs=0.1)
 
 
+@pytest.mark.nightly
 def test_a_morph_face_speaks_within_0_and_1(morphed: Project) -> None:
     track = track_of([Speech("s", 1, 4, text=TEXT)])
     shown: dict[str, float] = {}

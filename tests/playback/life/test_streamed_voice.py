@@ -69,6 +69,7 @@ def test_at_low_rates_nothing_hisses_and_the_rest_is_heard() -> None:
     assert "SS" not in said(tones(0.3, (3900.0, 0.3), rate=8000), 8000)
 
 
+@pytest.mark.nightly
 @given(st.lists(st.integers(0, 900), max_size=12), st.integers(0, 2**32 - 1))
 def test_however_it_is_cut_it_is_heard_alike_in_order_and_never_ahead(cuts: list[int], seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -114,6 +114,7 @@ def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -
     assert (pose_at(last, project, times).rotations == pose_at(whole, project, times).rotations).all()
 
 
+@pytest.mark.nightly
 @settings(max_examples=thorough.many(6, 50))
 @given(some_asks, st.lists(st.floats(0, 20).map(lambda x: round(x, 2)), min_size=8, max_size=8))
 def test_what_was_told_on_the_way_replays_as_it_was_heard(asks: list[Any], told: list[float]) -> None:
@@ -127,6 +128,7 @@ def test_what_was_told_on_the_way_replays_as_it_was_heard(asks: list[Any], told:
         ]
 
 
+@pytest.mark.nightly
 @settings(max_examples=thorough.many(4, 8))
 @given(some_asks, st.sampled_from([0.0, 60.0]))
 def test_forgetting_the_past_changes_nothing_to_come(asks: list[Any], memory: float) -> None:
@@ -370,6 +372,7 @@ def test_what_is_to_be_kept_is_not_forgotten_with_the_past(sample: Project) -> N
     assert _left(cut, "arms") == []
 
 
+@pytest.mark.nightly
 def test_poses_are_bit_for_bit_the_same_live_in_ticks_of_16_ms_scrubbed_and_baked() -> None:
     """Each pose is taken at its tick from the plan as it was then; later the whole is planned at once and
     posed in any order.

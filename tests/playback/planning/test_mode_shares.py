@@ -27,6 +27,7 @@ def kinds(project: Project, mode: Mode | None, seconds: float = 1800.0) -> dict[
     }
 
 
+@pytest.mark.nightly
 def test_who_talks_gestures_more_than_who_listens_or_idles(sample: Project) -> None:
     talking, listening, idle = (kinds(sample, m) for m in ("talking", "listening", "idle"))
     assert talking["gesture"] > 3 * listening["gesture"] and talking["gesture"] > 3 * idle["gesture"]
@@ -34,6 +35,7 @@ def test_who_talks_gestures_more_than_who_listens_or_idles(sample: Project) -> N
     assert kinds(sample, None) == idle, "where nobody says in which mode one is, nobody is talked to"
 
 
+@pytest.mark.nightly
 def test_a_model_without_modes_does_the_same_in_each(sample: Project) -> None:
     project = replace(sample, markov={**sample.markov, "arms": replace(ARMS, modes=())})
     assert kinds(project, "talking") == kinds(project, "idle") == kinds(project, None)

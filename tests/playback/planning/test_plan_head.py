@@ -75,6 +75,7 @@ AGAIN = [
 ]
 
 
+@pytest.mark.nightly
 @example(AGAIN, 0, False)
 @given(st.lists(st.tuples(asks, st.floats(3, 25)), min_size=4, max_size=12), st.integers(0, 9), st.booleans())
 @settings(max_examples=40, deadline=None)

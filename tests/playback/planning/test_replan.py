@@ -168,6 +168,7 @@ def build(rows: list[tuple[float, float, int, bool, bool]]) -> list[MetaAction]:
     return [meta(f"r{n}", s, s + d, p, r, w and p == 0) for n, (s, d, p, r, w) in enumerate(rows)]
 
 
+@pytest.mark.nightly
 @given(requests)
 @settings(max_examples=300)
 def test_the_result_never_overlaps_and_no_request_is_silently_lost(
@@ -220,6 +221,7 @@ def test_the_most_important_are_never_cut_and_start_on_time_unless_their_equals_
         assert not [r for r in reports if r.request == kings[0].request.id]
 
 
+@pytest.mark.nightly
 @given(requests)
 @settings(max_examples=200)
 def test_placing_again_changes_nothing(rows: list[tuple[float, float, int, bool, bool]]) -> None:

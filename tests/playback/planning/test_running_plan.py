@@ -64,6 +64,7 @@ def session(draw) -> list[a.AnyRequest]:
     return out
 
 
+@pytest.mark.nightly
 def test_in_pieces_it_is_what_it_is_at_once(sample):
     @settings(max_examples=many(10, 100))
     @given(asks=session(), idle=st.booleans())
@@ -95,6 +96,7 @@ def test_a_performance_shorter_than_the_plan_ahead_ends_where_it_should(sample, 
     assert plan.end == end and plan.layers["head"].cues == at_once(sample, asks, end).layers["head"].cues
 
 
+@pytest.mark.nightly
 def test_the_work_of_an_hour_grows_with_the_hour_and_not_with_its_square(sample, monkeypatch):
     """Cues that were looked at again with every request are what made it the square."""
     import metagraph.playback.planning.running_plan as module

@@ -68,6 +68,7 @@ def test_hands_that_are_held_are_where_contacts_say() -> None:
     assert found > 30
 
 
+@pytest.mark.nightly
 def test_the_guard_brings_hands_out_of_the_body() -> None:
     rig = contact_rig(sample())
     assert rig is not None
@@ -79,6 +80,7 @@ def test_the_guard_brings_hands_out_of_the_body() -> None:
     assert np.percentile(after, 95) < 0.006 < np.percentile(before, 95)
 
 
+@pytest.mark.nightly
 def test_nothing_but_arms_moves_and_only_in_their_upper_lower_and_hand_joints() -> None:
     rig = contact_rig(sample())
     assert rig is not None
@@ -89,6 +91,7 @@ def test_nothing_but_arms_moves_and_only_in_their_upper_lower_and_hand_joints() 
     assert_array_equal(after.translations, before.translations)
 
 
+@pytest.mark.nightly
 def test_off_by_its_switches_poses_are_those_of_a_project_without_contacts_to_the_bit() -> None:
     graph = sample().graphs["arms"]
     bare = graph.with_actions({a.id: replace(a, contacts=()) for a in graph.actions.values()})
@@ -103,6 +106,7 @@ def test_poses_are_the_same_one_by_one_and_all_at_once() -> None:
         assert_allclose(pose_at(plan(), sample(), time).rotations, many.rotations[n], atol=1e-6)
 
 
+@pytest.mark.nightly
 def test_arrays_are_told_to_be_inside_exactly_where_one_pose_after_the_other_would_be_moved() -> None:
     rig = contact_rig(sample())
     assert rig is not None

@@ -104,6 +104,7 @@ def test_what_is_too_far_is_left_alone() -> None:
     np.testing.assert_array_equal(off, on)
 
 
+@pytest.mark.nightly
 def test_nothing_pops() -> None:
     for name in ("near", "far", "of its own"):
         plan = asked(name)

@@ -70,6 +70,7 @@ def test_a_jump_lifts_both_feet(sample):
     assert (seen.states[seen.times < 0.6] == FootState.HELD).all() and not seen.slides[inside].any()
 
 
+@pytest.mark.nightly
 def test_over_a_performance_nothing_slides_and_what_is_seen_piece_by_piece_is_the_same(sample):
     plan = make_plan(plan_as_in_paper(sample), 30.0, seed=3)
 

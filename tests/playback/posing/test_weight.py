@@ -66,6 +66,7 @@ def placed(answers: bool) -> tuple[Any, Any]:
     return skeleton.globals(posed(answers))
 
 
+@pytest.mark.nightly
 def test_hips_give_way_under_gestures_and_feet_stay_where_they_are() -> None:
     roles = anatomy.project_roles(sample())
     (turned, at), (before, were) = placed(True), placed(False)
@@ -92,6 +93,7 @@ def test_the_hips_go_against_the_arms() -> None:
     assert ahead[inside].min() < -0.005  # arms ahead, hips back
 
 
+@pytest.mark.nightly
 def test_turned_off_poses_are_the_composed_ones_to_the_bit() -> None:
     layers = pose_at(plan(), with_dials(stiff(), planted_feet=0.0), TIMES)
     still = with_dials(sample(), stillness=1.0)
@@ -131,6 +133,7 @@ def test_the_head_keeps_its_direction_and_hands_theirs() -> None:
         assert moved.max() < 0.04
 
 
+@pytest.mark.nightly
 def test_knees_do_not_pop() -> None:
     roles, speeds = anatomy.project_roles(sample()), []
     times = np.arange(0.0, 40.0, 1 / 60)

@@ -88,6 +88,7 @@ def test_what_the_timing_says_wins_and_stays_in_order(toy: Any) -> None:
     assert found.ready <= found.stroke <= found.stroke_end <= found.relax <= found.end
 
 
+@pytest.mark.nightly
 @settings(max_examples=40)
 @given(st.lists(st.floats(-2, 2), min_size=2, max_size=60), st.floats(0, 2), st.floats(0, 2))
 def test_phases_are_always_in_order(toy: Any, angles: list[float], start: float, end: float) -> None:

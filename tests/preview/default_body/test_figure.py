@@ -272,6 +272,7 @@ def test_a_rest_pose_that_does_not_stand_needs_a_clip():
     assert apart(points, wanted) < 0.02
 
 
+@pytest.mark.nightly
 def test_levels_of_detail_are_those_of_every_other_body(tmp_path, monkeypatch):
     monkeypatch.setenv("METAGRAPH_MESH_CACHE", str(tmp_path))
     bodies = [made("T-pose")[1], made("no fingers")[1]]

@@ -87,6 +87,7 @@ def test_clips_that_are_used_twice_are_wired_once_and_that_is_told(few: Path) ->
     assert "1 further uses" in shown.material and shown.says
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("exhibit", EXHIBITS, ids=lambda e: e.name)
 def test_of_a_project_without_clips_each_exhibit_is_made_or_says_what_is_missing(exhibit: Exhibit) -> None:
     try:
@@ -159,6 +160,7 @@ def test_takes_of_another_figure_are_retargeted_before_a_model_is_judged_on_them
     assert shown.numbers["wrists"]["recorded"] == pytest.approx(plain.numbers["wrists"]["recorded"], rel=0.05)
 
 
+@pytest.mark.nightly
 def test_made_up_conversations_are_the_same_each_time_and_move_at_the_actors_rates(sample: Project) -> None:
     a, b = (make_conversations(sample, 1, 20.0)[0] for _ in range(2))
     assert a.conversation == b.conversation

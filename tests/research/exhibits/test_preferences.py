@@ -25,6 +25,7 @@ def test_the_exact_test_counts_what_is_as_far_off_on_either_side() -> None:
     assert binomial(1, 5) == pytest.approx(2 * 6 / 32)
 
 
+@pytest.mark.nightly
 def test_both_agree_with_an_independent_library() -> None:
     stats = pytest.importorskip("scipy.stats")
     for chosen, n in ((64, 206), (108, 193), (116, 200), (94, 201), (3, 7)):

@@ -85,6 +85,7 @@ def test_one_thing_is_changed_at_a_time(tmp_path):
     assert [t.source.mirrored for t in mirrored.held] == [False]
 
 
+@pytest.mark.nightly
 def test_what_is_trained_is_not_trained_again(tmp_path):
     stopped = Trained(fails_at="no-activity")
     with pytest.raises(KeyboardInterrupt):
@@ -130,6 +131,7 @@ def test_what_differs_in_sampling_alone_is_trained_once(tmp_path):
     assert [r.name for r in found.rows][-2:] == ["whole", "no guidance"]
 
 
+@pytest.mark.nightly
 def test_without_the_partner_neither_voice_nor_activity_is_left(sample, tmp_path):
     write_planted(sample, tmp_path, Planted(count=1, seconds=20.0))
     files, _ = find_takes([tmp_path])

@@ -79,6 +79,7 @@ def test_a_model_is_not_judged_on_what_it_knows():
         unseen(taught(TAKES), TAKES)
 
 
+@pytest.mark.nightly
 def test_of_one_recording_the_block_that_was_held_out_is_taken():
     long = take("long", 3, 60.0)
     learned, held = split_takes([long])

@@ -39,6 +39,7 @@ def test_other_moves_say_the_same():
     assert (a.samples == b.samples).all()
 
 
+@pytest.mark.nightly
 def test_a_clause_is_loudest_at_its_peak():
     spoken = make_planted_speech(120.0, 3, 1, "talk")
     for n, side in enumerate(spoken.conversation.sides):
@@ -50,6 +51,7 @@ def test_a_clause_is_loudest_at_its_peak():
             assert abs(s.start + power.argmax() / RATE - s.peak) < 0.12
 
 
+@pytest.mark.nightly
 def test_speech_has_all_that_can_be_answered_and_is_not_cut_off():
     spoken = make_planted_speech(180.0, 1, 1, "talk")
     assert np.abs(spoken.samples).max() < 0.5
@@ -65,6 +67,7 @@ def test_too_short_a_conversation_is_refused_in_words(seconds):
         make_planted_speech(seconds, 1, 1, "talk")
 
 
+@pytest.mark.nightly
 def test_the_folder_is_read_as_takes_of_both_sides(folder):
     files, without = find_takes([folder])
     assert not without
@@ -80,6 +83,7 @@ def test_the_folder_is_read_as_takes_of_both_sides(folder):
     assert not shares_stretch(batch.takes[0], batch.takes[2])
 
 
+@pytest.mark.nightly
 def test_nothing_is_made_twice_and_what_was_cut_short_is_made_up_for(project, folder):
     before = {p.name: p.read_bytes() for p in folder.iterdir()}
     assert write_planted(project, folder, SHORT) == 0

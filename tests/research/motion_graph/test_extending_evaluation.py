@@ -43,6 +43,7 @@ def test_strokes_are_counted_by_how_much_later_they_come() -> None:
     assert none.met == none.answered == none.chance == 0.0 and "none" in format_rows_as_text([none])
 
 
+@pytest.mark.nightly
 def test_takes_are_held_out_and_driven_and_the_best_paths_stand_beside() -> None:
     takes, said = talkers()
     rows = list(score_extending(hold_out_takes(takes[:3], said[:3])[:1], ahead=(None, 1.0)))

@@ -79,6 +79,7 @@ def test_there_is_a_setting_without_each_constraint_without_peaks_and_with_other
     assert len({s.name for s in SETTINGS}) == len(SETTINGS)
 
 
+@pytest.mark.nightly
 def test_each_take_is_held_out_and_both_searches_find_its_speech_in_the_others(takes: Takes) -> None:
     told: list[tuple[int, int]] = []
     found = evaluate_search(*takes, settings=SOME, progress=lambda n, total: told.append((n, total)))

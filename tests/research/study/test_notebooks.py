@@ -31,6 +31,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return analyse_study(collect_study(folder, jumps=False))
 
 
+@pytest.mark.nightly
 def test_python_draws_every_figure_as_the_report_has_it(results: Results, tmp_path: Path) -> None:
     write_study_report(results, tmp_path / "report")
     cells = json.loads((tmp_path / "report" / "notebooks" / "figures.ipynb").read_text())["cells"]

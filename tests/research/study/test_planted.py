@@ -44,6 +44,7 @@ def rewrite(log: Path, change: Callable[[list[dict[str, Any]]], None]) -> None:
     log.write_text("".join(json.dumps(e) + "\n" for e in events))
 
 
+@pytest.mark.nightly
 def test_every_way_of_reckoning_recovers_what_was_put_in(made: Path) -> None:
     found = analyse_study(collect_study(made, jumps=False))
     assert found.time is not None and found.sensitivity is not None and found.sensitivity.mixed is not None
@@ -59,6 +60,7 @@ def test_every_way_of_reckoning_recovers_what_was_put_in(made: Path) -> None:
     assert found.sensitivity.odd == ()
 
 
+@pytest.mark.nightly
 def test_one_person_with_other_sizes_is_left_out_and_the_unit_stays(study: Path) -> None:
     """The larger task in the one condition, the smaller in the other: nothing can be compared within them."""
     before = analyse_study(collect_study(study, jumps=False))
@@ -79,6 +81,7 @@ def test_one_person_with_other_sizes_is_left_out_and_the_unit_stays(study: Path)
     assert "meta_seconds" in columns and rows[4][columns.index("meta_seconds")] is None
 
 
+@pytest.mark.nightly
 def test_a_sitting_of_63_minutes_under_a_limit_of_40_is_told(study: Path) -> None:
     path = study / "study.yaml"
     path.write_text(path.read_text().replace("  instructions:", "  minutes: 40\n  instructions:"))
@@ -111,6 +114,7 @@ def stretched(events: list[dict[str, Any]], later: dict[int, float]) -> None:
         e["wall"] = wall.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
+@pytest.mark.nightly
 def test_a_swapped_reference_and_a_changed_clip_are_told(study: Path) -> None:
     before = collect_study(study, jumps=False)
     assert before.missing == ()
@@ -148,6 +152,7 @@ def test_an_old_log_says_that_nothing_was_frozen(study: Path) -> None:
     assert any(words.startswith("P01: the log does not say which references and clips") for words in told)
 
 
+@pytest.mark.nightly
 def test_what_vanished_is_told_by_condition(study: Path) -> None:
     def wait(events: list[dict[str, Any]]) -> None:
         at = next(n for n, e in enumerate(events) if e["type"] == "edit" and e["mono"] > 0)
@@ -167,6 +172,7 @@ def test_what_vanished_is_told_by_condition(study: Path) -> None:
     )
 
 
+@pytest.mark.nightly
 def test_time_outs_count_as_bounds_and_wrong_machines_as_not_yet_right(study: Path) -> None:
     def cut(events: list[dict[str, Any]]) -> None:
         for e in events:

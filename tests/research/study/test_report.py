@@ -28,6 +28,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     )
 
 
+@pytest.mark.nightly
 def test_the_page_is_whole_and_needs_nothing_beside_it(results: Results) -> None:
     text = format_study_page(results)
     for title in (

@@ -225,6 +225,7 @@ def test_edits_in_the_journal_are_in_the_file_once_it_was_reopened(tiny):
     assert reopen(path)[1] == 0, "a journal of an older state adds nothing"
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform == "win32", reason="processes are forked and killed as Unix does")
 def test_killed_at_many_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
     study = read_study(tiny)

@@ -126,6 +126,7 @@ def test_a_study_that_is_not_there_or_no_text_is_told(tmp_path: Path) -> None:
         read_study(tmp_path)
 
 
+@pytest.mark.nightly
 @given(
     st.recursive(
         st.none() | st.booleans() | st.integers() | st.text(max_size=5),

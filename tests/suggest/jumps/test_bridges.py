@@ -81,6 +81,7 @@ graphs = st.integers(0, len(ANGLES)).flatmap(
 )
 
 
+@pytest.mark.nightly
 @given(graphs)
 def test_every_stance_is_led_to_and_led_back_from_and_bridging_again_adds_nothing(
     drawn: tuple[int, list[tuple[int, int]]],
@@ -362,6 +363,7 @@ def test_a_bridge_by_a_moment_of_a_longer_clip_shows_that_moment_where_it_blends
     assert into.timing.blend_in == pytest.approx(into.timing.blend_out, abs=2e-3)
 
 
+@pytest.mark.nightly
 @given(graphs, st.data())
 def test_one_stance_is_joined_and_the_others_keep_their_troubles(
     drawn: tuple[int, list[tuple[int, int]]], data: st.DataObject

@@ -84,6 +84,7 @@ def test_one_armed_movements_take_the_arm_that_moves(toy: Any) -> None:
         assert (g.layer.value, g.limb.value) == ("arms", side.lower()) and g.limb.confidence > 0.9
 
 
+@pytest.mark.nightly
 @given(st.sampled_from(["Left", "Right"]), st.floats(0.5, 4))
 def test_a_mirrored_clip_takes_the_other_arm(side: str, seconds: float) -> None:
     from tests.conftest import Toy
@@ -96,6 +97,7 @@ def test_a_mirrored_clip_takes_the_other_arm(side: str, seconds: float) -> None:
     )
 
 
+@pytest.mark.nightly
 @given(st.floats(0.05, 50), st.floats(-0.5, 1.2))
 def test_size_does_not_change_a_guess(factor: float, end: float) -> None:
     from tests.conftest import Toy

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from app.features.behaviour.behaviour_dialog import OWN, BehaviourDialog
 from metagraph.graph import edits
 
@@ -17,6 +19,7 @@ def opened(toys):
     return dialog
 
 
+@pytest.mark.nightly
 def test_it_counts_an_hour_of_each_mode_and_the_stage_shows_that_mode(toys):
     dialog = opened(toys)
     talking = shown(dialog)
@@ -29,6 +32,7 @@ def test_it_counts_an_hour_of_each_mode_and_the_stage_shows_that_mode(toys):
     assert blinks[2].startswith("people: 8.0 to 21.0")
 
 
+@pytest.mark.nightly
 def test_a_temperament_is_one_step_to_undo_and_is_counted_again(toys):
     dialog = opened(toys)
     before, calm = toys.document.project, shown(dialog)

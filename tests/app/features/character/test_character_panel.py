@@ -12,6 +12,7 @@ def ticking(widget) -> list[QTimer]:
     return [timer for timer in widget.findChildren(QTimer) if timer.isActive() and not timer.isSingleShot()]
 
 
+@pytest.mark.nightly
 def test_a_paused_window_rests_and_playing_goes_on_without_a_leap(toys):
     drive = toys
     panel, transport = drive.shell.panel("character"), drive.shell.stage.session.transport

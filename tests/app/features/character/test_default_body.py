@@ -31,6 +31,7 @@ def clips(toy, tmp_path):
     return tmp_path
 
 
+@pytest.mark.nightly
 def test_a_choice_in_the_view_menu_draws_bones_and_the_body_again(drive, clips):
     drive.importing.import_paths([str(clips / "still.glb")])
     drive.wait(lambda: isinstance(shown(drive), DefaultBody))
@@ -44,6 +45,7 @@ def test_a_choice_in_the_view_menu_draws_bones_and_the_body_again(drive, clips):
     drive.wait(lambda: isinstance(drive.preview.drawn[0], DefaultBody))
 
 
+@pytest.mark.nightly
 def test_the_camera_steps_back_for_a_clip_that_would_leave_the_picture(drive, clips):
     drive.importing.import_paths([str(clips)])
     drive.wait(lambda: len(drive.document.project.clips) == 2 and isinstance(shown(drive), DefaultBody))

@@ -33,6 +33,7 @@ def shown(drive):
     return drive.shell.stage.figures.figure(skeleton) if skeleton is not None else None
 
 
+@pytest.mark.nightly
 def test_a_stand_in_is_drawn_as_the_default_body_and_a_button_in_the_view_asks_for_a_character(
     drive, scene, monkeypatch
 ):
@@ -55,6 +56,7 @@ def test_a_stand_in_is_drawn_as_the_default_body_and_a_button_in_the_view_asks_f
     drive.wait(lambda: not over.isVisible())
 
 
+@pytest.mark.nightly
 def test_a_mesh_is_hidden_by_a_click_saved_and_shown_again_by_undo(drive, scene):
     from app.features.character.meshes_dialog import MeshesDialog
 

@@ -45,6 +45,7 @@ def shown(drive, sample):
     return drive
 
 
+@pytest.mark.nightly
 def test_feet_are_marked_by_a_key_and_one_that_slides_says_how_fast_and_when(shown):
     drive, feet = shown, shown.preview.overlays.feet
     drifting(drive)
@@ -82,6 +83,7 @@ def touching(drive, weight: float):
     return marks.touches()
 
 
+@pytest.mark.nightly
 def test_hands_in_contact_are_marked_by_a_key_and_said(shown):
     drive, marks = shown, shown.preview.overlays.hands
     touches = touching(drive, 0.995)
@@ -97,6 +99,7 @@ def test_hands_in_contact_are_marked_by_a_key_and_said(shown):
     assert marks.isHidden()
 
 
+@pytest.mark.nightly
 def test_a_clip_looked_at_alone_has_the_contacts_of_what_uses_it(shown):
     action = next(a for a in shown.document.project.actions() if a.contacts)
     shown.session.transport.show_clip(action.clip)
@@ -107,6 +110,7 @@ def test_a_clip_looked_at_alone_has_the_contacts_of_what_uses_it(shown):
     shown.wait(lambda: bool(shown.preview.overlays.hands.touches()))
 
 
+@pytest.mark.nightly
 def test_no_event_composes_more_than_a_few_poses(shown):
     feet = shown.preview.overlays.feet
     shown.session.transport.set_playing(False)
@@ -120,6 +124,7 @@ def test_no_event_composes_more_than_a_few_poses(shown):
     assert max(asked) <= 12 and sum(asked) < 2 * 3 * RATE
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("command", ["feet", "hands_touch", "stance_ghost", "onion", "trails"])
 def test_what_lies_over_the_picture_does_not_draw_it_again_and_again(shown, command):
     shown.session.transport.set_playing(False)
@@ -132,6 +137,7 @@ def test_what_lies_over_the_picture_does_not_draw_it_again_and_again(shown, comm
     shown.do(command)
 
 
+@pytest.mark.nightly
 def test_the_next_slide_is_found_and_none_is_said(shown):
     drifting(shown)
     shown.session.transport.seek(0.0)
@@ -145,6 +151,7 @@ def test_the_next_slide_is_found_and_none_is_said(shown):
     shown.wait(lambda: "No planted foot" in shown.window.statusBar().currentMessage())
 
 
+@pytest.mark.nightly
 def test_the_stance_stands_as_a_ghost_where_the_character_has_left_it(shown):
     panel, session = shown.preview, shown.session
     session.transport.set_playing(False)

@@ -166,6 +166,7 @@ def spot(dialog, project, name, stance):
     return dialog.table.viewport(), dialog.table.visualRect(index).center()
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_click_plays_a_clip_in_the_context_of_that_stance(opened):
@@ -192,6 +193,7 @@ def test_a_click_plays_a_clip_in_the_context_of_that_stance(opened):
     assert drive.document.undo_stack.count() == 0, "looking changes nothing"
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_double_click_places_with_proposed_times_in_one_step(opened):
@@ -216,6 +218,7 @@ def test_a_double_click_places_with_proposed_times_in_one_step(opened):
     assert drive.action("free wave").end_stance == drive.id("up")
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_another_layer_and_no_stance_say_so_and_searching_narrows(opened):

@@ -58,6 +58,7 @@ def test_selected_segments_stay_selected_while_they_are_there(talk: Any) -> None
     assert not talk.editing.chosen
 
 
+@pytest.mark.nightly
 def test_reading_that_was_cancelled_is_told_and_begun_anew_when_it_is_chosen_again(talk: Any) -> None:
     drive, sounds = talk.drive, talk.drive.conversation.sounds
     assert all(h.told for h in sounds.heard.values())

@@ -145,6 +145,7 @@ def test_a_failed_read_says_why_and_keeps_the_dialog(drive: Any, tmp_path: Path)
     assert not drive.document.project.conversations
 
 
+@pytest.mark.nightly
 def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Path) -> None:
     audio, _ = make_conversation(tmp_path)
     words = tmp_path / "over.srt"
@@ -161,6 +162,7 @@ def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Pa
     dialog.reject()
 
 
+@pytest.mark.nightly
 def test_reading_can_be_stopped_and_taken_up_again(drive: Any, tmp_path: Path) -> None:
     audio, words = make_conversation(tmp_path)
     ask_for_conversation(drive.shell, (audio,))
@@ -188,6 +190,7 @@ def test_a_single_sound_of_one_channel_is_a_line_of_dialogue(drive: Any, tmp_pat
     assert not [d for d in drive.window.findChildren(ImportDialog) if d.isVisible()]
 
 
+@pytest.mark.nightly
 def test_rates_lists_names_and_the_stage(talk: Any) -> None:
     drive = talk.drive
     drive.actions["rates"].trigger()

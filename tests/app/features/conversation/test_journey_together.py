@@ -23,6 +23,7 @@ from tests.speech.talk import make_conversation
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 
+@pytest.mark.nightly
 def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     audio, words = make_conversation(tmp_path)
     drive.files.open(SAMPLE, template=True)

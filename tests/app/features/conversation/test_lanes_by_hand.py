@@ -29,6 +29,7 @@ def press(talk: Any, key: Qt.Key, modifier: Qt.KeyboardModifier = Modifier.NoMod
     QTest.keyClick(talk.view, key, modifier)
 
 
+@pytest.mark.nightly
 def test_an_edge_is_dragged_and_caught_by_a_word(talk: Any) -> None:
     first, before = talk.segments()[0], steps(talk)
     edges = [
@@ -46,6 +47,7 @@ def test_an_edge_is_dragged_and_caught_by_a_word(talk: Any) -> None:
     assert talk.segments()[0] == first
 
 
+@pytest.mark.nightly
 def test_a_body_is_dragged_up_to_its_neighbour_and_takes_its_stress_along(talk: Any) -> None:
     before = talk.segments()[3]
     assert before.kind == "hesitation"
@@ -60,6 +62,7 @@ def test_a_body_is_dragged_up_to_its_neighbour_and_takes_its_stress_along(talk: 
     assert talk.editing.chosen == {(0, 3)}
 
 
+@pytest.mark.nightly
 def test_the_stress_is_dragged_to_a_top_of_the_pitch(talk: Any) -> None:
     talk.read()
     first = talk.segments()[0]
@@ -76,6 +79,7 @@ def test_the_stress_is_dragged_to_a_top_of_the_pitch(talk: Any) -> None:
     assert talk.drive.document.undo_stack.undoText() == "Move stress"
 
 
+@pytest.mark.nightly
 def test_a_drag_in_a_gap_makes_a_segment_with_its_stress(talk: Any) -> None:
     talk.read()
     count, before = len(talk.segments()), steps(talk)
@@ -140,6 +144,7 @@ def test_a_double_click_labels_a_segment_as_what_comes_next(talk: Any) -> None:
     assert talk.segments()[0].kind == "response"
 
 
+@pytest.mark.nightly
 def test_tab_and_arrows_go_from_segment_to_segment_and_bring_it_in_sight(talk: Any) -> None:
     press(talk, Key.Key_Tab)
     assert talk.editing.chosen == {(0, 0)}
@@ -235,6 +240,7 @@ def near(a: str, b: str) -> bool:
     return all(abs(x - y) <= 9 for x, y in zip(QColor(a).getRgb(), QColor(b).getRgb(), strict=True))
 
 
+@pytest.mark.nightly
 def test_a_missing_sound_is_told_in_its_lane_and_the_rest_works(talk: Any, tmp_path: Path) -> None:
     talk.read()
     ident = talk.drive.session.onstage.conversation

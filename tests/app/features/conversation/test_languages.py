@@ -54,6 +54,7 @@ def test_codes_have_names() -> None:
     assert name_language("und") == "language not known"
 
 
+@pytest.mark.nightly
 def test_the_language_is_found_shown_chosen_remembered_and_undone(drive: Any, tmp_path: Path) -> None:
     dialog = imported(drive, write(tmp_path, TALKS["de"], "de"))
     assert dialog.language.currentData() == "auto"
@@ -86,6 +87,7 @@ def test_the_language_is_found_shown_chosen_remembered_and_undone(drive: Any, tm
     again.reject()
 
 
+@pytest.mark.nightly
 def test_two_who_speak_different_languages_have_lists_each(drive: Any, tmp_path: Path) -> None:
     german = [x for x in TALKS["de"].strip().splitlines() if x[0] == "A"]
     english = ["B" + x[1:] for x in TALKS["en"].strip().splitlines() if x[0] == "A"]

@@ -74,6 +74,7 @@ def test_two_clicks_change_who_is_seen_and_heard(two):
     assert (side().audio, side().channel, side().character) == ("talk.wav", 1, None)
 
 
+@pytest.mark.nightly
 def test_the_menu_bar_offers_the_same_for_all_who_talk(two):
     drive, _ = two
     drive.shell.actions.refresh()

@@ -64,6 +64,7 @@ def test_a_pattern_that_cannot_be_read_is_told_and_not_done(toys):
     assert {a.name for a in drive.document.project.actions()} >= {"short", "long"}
 
 
+@pytest.mark.nightly
 def test_copied_properties_are_pasted_in_the_chosen_groups(toys):
     from app.features.editing.batch_dialogs import PasteDialog
     from metagraph.graph import edits

@@ -45,6 +45,7 @@ def put(dialog, folder: str) -> None:
     QTest.keyClicks(dialog.folder, folder)
 
 
+@pytest.mark.nightly
 def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
     drive = toys
     dialog = opened(drive)
@@ -60,6 +61,7 @@ def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
     dialog.reject()
 
 
+@pytest.mark.nightly
 def test_a_group_cannot_be_chosen(toys):
     drive = toys
     dialog = opened(drive)
@@ -72,6 +74,7 @@ def test_a_group_cannot_be_chosen(toys):
     dialog.reject()
 
 
+@pytest.mark.nightly
 def test_a_target_is_written_and_remembered_with_its_options(toys, tmp_path):
     drive = toys
     dialog = opened(drive)
@@ -89,6 +92,7 @@ def test_a_target_is_written_and_remembered_with_its_options(toys, tmp_path):
     again.reject()
 
 
+@pytest.mark.nightly
 def test_vectors_and_tools_are_written_where_they_are_asked_for(toys, tmp_path):
     drive = toys
     dialog = opened(drive)
@@ -106,6 +110,7 @@ def test_vectors_and_tools_are_written_where_they_are_asked_for(toys, tmp_path):
     assert opened(drive).tools.isChecked()
 
 
+@pytest.mark.nightly
 def test_a_glb_is_packed_where_that_is_asked_for_and_its_target_reads_it(toys, tmp_path):
     drive = toys
     dialog = opened(drive)
@@ -123,6 +128,7 @@ def test_a_glb_is_packed_where_that_is_asked_for_and_its_target_reads_it(toys, t
     dialog.reject()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "kept", ["nonsense", "[1]", '{"target": "no such", "folder": "/x"}', '{"colour": 1}']
 )
@@ -136,6 +142,7 @@ def test_a_memory_that_cannot_be_read_is_as_none(toys, kept):
     assert opened(drive).target.name == registry.DEFAULT
 
 
+@pytest.mark.nightly
 def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_path, monkeypatch):
     import urllib.request
 
@@ -167,6 +174,7 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
     dialog.reject()
 
 
+@pytest.mark.nightly
 def test_each_target_has_a_folder_of_its_own_and_its_own_result(toys, tmp_path, monkeypatch):
     from metagraph.engines.targets import web
 

@@ -67,6 +67,7 @@ def test_what_came_in_whole_says_what_to_do_next_until_it_is_done(drive, line, f
     assert line.isHidden()
 
 
+@pytest.mark.nightly
 def test_what_was_left_is_retargeted_by_one_click(drive, line, folder):
     drive.importing.import_paths([str(folder / "rest.glb")])
     drive.wait(lambda: len(drive.document.project.clips) == 1)
@@ -83,6 +84,7 @@ def test_what_was_left_is_retargeted_by_one_click(drive, line, folder):
     assert drive.document.undo_stack.undoText() == "Retarget 1 clip"
 
 
+@pytest.mark.nightly
 def test_what_no_map_is_known_for_asks_for_the_joints(drive, line, folder, toy):
     from app.features.retargeting.joint_map_dialog import JointMapDialog
 
@@ -106,6 +108,7 @@ def test_what_no_map_is_known_for_asks_for_the_joints(drive, line, folder, toy):
     drive.wait(line.isVisible)
 
 
+@pytest.mark.nightly
 def test_a_file_of_stand_ins_offers_to_choose_a_character(drive, line, toy, tmp_path, monkeypatch):
     whole = body(toy.skeleton, dict.fromkeys(range(len(toy.skeleton)), 0.1))
     part = replace(whole, triangles=whole.triangles[:1], surfaces=(Surface(0, 1, 0),))
@@ -121,6 +124,7 @@ def test_a_file_of_stand_ins_offers_to_choose_a_character(drive, line, toy, tmp_
     drive.wait(lambda: drive.document.project.character is not None)
 
 
+@pytest.mark.nightly
 def test_the_details_say_each_thing_once_and_the_line_can_be_closed(drive, line, folder):
     for n in range(3):
         (folder / f"bad{n}.bvh").write_text("HIERARCHY\nROOT Hips\n{\n")
@@ -136,6 +140,7 @@ def test_the_details_say_each_thing_once_and_the_line_can_be_closed(drive, line,
     assert line.isHidden()
 
 
+@pytest.mark.nightly
 def test_what_came_in_is_offered_to_label_though_other_files_failed(drive, line, folder):
     (folder / "bad.bvh").write_text("noise")
     drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "bad.bvh")])
@@ -143,6 +148,7 @@ def test_what_came_in_is_offered_to_label_though_other_files_failed(drive, line,
     assert line.offered[-1].text() == "Label clips…"
 
 
+@pytest.mark.nightly
 def test_the_line_goes_with_the_project_it_was_about(drive, line, folder):
     (folder / "bad.bvh").write_text("noise")
     drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "bad.bvh")])

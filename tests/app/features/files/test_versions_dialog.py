@@ -49,6 +49,7 @@ def rows(shown) -> list[str]:
     return [shown.item(n).text() for n in range(shown.count())]
 
 
+@pytest.mark.nightly
 def test_versions_are_listed_with_what_changed_since(drive, dialog: VersionsDialog) -> None:
     assert [text.split(",")[0] for text in rows(dialog.versions)] == ["Version 1", "Version 2"]
     assert "1 clip, 0 actions\n1 change " in rows(dialog.versions)[0]
@@ -63,6 +64,7 @@ def test_versions_are_listed_with_what_changed_since(drive, dialog: VersionsDial
     dialog.reject()
 
 
+@pytest.mark.nightly
 def test_return_opens_the_chosen_one_as_a_copy_that_replaces_nothing(
     drive, dialog: VersionsDialog, path: Path
 ) -> None:
@@ -77,6 +79,7 @@ def test_return_opens_the_chosen_one_as_a_copy_that_replaces_nothing(
     assert not path.with_name(f".{path.name}.lock").exists()
 
 
+@pytest.mark.nightly
 def test_one_that_cannot_be_read_says_why_and_is_not_opened(drive, path: Path) -> None:
     make_version_path(path, 1).write_text("- no project")
     found = find_versions(path, drive.document.project)
@@ -89,6 +92,7 @@ def test_one_that_cannot_be_read_says_why_and_is_not_opened(drive, path: Path) -
     dialog.deleteLater()
 
 
+@pytest.mark.nightly
 def test_how_many_are_kept_is_set_there_and_none_is_said_in_words(drive, path: Path) -> None:
     dialog = VersionsDialog(path.name, (), lambda _: None, drive.window)
     assert dialog.count.value() == 3 and dialog.current is None and not dialog.go.isEnabled()
@@ -99,6 +103,7 @@ def test_how_many_are_kept_is_set_there_and_none_is_said_in_words(drive, path: P
     dialog.deleteLater()
 
 
+@pytest.mark.nightly
 def test_a_save_whose_version_cannot_be_kept_is_whole_and_tells_so(drive, path: Path) -> None:
     told: list[object] = []
     drive.files.report.connect(lambda title, lines: told.append((title, lines)))
@@ -115,6 +120,7 @@ def test_the_command_waits_for_a_file(drive) -> None:
     assert not drive.shell.actions["versions"].isEnabled()
 
 
+@pytest.mark.nightly
 def test_a_version_that_is_opened_as_a_file_is_a_copy(drive, path: Path) -> None:
     drive.files.open(make_version_path(path, 1))
     drive.wait(lambda: drive.document.path is None and bool(drive.document.project.clips))

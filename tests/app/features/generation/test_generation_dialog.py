@@ -89,6 +89,7 @@ def takes(folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.nightly
 def test_a_model_moves_a_side_of_a_conversation_and_one_undo_takes_it_back(shown, tmp_path):
     drive, dialog = shown
     assert dialog.use.model.currentText() == "tiny" and "this project's skeleton" in dialog.use.about.text()
@@ -111,6 +112,7 @@ def test_a_model_moves_a_side_of_a_conversation_and_one_undo_takes_it_back(shown
     assert drive.document.project.conversations["v9000"].sides[0].motion is None
 
 
+@pytest.mark.nightly
 def test_takes_are_made_cut_and_dropped_on_the_graph_in_one_step(shown, tmp_path):
     drive, dialog = shown
     use = dialog.use
@@ -254,6 +256,7 @@ def training(shown, tmp_path):
     yield drive, dialog, begun[0]
 
 
+@pytest.mark.nightly
 def test_a_training_is_followed_stopped_and_kept(training, model):
     drive, dialog, process = training
     learn = dialog.learn
@@ -328,6 +331,7 @@ def test_a_training_that_was_cut_short_is_offered_and_not_written_over(shown, tm
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path):
     drive, dialog = shown
     out = planting().cut_short(tmp_path / "models", "mine", 10)
@@ -361,6 +365,7 @@ def test_a_model_that_is_there_is_not_written_over(shown, tmp_path):
     assert "file name" in dialog.said.text()
 
 
+@pytest.mark.nightly
 def test_without_torch_it_says_what_to_install_and_still_samples(shown, monkeypatch):
     drive, dialog = shown
     dialog.close()
@@ -377,6 +382,7 @@ def test_without_torch_it_says_what_to_install_and_still_samples(shown, monkeypa
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_without_a_conversation_it_says_how_to_get_one(shown):
     drive, dialog = shown
     use = dialog.use

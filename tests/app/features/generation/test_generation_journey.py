@@ -67,6 +67,7 @@ def write_mover(path: Path) -> None:
     write_model(Model(card, still.weights), path)
 
 
+@pytest.mark.nightly
 def test_from_training_to_an_export_that_says_what_was_generated(drive, tmp_path):
     path = tmp_path / "copy.metagraph.yaml"
     save_project(replace(few(), conversations={"v9000": speech(tmp_path)}), path)

@@ -25,6 +25,7 @@ class Painted(QObject):
         return False
 
 
+@pytest.mark.nightly
 def test_what_an_edit_changed_is_painted_though_a_corner_is_painted_first(drive, toy):
     drive.document.load(toy.project(), None)
     drive.workspaces.choose("graph")

@@ -207,6 +207,7 @@ def test_a_chip_on_another_merges_them_and_elsewhere_does_nothing(toy, project):
         assert not merge_at(project, rest, hit).possible
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_stance_dragged_onto_another_is_merged_in_one_step_and_from_its_menu_too(toys):

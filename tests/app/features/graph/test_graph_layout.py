@@ -98,6 +98,7 @@ def test_many_stances_and_actions_still_fit(toy, crowded, size):
         check(lay_out_canvas(crowded, "arms", stance, QSizeF(*size)))
 
 
+@pytest.mark.nightly
 @settings(max_examples=80, deadline=None)
 @given(width=st.floats(1, 5000), height=st.floats(1, 4000))
 def test_nothing_overlaps_at_sizes_nobody_thought_of(toy, width, height):
@@ -200,6 +201,7 @@ def test_a_bar_shows_what_is_set_on_it(toy):
     assert (measure_bar_part(0.0), measure_bar_part(100.0)) == (0.0, 1.0)
 
 
+@pytest.mark.nightly
 def test_ten_thousand_actions_lay_out_only_what_is_in_sight(toy):
     project = toy.project()
     rest, clips = toy.id(project, "rest"), [next(iter(project.clips))] * 10_000

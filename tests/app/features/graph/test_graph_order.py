@@ -41,6 +41,7 @@ def row_end(drive, action, lower: bool):
     return drive.canvas, QPointF(x, y).toPoint()
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_a_row_is_dragged_in_front_of_another_and_undone(many):
     before = many.order()

@@ -50,6 +50,7 @@ def head(drive, action: str) -> tuple:
     return drive.canvas, QPoint(round(rect.center().x()), round(rect.center().y()))
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_an_arrow_dragged_onto_a_stance_ends_there_in_one_step(toys):
@@ -68,6 +69,7 @@ def test_an_arrow_dragged_onto_a_stance_ends_there_in_one_step(toys):
     assert drive.document.project.action(way).end_stance == drive.id("up")
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_refused(toys):

@@ -33,6 +33,7 @@ def test_a_step_is_asked_for_until_it_is_done_and_never_again(toy):
     assert set(WORDS) == {*(s.ident for s in STEPS), "end"}
 
 
+@pytest.mark.nightly
 def test_it_leads_from_an_empty_window_to_an_export(drive):
     drive.do("guide")
     guide = line(drive)
@@ -62,6 +63,7 @@ def test_it_leads_from_an_empty_window_to_an_export(drive):
     assert not guide.isVisible()
 
 
+@pytest.mark.nightly
 def test_a_step_can_be_skipped_and_the_guide_left_at_any_time(drive):
     drive.do("guide")
     guide = line(drive)

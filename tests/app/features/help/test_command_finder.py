@@ -19,6 +19,7 @@ def opened(drive, command: str) -> CommandFinder:
     return dialog
 
 
+@pytest.mark.nightly
 def test_every_command_is_found_by_its_words_in_any_order(toys):
     dialog = opened(toys, "palette")
     every = {e.words for e in dialog.listed()}
@@ -90,6 +91,7 @@ def test_what_was_done_last_comes_before_equal_matches(qapp):
     dialog.deleteLater()
 
 
+@pytest.mark.nightly
 def test_stances_and_actions_are_gone_to_by_their_names(toys):
     toys.do("palette")
     finder = toys.window.findChild(CommandFinder)

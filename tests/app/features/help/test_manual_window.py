@@ -41,6 +41,7 @@ def test_every_panel_has_a_page_that_exists(toys):
     assert all((manual_pages.DOCS / name).is_file() for name in listed if name)
 
 
+@pytest.mark.nightly
 def test_f1_opens_the_page_of_the_panel_that_has_the_keyboard(toys):
     for panel, field in (("library", toys.library.search), ("graph", toys.canvas)):
         toys.window.activateWindow()
@@ -57,6 +58,7 @@ def test_f1_opens_the_page_of_the_panel_that_has_the_keyboard(toys):
     assert len(toys.window.findChildren(ManualWindow)) == 1
 
 
+@pytest.mark.nightly
 def test_links_lead_on_and_keys_lead_back(toys):
     manual = read(toys, "index.md")
     manual.browser.anchorClicked.emit(QUrl("animators/talk.md#edit-the-segments"))
@@ -72,6 +74,7 @@ def test_links_lead_on_and_keys_lead_back(toys):
     manual.close()
 
 
+@pytest.mark.nightly
 def test_what_is_searched_for_is_listed_and_enter_opens_the_first(toys):
     manual = read(toys, "index.md")
     QTest.keyClicks(manual.search, "loop range")
@@ -87,6 +90,7 @@ def test_what_is_searched_for_is_listed_and_enter_opens_the_first(toys):
     manual.close()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("theme", ["dark", "light"])
 def test_pages_have_the_windows_colours_and_pictures_the_room_there_is(toys, theme):
     before = toys.session.look.name
@@ -132,6 +136,7 @@ def test_admonitions_are_told_by_a_bold_word():
     assert text == "a\n\n> **N**\n>\n> one\n\n> two\n\nb\n> **Limits**\n>\n> x\n"
 
 
+@pytest.mark.nightly
 def test_a_copy_without_a_manual_says_so(toys, monkeypatch, tmp_path):
     monkeypatch.setattr(manual_pages, "DOCS", tmp_path)
     toys.do("handbook")

@@ -61,6 +61,7 @@ def test_a_group_is_accepted_without_what_was_clicked_away_and_taken_back_in_one
     assert set(review.work.waiting()) == before
 
 
+@pytest.mark.nightly
 def test_more_that_is_left_out_than_the_next_group_has_is_not_accepted_by_pressing_enter_again(practice):
     review, groups = grouped(practice)
     press(groups, K.Key_Return)
@@ -79,6 +80,7 @@ def test_more_that_is_left_out_than_the_next_group_has_is_not_accepted_by_pressi
     assert out <= set(review.work.waiting()), "what was clicked away is still waiting"
 
 
+@pytest.mark.nightly
 def test_what_was_left_out_stays_so_while_the_rest_is_proposed_anew(practice):
     review, groups = grouped(practice)
     click(groups.sheet, 0)
@@ -91,6 +93,7 @@ def test_what_was_left_out_stays_so_while_the_rest_is_proposed_anew(practice):
     assert not groups.sheet.left_out and groups.sheet.chosen == list(groups.group.clips)
 
 
+@pytest.mark.nightly
 def test_a_correction_is_of_every_clip_shown_but_those_left_out(practice):
     review, groups = grouped(practice)
     row = next(n for n, g in enumerate(groups.groups) if g.kind == "gesture" and len(g.clips) > 4)
@@ -108,6 +111,7 @@ def test_a_correction_is_of_every_clip_shown_but_those_left_out(practice):
     assert not review.work.can_undo
 
 
+@pytest.mark.nightly
 def test_taking_a_correction_back_leaves_what_came_after_it(practice):
     review, groups = grouped(practice)
     work = review.work
@@ -121,6 +125,7 @@ def test_taking_a_correction_back_leaves_what_came_after_it(practice):
     assert work.review.said[other]["tags"] == ("mine",)
 
 
+@pytest.mark.nightly
 def test_nothing_that_is_told_is_no_step(practice):
     review, groups = grouped(practice)
     review.work.tell_all([], "kind", "fidget")
@@ -128,6 +133,7 @@ def test_nothing_that_is_told_is_no_step(practice):
     assert not review.work.can_undo
 
 
+@pytest.mark.nightly
 def test_what_was_corrected_is_placed_with_times_of_its_new_kind(practice):
     review, groups = grouped(practice)
     work = review.work
@@ -141,6 +147,7 @@ def test_what_was_corrected_is_placed_with_times_of_its_new_kind(practice):
     assert (action.timing.start, action.timing.end) == (timed.timing["start"], timed.timing["end"])
 
 
+@pytest.mark.nightly
 def test_what_is_of_several_stances_has_no_field_for_one(practice):
     _, groups = grouped(practice)
     for row, group in enumerate(groups.groups):
@@ -148,6 +155,7 @@ def test_what_is_of_several_stances_has_no_field_for_one(practice):
         assert groups.stance.isVisible() == (group.kind in ("gesture", "fidget"))
 
 
+@pytest.mark.nightly
 def test_by_keyboard_alone_a_clip_is_left_out_and_escape_goes_back_to_the_review(practice):
     review, groups = grouped(practice)
     press(groups, K.Key_Right, K.Key_Space)
@@ -159,6 +167,7 @@ def test_by_keyboard_alone_a_clip_is_left_out_and_escape_goes_back_to_the_review
     assert review.isVisible() and review.current in review.work.waiting()
 
 
+@pytest.mark.nightly
 def test_a_double_click_looks_at_a_clip_by_itself(practice):
     review, groups = grouped(practice)
     clip = groups.sheet.cards[2].clip
@@ -167,6 +176,7 @@ def test_a_double_click_looks_at_a_clip_by_itself(practice):
     assert review.current == clip
 
 
+@pytest.mark.nightly
 def test_pictures_move(practice, monkeypatch):
     _, groups = grouped(practice)
     sheet = groups.sheet

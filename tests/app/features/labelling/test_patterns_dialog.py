@@ -87,6 +87,7 @@ def test_removing_gives_back_forgets_or_takes_away() -> None:
     assert renamed.meanings["kinds"]["nod"] == "gesture" and renamed.meanings["kinds"]["noddle"] == "fidget"
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 def test_a_name_is_read_as_it_is_typed_and_a_new_pattern_changes_that_at_once(dialog: PatternsDialog) -> None:
     QTest.keyClicks(dialog.name, "Wobble_01")
@@ -102,6 +103,7 @@ def test_a_name_is_read_as_it_is_typed_and_a_new_pattern_changes_that_at_once(di
     assert shown(dialog) == [] and "gesture" not in dialog.read.text()
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 def test_built_in_words_are_found_changed_in_place_and_given_back(dialog: PatternsDialog) -> None:
     dialog.every.click()
@@ -124,6 +126,7 @@ def test_built_in_words_are_found_changed_in_place_and_given_back(dialog: Patter
     assert shown(dialog) == [] and dialog.learned.patterns.meanings["kinds"]["wave"] == "gesture"
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 def test_words_of_other_languages_are_shown_by_what_they_stand_for_and_taken_away(
     dialog: PatternsDialog,
@@ -138,6 +141,7 @@ def test_words_of_other_languages_are_shown_by_what_they_stand_for_and_taken_awa
     assert shown(dialog) == []
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 def test_a_built_in_word_that_is_taken_away_says_so_and_comes_back(dialog: PatternsDialog) -> None:
     dialog.every.click()
@@ -168,6 +172,7 @@ def test_no_words_or_a_broken_file_are_told_not_raised(
     assert "theirs.json" in dialog.words.text() and "'kinds', 'wave'" in dialog.words.text()
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 def test_patterns_are_shared_as_a_file_and_forgetting_leaves_own_ones(
     dialog: PatternsDialog, monkeypatch: pytest.MonkeyPatch, tmp_path: Path

@@ -108,6 +108,7 @@ def to_gesture(drive, dialog, name: str = "hands_at_sides__point_you_rt_01") -> 
     return clip
 
 
+@pytest.mark.nightly
 def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, truth, record_property):
     """Stances and whatever is not sure are looked at one by one and corrected where they are wrong; the sure
     ones are accepted at once.
@@ -182,6 +183,7 @@ def watched(project) -> float:
     )
 
 
+@pytest.mark.nightly
 def test_clips_stand_in_the_order_of_the_review_stances_first(practice):
     dialog = begun(practice)
     assert list(dialog.queue.clips) == dialog.review.order() and len(dialog.queue.clips) == 152
@@ -191,6 +193,7 @@ def test_clips_stand_in_the_order_of_the_review_stances_first(practice):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_a_clip_plays_out_of_its_stance_and_back_and_alone_when_wanted(practice):
     drive, dialog = practice, begun(practice)
     clip = to_gesture(drive, dialog)
@@ -225,6 +228,7 @@ def test_number_keys_and_arrows_correct_and_the_mouse_does_too(practice):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_every_step_is_taken_back_by_a_key_and_the_clip_is_looked_at_again(practice):
     drive, dialog = practice, begun(practice)
     first = dialog.current
@@ -244,6 +248,7 @@ def test_every_step_is_taken_back_by_a_key_and_the_clip_is_looked_at_again(pract
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_a_clip_may_wait_and_one_gone_by_is_placed_anew(practice):
     drive, dialog = practice, begun(practice)
     first = dialog.current
@@ -261,6 +266,7 @@ def test_a_clip_may_wait_and_one_gone_by_is_placed_anew(practice):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_a_stance_is_found_by_typing_or_named(practice, monkeypatch):
     drive, dialog = practice, begun(practice)
     rest = next(c for c, e in drive.document.project.clips.items() if e.name == "on_hips__stance")
@@ -284,6 +290,7 @@ def test_a_stance_is_found_by_typing_or_named(practice, monkeypatch):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_what_cannot_be_placed_stays_with_its_reason(practice):
     drive, dialog = practice, begun(practice)
     clip = to_gesture(drive, dialog)
@@ -294,6 +301,7 @@ def test_what_cannot_be_placed_stays_with_its_reason(practice):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_tags_and_times_are_given_where_the_clip_is_seen(practice):
     drive, dialog = practice, begun(practice)
     clip = to_gesture(drive, dialog)
@@ -316,6 +324,7 @@ def test_tags_and_times_are_given_where_the_clip_is_seen(practice):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_a_correction_is_learned_and_the_rest_looked_at_anew(practice, monkeypatch):
     drive, dialog = practice, begun(practice)
     told = []
@@ -330,6 +339,7 @@ def test_a_correction_is_learned_and_the_rest_looked_at_anew(practice, monkeypat
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_with_everything_placed_there_is_nothing_to_label(practice):
     drive, dialog = practice, begun(practice)
     dialog.queue.limit.setValue(0)
@@ -341,6 +351,7 @@ def test_with_everything_placed_there_is_nothing_to_label(practice):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_closing_lets_the_character_play_on(practice):
     drive = practice
     assert drive.session.transport.playing
@@ -359,6 +370,7 @@ def made_of(drive, name: str):
     return begun(drive)
 
 
+@pytest.mark.nightly
 def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_the_same(toys):
     drive = toys
     dialog = made_of(drive, "one stance and exercises")
@@ -399,6 +411,7 @@ def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_a_clip_taken_up_stays_one_when_the_rest_is_looked_at_anew(toys, monkeypatch):
     drive = toys
     dialog = made_of(drive, "one stance and exercises")
@@ -419,6 +432,7 @@ def test_a_clip_taken_up_stays_one_when_the_rest_is_looked_at_anew(toys, monkeyp
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_when_all_but_those_left_aside_is_placed_that_is_said(toys):
     dialog = made_of(toys, "one stance and exercises")
     dialog.queue.limit.setValue(0)
@@ -432,6 +446,7 @@ def test_when_all_but_those_left_aside_is_placed_that_is_said(toys):
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_a_stance_that_a_clip_leads_to_which_is_not_placed_yet_is_not_told(toys):
     drive = toys
     dialog = made_of(drive, "standing talker")
@@ -447,6 +462,7 @@ def test_a_stance_that_a_clip_leads_to_which_is_not_placed_yet_is_not_told(toys)
     dialog.close()
 
 
+@pytest.mark.nightly
 def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_with_a_press(toys):
     drive = toys
     dialog = made_of(drive, "standing talker")
@@ -525,6 +541,7 @@ def test_all_clips_are_watched_through_a_correction_holds_and_they_are_accepted_
     assert len(dialog.work.waiting()) < 152 and out in dialog.work.waiting()
 
 
+@pytest.mark.nightly
 def test_clips_that_are_taken_for_the_same_are_watched_beside_each_other(practice):
     from itertools import groupby
 
@@ -539,6 +556,7 @@ def test_clips_that_are_taken_for_the_same_are_watched_beside_each_other(practic
     )
 
 
+@pytest.mark.nightly
 def test_why_stances_cannot_be_joined_is_said_and_not_counted_as_a_transition(practice):
     dialog = begun(practice)
     dialog.queue.part((), (), ())

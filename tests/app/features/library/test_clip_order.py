@@ -49,6 +49,7 @@ def test_clips_are_listed_in_the_order_that_is_chosen_and_back(toys, order):
     assert [e.id for e in shown(panel)] == given_order
 
 
+@pytest.mark.nightly
 def test_what_is_chosen_stays_chosen_and_comes_back(toys):
     panel, session = toys.library, toys.session
     chosen = shown(panel)[-1].id

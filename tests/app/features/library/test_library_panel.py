@@ -87,6 +87,7 @@ def test_a_long_name_breaks_after_a_separator_and_keeps_its_end(metrics):
     assert second.endswith("01")
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_new_project_is_not_searched_for_what_was_wanted_of_the_last(toys, toy):
@@ -97,6 +98,7 @@ def test_a_new_project_is_not_searched_for_what_was_wanted_of_the_last(toys, toy
     assert toys.library.rows.rowCount() == len(toys.document.project.clips)
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_after_a_label_by_key_the_next_clip_without_one_is_selected(toys, toy):

@@ -45,6 +45,7 @@ def wheel(view, up: bool) -> None:
 # --- sizes
 
 
+@pytest.mark.nightly
 def test_slider_wheel_and_keys_make_clips_larger_and_it_is_kept(toys, panel):
     view = panel.list
     assert view.side == 108
@@ -62,6 +63,7 @@ def test_slider_wheel_and_keys_make_clips_larger_and_it_is_kept(toys, panel):
     assert view.side == SIZES[0]
 
 
+@pytest.mark.nightly
 def test_what_is_current_stays_in_sight_at_every_size(toys, panel):
     last = panel.rows.index(len(panel.rows.entries) - 1, 0)
     panel.list.setCurrentIndex(last)
@@ -70,6 +72,7 @@ def test_what_is_current_stays_in_sight_at_every_size(toys, panel):
         assert panel.list.viewport().rect().contains(panel.list.visualRect(last).center())
 
 
+@pytest.mark.nightly
 def test_scrolling_shows_what_comes(toys, panel):
     panel.show_as("cards", 224)
     view = panel.list
@@ -147,6 +150,7 @@ def test_a_click_on_a_title_sorts_and_another_turns_it_round(toys, panel):
     assert header.sortIndicatorSection() == n
 
 
+@pytest.mark.nightly
 def test_columns_are_shown_hidden_and_kept(toys, panel):
     panel.show_as("columns")
     panel.menu.fill_columns()
@@ -164,6 +168,7 @@ def test_columns_are_shown_hidden_and_kept(toys, panel):
     assert not header.isSectionHidden(PLACES["added"])
 
 
+@pytest.mark.nightly
 def test_every_column_says_something_of_a_clip_that_has_it_all(toys, panel):
     action = toys.action("rest beat lf")
     toys.document.edit("m", lambda p: mark(p, [action.clip], color="red", rating=2, favourite=True, note="n"))
@@ -198,6 +203,7 @@ def test_groups_have_titles_that_close_by_click_and_by_key(toys, panel):
     assert LibrarySettings().group() == "kind"
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("group", ["folder", "stance", "tag", "layer", "kind"])
 def test_every_clip_is_in_one_group_and_sorted_within_it(toys, panel, group):
     panel.group_by(group)
@@ -209,6 +215,7 @@ def test_every_clip_is_in_one_group_and_sorted_within_it(toys, panel, group):
         assert names == sorted(names)
 
 
+@pytest.mark.nightly
 def test_a_clip_that_is_placed_goes_to_its_group_and_stays_selected(toys, toy, panel):
     from metagraph.graph import edits
 
@@ -226,6 +233,7 @@ def test_a_clip_that_is_placed_goes_to_its_group_and_stays_selected(toys, toy, p
 # --- marks
 
 
+@pytest.mark.nightly
 def test_keys_rate_favour_and_label_what_is_selected_in_one_step(toys, panel):
     clips = tuple(list(toys.document.project.clips)[:2])
     toys.session.selection.select_clips(clips)
@@ -240,6 +248,7 @@ def test_keys_rate_favour_and_label_what_is_selected_in_one_step(toys, panel):
     assert toys.document.project.marks == {}
 
 
+@pytest.mark.nightly
 def test_the_menu_marks_duplicates_and_tells_what_is_on_a_clip(toys, panel):
     clip = next(iter(toys.document.project.clips))
     entry = toys.document.project.clips[clip]
@@ -255,6 +264,7 @@ def test_the_menu_marks_duplicates_and_tells_what_is_on_a_clip(toys, panel):
     assert mark_of(toys.document.project, made) == ClipMark("green", 5)
 
 
+@pytest.mark.nightly
 def test_label_as_is_in_a_clips_menu(toys, toy, panel):
     from metagraph.graph import edits
 
@@ -266,6 +276,7 @@ def test_label_as_is_in_a_clips_menu(toys, toy, panel):
     assert "x" in toys.names("fidget")
 
 
+@pytest.mark.nightly
 def test_the_note_of_a_selected_clip_is_written_in_the_notes_panel(toys, panel):
     clip = next(iter(toys.document.project.clips))
     toys.shell.show("notes")
@@ -286,6 +297,7 @@ def test_letters_of_labels_are_read_on_their_colours():
 # --- filters
 
 
+@pytest.mark.nightly
 def test_what_is_asked_for_narrows_what_is_shown_and_what_is_chosen(toys, panel):
     one, two, three = list(toys.document.project.clips)[:3]
     toys.document.edit("m", lambda p: mark(mark(p, [one], rating=3), [two], rating=5, favourite=True))
@@ -303,6 +315,7 @@ def test_what_is_asked_for_narrows_what_is_shown_and_what_is_chosen(toys, panel)
     assert len(panel.rows.entries) == len(toys.document.project.clips)
 
 
+@pytest.mark.nightly
 def test_a_filter_is_kept_under_a_name_chosen_again_and_deleted(toys, panel, monkeypatch):
     monkeypatch.setattr(QInputDialog, "getText", lambda *a, **k: ("My beats", True))
     panel.search.setText("beat")
@@ -341,6 +354,7 @@ def test_a_broken_filter_is_none(text):
 # --- going through a picture
 
 
+@pytest.mark.nightly
 def test_the_pointer_goes_through_a_clip_and_leaves_it_as_it_was(toys, panel, monkeypatch):
     colors = ("red", "lime", "blue", "white")
 
@@ -391,6 +405,7 @@ def test_reveal_opens_the_folder_of_a_file_or_the_nearest_there_is(monkeypatch, 
 # --- drags and menus are those of the cards, however clips are shown
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 @pytest.mark.parametrize(("style", "side"), [("columns", 28), ("cards", 28)])
 def test_a_clip_is_dragged_from_a_line_of_a_group_onto_a_node(toys, toy, style, side):
@@ -403,6 +418,7 @@ def test_a_clip_is_dragged_from_a_line_of_a_group_onto_a_node(toys, toy, style, 
     toys.drag(toys.card("x"), toys.node("fidget"), lambda: "x" in toys.names("fidget"))
 
 
+@pytest.mark.nightly
 def test_the_menu_key_opens_the_menu_of_the_current_clip(toys, panel):
     from PySide6.QtGui import QContextMenuEvent
 

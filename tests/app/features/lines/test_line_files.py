@@ -90,6 +90,7 @@ def test_a_line_read_again_keeps_what_is_asked_with_it():
 # --- the panel
 
 
+@pytest.mark.nightly
 def test_sounds_dropped_on_the_panel_can_be_edited_said_and_removed(drive, toy, tmp_path):
     drive.document.load(toy.project(), None)
     drive.show("lines")
@@ -177,6 +178,7 @@ def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(d
     assert not panel.table.isRowHidden(40)
 
 
+@pytest.mark.nightly
 def test_a_line_that_is_removed_while_it_is_asked_for_says_so_and_comes_back_with_undo(drive, toy):
     from metagraph.graph.editing import performances as performance_edits
 

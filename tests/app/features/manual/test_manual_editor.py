@@ -103,6 +103,7 @@ def drawn(hand: Hand) -> Hand:
     return hand
 
 
+@pytest.mark.nightly
 def test_the_editor_takes_the_meta_graphs_place_and_gives_it_back(hand: Hand) -> None:
     drive = hand.drive
     assert not drive.canvas.isVisible()
@@ -223,6 +224,7 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     }
 
 
+@pytest.mark.nightly
 def test_nodes_are_moved_by_their_middle_in_one_step(drawn: Hand) -> None:
     before, undone = drawn.state("rest long"), drawn.drive.document.undo_stack.count()
     drawn.drive.drag(
@@ -236,6 +238,7 @@ def test_nodes_are_moved_by_their_middle_in_one_step(drawn: Hand) -> None:
     assert drawn.state("rest long") == before
 
 
+@pytest.mark.nightly
 def test_selection_by_click_key_and_rubber_band_and_several_moved_at_once(drawn: Hand) -> None:
     drive, ids = drawn.drive, [drawn.id(n) for n in ("rest loop", "rest wave rt", "rest long")]
     drive.click(drawn.middle("rest loop"))
@@ -255,6 +258,7 @@ def test_selection_by_click_key_and_rubber_band_and_several_moved_at_once(drawn:
     assert drive.session.selection.states == ()
 
 
+@pytest.mark.nightly
 def test_states_are_copied_with_their_links_duplicated_and_removed(drawn: Hand) -> None:
     drive = drawn.drive
     drive.session.selection.select_states((drawn.id("rest loop"), drawn.id("rest wave rt")))
@@ -275,6 +279,7 @@ def test_states_are_copied_with_their_links_duplicated_and_removed(drawn: Hand) 
     assert len(drawn.machine.states) == 3
 
 
+@pytest.mark.nightly
 def test_a_links_settings_are_pasted_onto_others_and_several_are_edited_at_once(drawn: Hand) -> None:
     drive, (first, second) = drawn.drive, drawn.machine.links
     drive.session.selection.select_states((), (first,))
@@ -300,6 +305,7 @@ def test_a_link_is_clicked_and_removed(drawn: Hand) -> None:
     assert drawn.pairs() == ["rest wave rt>rest loop"]
 
 
+@pytest.mark.nightly
 def test_double_click_plays_a_state_alone_and_escape_goes_back(drawn: Hand) -> None:
     drive, (canvas, at) = drawn.drive, drawn.middle("rest long")
     QTest.mouseDClick(canvas, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at)
@@ -320,6 +326,7 @@ def test_the_view_pans_and_zooms_and_shows_all_again(drawn: Hand) -> None:
     assert canvas.view.rect(canvas.size().toSizeF()).contains(canvas.scene().bounds)
 
 
+@pytest.mark.nightly
 def test_the_menu_draws_a_link_from_click_to_click_and_escape_gives_it_up(drawn: Hand) -> None:
     from app.features.manual.manual_commands import fill_canvas_menu
 
@@ -362,6 +369,7 @@ def test_problems_are_marked_and_a_click_on_one_goes_to_its_state(drawn: Hand) -
     )
 
 
+@pytest.mark.nightly
 def test_each_layer_has_a_machine_of_its_own(drawn: Hand) -> None:
     drive = drawn.drive
     drive.session.place.set_layer("head")
@@ -392,6 +400,7 @@ def test_files_dropped_on_the_editor_are_imported_and_become_states(drawn: Hand,
     assert drawn.state("late").y > 200
 
 
+@pytest.mark.nightly
 def test_trimming_stays_inside_the_clip(drawn: Hand) -> None:
     drive = drawn.drive
     drive.session.selection.select_states((drawn.id("rest wave rt"),))
@@ -419,6 +428,7 @@ def test_a_project_that_was_only_drawn_opens_in_the_editor_and_a_meta_graph_with
     assert drive.session.onstage.mode == "meta"
 
 
+@pytest.mark.nightly
 def test_what_was_only_drawn_is_exported_by_the_command_too(drawn: Hand, tmp_path, capsys) -> None:
     from app.cli.parser import main
     from metagraph.formats.gltf.writer import write_glb

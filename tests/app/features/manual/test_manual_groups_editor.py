@@ -57,6 +57,7 @@ def edge_of(hand: Hand, ident: str) -> tuple:
     return hand.at(box.right() - 4, box.center().y())
 
 
+@pytest.mark.nightly
 def test_an_alias_is_made_of_what_is_selected_named_shown_and_undone(hand: Hand) -> None:
     ident = alias(hand, "rest loop", "rest wave rt")
     made = hand.machine.aliases[ident]
@@ -82,6 +83,7 @@ def test_an_alias_is_made_of_what_is_selected_named_shown_and_undone(hand: Hand)
     assert not hand.machine.aliases
 
 
+@pytest.mark.nightly
 def test_a_link_dragged_from_an_alias_is_one_link_for_many_connections(hand: Hand) -> None:
     ident = alias(hand, "rest loop", "rest wave rt", "rest long")
     hand.drive.drag(edge_of(hand, ident), hand.middle("up beat"), lambda: bool(hand.machine.links))
@@ -92,6 +94,7 @@ def test_a_link_dragged_from_an_alias_is_one_link_for_many_connections(hand: Han
     assert "1 link for 3 connections" in hand.editor.words.text()
 
 
+@pytest.mark.nightly
 def test_links_are_dragged_from_all_that_are_selected_and_to_all(hand: Hand) -> None:
     select(hand, "rest loop", "rest wave rt", "rest long")
     hand.link("rest wave rt", "up beat")
@@ -104,6 +107,7 @@ def test_links_are_dragged_from_all_that_are_selected_and_to_all(hand: Hand) -> 
     assert len(hand.machine.links) == 3  # one step
 
 
+@pytest.mark.nightly
 def test_links_are_selected_by_their_ends_changed_together_and_pasted_for_other_states(hand: Hand) -> None:
     select(hand, "rest loop", "rest wave rt", "rest long")
     hand.link("rest wave rt", "up beat")
@@ -131,6 +135,7 @@ def test_links_are_selected_by_their_ends_changed_together_and_pasted_for_other_
     assert "rest wave rt>up beat" in hand.pairs()
 
 
+@pytest.mark.nightly
 def test_states_are_found_by_typing_and_handed_to_the_canvas(hand: Hand) -> None:
     hand.key(Qt.Key.Key_Slash)
     assert QApplication.focusWidget() is hand.editor.search
@@ -165,6 +170,7 @@ def test_a_table_is_imported_pasted_and_copied_and_its_bad_rows_are_told(hand: H
     assert "none.csv" in hand.told[-1]
 
 
+@pytest.mark.nightly
 def test_the_menu_of_an_alias_takes_in_what_was_selected(hand: Hand) -> None:
     ident = alias(hand, "rest loop")
     select(hand, "rest long", "up beat")
@@ -180,6 +186,7 @@ def test_the_menu_of_an_alias_takes_in_what_was_selected(hand: Hand) -> None:
     assert not hand.machine.aliases
 
 
+@pytest.mark.nightly
 def test_arranging_puts_aliases_beside_what_they_stand_for(hand: Hand) -> None:
     ident = alias(hand, "rest loop", "rest long")
     hand.drive.drag(edge_of(hand, ident), hand.middle("up beat"), lambda: bool(hand.machine.links))

@@ -55,6 +55,7 @@ def told(drive: Any) -> str:
     return drive.window.statusBar().currentMessage()
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(
@@ -85,6 +86,7 @@ def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(
     assert drive.document.project.performances == before
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_what_is_seen_is_added_to_the_performance_on_stage(
@@ -107,6 +109,7 @@ def test_what_is_seen_is_added_to_the_performance_on_stage(
     assert drive.session.onstage.performance == stage
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_files_that_are_none_and_people_in_no_stance_are_told(

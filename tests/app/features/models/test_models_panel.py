@@ -156,6 +156,7 @@ def test_another_sample_is_another_minute_of_the_same_model(panel):
     assert panel.heat.model is ARMS
 
 
+@pytest.mark.nightly
 def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
     made = work_into_project(panel.document.project, reading, LAYERS, True, "talk")
     panel.document.edit("Import annotation", lambda _: made.project)
@@ -179,6 +180,7 @@ def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
     )
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("wide", [440, 500, 560, 900])
 def test_what_stands_under_bars_does_not_touch_however_narrow_the_plot(panel, qtbot, wide):
     qtbot.waitUntil(lambda: panel.plot.found is not None)
@@ -209,6 +211,7 @@ def test_nothing_is_worked_out_while_the_panel_is_hidden(panel, qtbot):
     qtbot.waitUntil(lambda: panel.heat.model.gap == 9.0)
 
 
+@pytest.mark.nightly
 def test_both_themes_are_drawn(panel, qtbot):
     qtbot.waitUntil(lambda: panel.plot.found is not None)
     pictures = []

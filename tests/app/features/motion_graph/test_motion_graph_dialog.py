@@ -56,6 +56,7 @@ def colours(widget) -> int:
     return len({image.pixel(x, y) for x in range(0, image.width(), 3) for y in range(0, image.height(), 3)})
 
 
+@pytest.mark.nightly
 def test_long_clips_are_chosen_and_what_was_heard_is_shown(shown):
     _, dialog = shown
     names = {dialog.document.project.clips[i].name for i in dialog.picked.chosen()}
@@ -69,6 +70,7 @@ def test_long_clips_are_chosen_and_what_was_heard_is_shown(shown):
     assert "0." in dialog.words.text() and colours(dialog.plot) > 3
 
 
+@pytest.mark.nightly
 def test_k_and_level_move_the_threshold(shown):
     drive, dialog = shown
     before = dialog.limit.limit
@@ -80,6 +82,7 @@ def test_k_and_level_move_the_threshold(shown):
     drive.wait(lambda: dialog.limit.limit < higher)
 
 
+@pytest.mark.nightly
 def test_a_take_that_is_unchecked_is_left_out(shown):
     drive, dialog = shown
     before = len(dialog.takes.ids)
@@ -102,6 +105,7 @@ def test_the_table_is_filled(shown):
     drive.wait(dialog.count_button.isEnabled)
 
 
+@pytest.mark.nightly
 def test_new_motion_is_found_kept_as_a_file_and_played_and_one_undo_takes_it_back(shown, tmp_path):
     drive, dialog = shown
     count = len(drive.document.project.clips)
@@ -119,6 +123,7 @@ def test_new_motion_is_found_kept_as_a_file_and_played_and_one_undo_takes_it_bac
     assert len(drive.document.project.clips) == count
 
 
+@pytest.mark.nightly
 def test_new_motion_can_move_the_speaker_of_a_conversation_until_the_graph_does_again(shown):
     drive, dialog = shown
     for box in dialog.wishes.kinds.values():
@@ -140,6 +145,7 @@ def test_new_motion_can_move_the_speaker_of_a_conversation_until_the_graph_does_
     assert drive.document.project.conversations["v9000"].sides[0].motion is None
 
 
+@pytest.mark.nightly
 def test_a_long_wait_is_explained_and_the_words_give_way_to_what_comes_of_it(shown):
     drive, dialog = shown
     dialog._start("A wait", lambda job: time.sleep(0.4), lambda _: dialog.said.setText("done"))
@@ -149,6 +155,7 @@ def test_a_long_wait_is_explained_and_the_words_give_way_to_what_comes_of_it(sho
     assert not dialog._long.isActive()
 
 
+@pytest.mark.nightly
 def test_what_no_motion_goes_with_is_given_up_and_that_is_said(shown):
     drive, dialog = shown
     project = drive.document.project
@@ -168,6 +175,7 @@ def test_what_no_motion_goes_with_is_given_up_and_that_is_said(shown):
     assert len(drive.document.project.clips) == count + 1
 
 
+@pytest.mark.nightly
 def test_what_it_should_have_beside_is_asked_for_and_what_cannot_be_is_told(shown):
     drive, dialog = shown
     soft = dialog.wishes.soft
@@ -199,6 +207,7 @@ def test_what_it_should_have_beside_is_asked_for_and_what_cannot_be_is_told(show
     assert not soft.isEnabled(), "nobody speaks"
 
 
+@pytest.mark.nightly
 def test_movements_with_speech_are_counted_and_become_a_sides_rates(shown):
     drive, dialog = shown
     press(dialog.picked.rates_button)
@@ -226,6 +235,7 @@ def test_movements_cannot_be_counted_where_nobody_knows_what_was_heard(shown):
     assert "which speaker was heard during it" in dialog.said.text()
 
 
+@pytest.mark.nightly
 def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
     drive, dialog = shown
     row = next(
@@ -252,6 +262,7 @@ def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
     assert drive.document.project.conversations["v9000"].sides[1].take is None
 
 
+@pytest.mark.nightly
 def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
     drive, dialog = shown
     count = len(drive.document.project.clips)
@@ -268,6 +279,7 @@ def test_takes_are_cut_into_clips_that_wait_to_be_labelled(shown):
     assert len(drive.document.project.clips) == count
 
 
+@pytest.mark.nightly
 def test_what_was_counted_of_other_takes_is_not_shown_any_more(shown):
     drive, dialog = shown
     press(dialog.count_button)
@@ -278,6 +290,7 @@ def test_what_was_counted_of_other_takes_is_not_shown_any_more(shown):
     assert dialog.table.item(0, 1).text() == "–"
 
 
+@pytest.mark.nightly
 def test_what_is_found_for_one_project_is_not_put_into_the_next(shown, tmp_path):
     drive, dialog = shown
     dialog.wishes.speech.setCurrentIndex(0)
@@ -310,6 +323,7 @@ def asked(drive, dialog) -> str:
     return dialog.said.text()
 
 
+@pytest.mark.nightly
 def test_a_graph_of_which_nothing_is_left_is_said_with_a_remedy(shown):
     drive, dialog = shown
     only(dialog, 0)
@@ -320,6 +334,7 @@ def test_a_graph_of_which_nothing_is_left_is_said_with_a_remedy(shown):
     assert len(drive.document.project.clips) == count
 
 
+@pytest.mark.nightly
 def test_takes_too_short_to_compare_are_told_and_what_was_known_of_others_is_not_used(shown):
     drive, dialog = shown
     long = drive.document.project.clips[dialog.takes.ids[0]]
@@ -333,6 +348,7 @@ def test_takes_too_short_to_compare_are_told_and_what_was_known_of_others_is_not
     assert "cannot be compared" in dialog.said.text()
 
 
+@pytest.mark.nightly
 def test_an_unsaved_project_is_asked_to_be_saved_first(toys):
     toys.do("motion_graph")
     dialog = toys.window.findChild(MotionGraphDialog)

@@ -107,6 +107,7 @@ def test_clips_that_cannot_be_takes_are_told_with_the_reason(sample: Project) ->
     assert not {a, b, c} & set(list_usable_clips(project))
 
 
+@pytest.mark.nightly
 def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project) -> None:
     ids = stances(sample)
     takes = takes_of(told(sample, ids[0]), ids)

@@ -12,6 +12,7 @@ from metagraph.graph.notes import PROJECT
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 
+@pytest.mark.nightly
 def test_a_note_is_written_on_what_is_selected_and_is_one_step(toys):
     drive = toys
     drive.workspaces.choose("graph")

@@ -10,6 +10,7 @@ from app.features.problems.problems_panel import FIX
 from metagraph.graph import edits
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_problems_of_one_stance_are_one_row_that_opens_and_is_mended_with_a_press(toys, toy):

@@ -136,6 +136,7 @@ def test_a_place_is_told_of_once_and_errors_come_first():
     )
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_flag_marks_the_action_and_a_press_mends_it_in_one_step(toys, toy, wide):
@@ -178,6 +179,7 @@ def test_a_flag_marks_the_action_and_a_press_mends_it_in_one_step(toys, toy, wid
     drive.wait(lambda: bool(flagged()))
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_all_timings_are_mended_in_one_step(toys, toy, wide):
@@ -228,6 +230,7 @@ def test_what_went_meanwhile_is_mended_no_more(toy, parted):
     assert Fix("Use 1.00 s", "a99", {"timing": {"end": 1.0}})(parted) is parted
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toys, toy, parted):
@@ -293,6 +296,7 @@ def test_a_swapped_clip_is_given_back_or_kept(toy, there):
         assert not swapped(kept) and kept.action(short).clip == action.clip
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 def test_play_and_check_lists_what_is_seen_and_a_click_opens_that_moment(toys, toy, monkeypatch):
     from app.stage import problem_watch

@@ -39,6 +39,7 @@ def write(page, name, words):
     QTest.keyClick(field, Qt.Key.Key_Return)
 
 
+@pytest.mark.nightly
 def test_a_kind_alone_waits_for_a_stance_and_the_card_says_so(toys, new):
     page = toys.shell.panel("properties").clip
     choose(page, "kind", "gesture")

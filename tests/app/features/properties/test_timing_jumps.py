@@ -146,6 +146,7 @@ def timed(toys, toy, wide):
     return drive
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_dragged_end_comes_to_rest_where_it_does_not_jump_in_one_step(timed, toy, wide):
@@ -174,6 +175,7 @@ def test_a_dragged_end_comes_to_rest_where_it_does_not_jump_in_one_step(timed, t
     drive.wait(lambda: timing.verdict.text() == "Begins and ends without a jump")
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_alt_leaves_the_marks_out(timed, monkeypatch):
@@ -188,6 +190,7 @@ def test_alt_leaves_the_marks_out(timed, monkeypatch):
     assert plot._snapped("end", near) == near
 
 
+@pytest.mark.nightly
 @pytest.mark.window
 @pytest.mark.gl
 def test_proposed_times_are_taken_over_with_a_click_in_one_step(timed, toy, wide):

@@ -65,6 +65,7 @@ def apply(drive, dialog):
     drive.wait(lambda: drive.document.project is not project)
 
 
+@pytest.mark.nightly
 def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, folder, dialog):
     assert dialog.headline.text() == "Imported 3 clips"
     groups = [dialog.tree.topLevelItem(n).text(0) for n in range(dialog.tree.topLevelItemCount())]
@@ -83,6 +84,7 @@ def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, fold
     assert drive.document.project.clips["c1"].frames == before
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("way", ["reject", "close"])
 def test_what_was_applied_is_done_though_the_dialog_is_closed_at_once(drive, dialog, way):
     before = drive.document.project.clips["c1"].frames
@@ -93,6 +95,7 @@ def test_what_was_applied_is_done_though_the_dialog_is_closed_at_once(drive, dia
     assert not shown(drive)
 
 
+@pytest.mark.nightly
 def test_a_skipped_pose_is_brought_in_and_skipped_again(drive, dialog):
     top = dialog.tree.topLevelItem(1)
     assert top.child(0).text(0) == "c.glb" and "skipped 'c'" in top.child(0).text(1)
@@ -115,6 +118,7 @@ def test_a_click_on_a_group_is_a_click_on_all_of_it(drive, dialog):
     assert [e.as_is for e in drive.document.project.clips.values()] == [("bind_pose",), ("bind_pose",), ()]
 
 
+@pytest.mark.nightly
 def test_the_dialog_opens_again_for_what_is_selected(drive, dialog):
     QTest.mouseClick(dialog.buttons.button(dialog.buttons.StandardButton.Close), Qt.MouseButton.LeftButton)
     drive.wait(lambda: not shown(drive))

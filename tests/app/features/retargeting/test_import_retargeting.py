@@ -66,6 +66,7 @@ def choose(drive, dialog, joint, target):
     drive.pause(30)
 
 
+@pytest.mark.nightly
 def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_step(own, folder, sample):
     drive = own
     dialog = bring(drive, folder, "other0", "other1")
@@ -90,6 +91,7 @@ def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_st
     assert len(drive.document.project.clips) == 2 and not drive.document.project.joint_maps
 
 
+@pytest.mark.nightly
 def test_they_may_be_left_out_and_the_others_of_the_same_drop_come_in(own, folder, toy):
     from metagraph.formats.gltf.writer import write_glb
 
@@ -107,6 +109,7 @@ def test_they_may_be_left_out_and_the_others_of_the_same_drop_come_in(own, folde
     assert not read_joint_maps()
 
 
+@pytest.mark.nightly
 def test_one_click_retargets_the_clips_of_every_other_skeleton(own, folder, sample):
     from app.features.retargeting.joint_map_dialog import JointMapDialog
     from metagraph.formats.gltf.writer import write_glb
@@ -131,6 +134,7 @@ def test_one_click_retargets_the_clips_of_every_other_skeleton(own, folder, samp
     assert not any(d.isVisible() for d in drive.window.findChildren(JointMapDialog))
 
 
+@pytest.mark.nightly
 def test_a_joint_is_corrected_by_hand_and_what_is_missing_is_said(own, folder):
     drive = own
     dialog = bring(drive, folder, "other0")
@@ -149,6 +153,7 @@ def test_a_joint_is_corrected_by_hand_and_what_is_missing_is_said(own, folder):
     assert found.of("LeftHand").why == "chosen by hand"
 
 
+@pytest.mark.nightly
 def test_the_next_clips_of_that_skeleton_are_retargeted_unasked_and_that_is_told(own, folder):
     drive = own
     press(bring(drive, folder, "other0").go)
@@ -176,6 +181,7 @@ def test_a_map_of_the_user_is_offered_in_another_project(own, folder):
     press(again.leave)
 
 
+@pytest.mark.nightly
 def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_anew(
     own, folder, sample, monkeypatch
 ):
@@ -204,6 +210,7 @@ def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_a
     )
 
 
+@pytest.mark.nightly
 def test_a_map_is_corrected_later_and_its_clips_are_retargeted_again_in_one_step(own, folder):
     from app.features.retargeting.joint_map_dialog import JointMapDialog
 
@@ -234,6 +241,7 @@ def test_a_map_is_corrected_later_and_its_clips_are_retargeted_again_in_one_step
     assert drive.document.project is before
 
 
+@pytest.mark.nightly
 def test_marking_a_row_marks_both_figures(own, folder):
     drive = own
     dialog = bring(drive, folder, "other0")

@@ -55,6 +55,7 @@ def events(tiny: Path, *kinds: str) -> list[dict]:
     return [e for e in read_log(tiny.parent / "data" / "P01" / "log.jsonl").events if e["type"] in kinds]
 
 
+@pytest.mark.nightly
 def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     p = takes_part()
     d = drive
@@ -217,6 +218,7 @@ def test_a_sitting_that_was_broken_off_goes_on_with_the_work_as_it_was(drive, ta
     assert run.finished and run.edits == 1
 
 
+@pytest.mark.nightly
 def test_closing_the_window_keeps_the_work_and_asks_nothing(drive, takes_part, tiny, monkeypatch):
     p = takes_part()
     consent(p)
@@ -230,6 +232,7 @@ def test_closing_the_window_keeps_the_work_and_asks_nothing(drive, takes_part, t
     assert events(tiny, "phase")[-1]["state"] == "begin"
 
 
+@pytest.mark.nightly
 def test_who_declines_leaves_a_word_and_may_still_agree(drive, takes_part, tiny):
     p = takes_part()
     p.titled("A tiny study")
@@ -249,6 +252,7 @@ def test_who_declines_leaves_a_word_and_may_still_agree(drive, takes_part, tiny)
     assert read_log(study.log("P01")).standing == "broken off"
 
 
+@pytest.mark.nightly
 def test_who_withdrew_cannot_go_on(drive, takes_part, tiny, monkeypatch):
     from app.features.study.study_chooser import begin_sitting
 
@@ -261,6 +265,7 @@ def test_who_withdrew_cannot_go_on(drive, takes_part, tiny, monkeypatch):
     assert told[0].startswith("P01 withdrew")
 
 
+@pytest.mark.nightly
 def test_a_sitting_is_open_once(drive, takes_part, tiny, monkeypatch):
     from app.features.study.study_chooser import begin_sitting
 
@@ -272,6 +277,7 @@ def test_a_sitting_is_open_once(drive, takes_part, tiny, monkeypatch):
     assert "another window" in told[0] and "'nobody'" in told[1]
 
 
+@pytest.mark.nightly
 def test_clips_that_cannot_be_read_are_told_and_can_be_tried_again(drive, takes_part, tiny):
     text = tiny.read_text()
     tiny.write_text(text.replace("clips: [", "clips: [missing.glb, ", 1))
@@ -311,6 +317,7 @@ def offered(drive, mode: str, labels: bool) -> set[str]:
     return out
 
 
+@pytest.mark.nightly
 def test_proposals_are_offered_where_the_study_allows_them(drive):
     proposals = {"propose", "use_times", "patterns", "compatibility"}
     assert not offered(drive, "meta", False) & proposals
@@ -321,6 +328,7 @@ def test_proposals_are_offered_where_the_study_allows_them(drive):
     )
 
 
+@pytest.mark.nightly
 def test_a_command_that_says_nothing_of_studies_is_not_offered_while_a_task_is_worked_on(drive):
     assert Command("x", "&Help", "", "X").study is False
     meta = offered(drive, "meta", True)

@@ -52,6 +52,7 @@ def recorded(toys):
     toys.recorder.stop()
 
 
+@pytest.mark.nightly
 def test_known_input_is_counted_exactly(recorded):
     d = recorded
     canvas = d.canvas
@@ -69,6 +70,7 @@ def test_known_input_is_counted_exactly(recorded):
     assert d.log.operators() == {"K": 3, "P": 1, "B": 6, "H": 2}
 
 
+@pytest.mark.nightly
 def test_typing_is_counted_and_not_kept(recorded):
     d = recorded
     d.library.search.setFocus()
@@ -78,6 +80,7 @@ def test_typing_is_counted_and_not_kept(recorded):
     assert "secret" not in str(d.log.events) and str(int(Qt.Key.Key_S)) not in str(d.log.of("ops"))
 
 
+@pytest.mark.nightly
 def test_a_real_drag_is_one_drag_two_buttons_and_an_edit_after_its_operators(recorded):
     d = recorded
     count = len(d.names("gesture"))
@@ -120,6 +123,7 @@ def test_edits_undos_and_redos_are_told_apart(recorded):
     assert [e["what"] for e in d.log.of("edit")] == ["stance", "rename", "stance"]
 
 
+@pytest.mark.nightly
 def test_a_log_is_english_in_any_language(recorded):
     d = recorded
     translation.choose("de")
@@ -157,6 +161,7 @@ def test_a_drag_of_a_time_is_one_edit_and_a_cancelled_one_none(recorded):
     assert not d.log.of("undo")
 
 
+@pytest.mark.nightly
 def test_looks_playing_refusals_and_dialogs_are_told(recorded):
     d = recorded
     d.session.transport.set_playing(False)
@@ -188,6 +193,7 @@ def test_looks_playing_refusals_and_dialogs_are_told(recorded):
     ]
 
 
+@pytest.mark.nightly
 def test_a_problem_that_comes_up_is_told_once(recorded):
     d = recorded
     d.document.edit(
@@ -265,6 +271,7 @@ def test_operators_are_counted_outside_a_study_while_that_is_wanted(toys):
     assert not d.actions["count_operators"].isChecked()
 
 
+@pytest.mark.nightly
 def test_an_import_tells_how_long_it_took(recorded, monkeypatch):
     from metagraph.formats.imports import Imported
 

@@ -86,6 +86,7 @@ def test_a_sitting_is_seen_again(drive, sat, tiny):
     assert not d.document.project.clips and d.actions["open"].isEnabled() and not d.document.dirty
 
 
+@pytest.mark.nightly
 def test_who_did_nothing_has_nothing_to_be_seen(drive, tiny):
     from app.features.study.study_replay import Replayer
 

@@ -78,6 +78,7 @@ class Hand:
         return self.drive.document.undo_stack.index()
 
 
+@pytest.mark.nightly
 def test_typing_replaces_a_cell_and_is_one_step(table):
     steps = table.steps()
     table.click("rest beat lf", "blend_in")
@@ -89,6 +90,7 @@ def test_typing_replaces_a_cell_and_is_one_step(table):
     assert table.says("rest beat lf", "blend_in") == "0.20"
 
 
+@pytest.mark.nightly
 def test_number_keys_are_typed_and_in_kind_they_are_the_kinds(table):
     table.click("rest beat lf", "cooldown")
     table.type("2")
@@ -101,6 +103,7 @@ def test_number_keys_are_typed_and_in_kind_they_are_the_kinds(table):
     assert table.says("rest beat lf", "kind") == "gesture"
 
 
+@pytest.mark.nightly
 def test_what_is_typed_goes_into_all_selected_cells_of_the_column_and_changes_nothing_else(table):
     names = ("rest short", "rest wave rt", "up beat")
     table.click(names[0], "kind")
@@ -114,6 +117,7 @@ def test_what_is_typed_goes_into_all_selected_cells_of_the_column_and_changes_no
     assert table.steps() == steps + 1
 
 
+@pytest.mark.nightly
 def test_the_first_cell_fills_those_below_it(table):
     table.click("rest short", "tags")
     table.type("hello")
@@ -127,6 +131,7 @@ def test_the_first_cell_fills_those_below_it(table):
     assert {table.says(n, "tags") for n in ("rest short", "rest beat lf", "rest wave rt")} == {"hello"}
 
 
+@pytest.mark.nightly
 def test_cells_go_to_a_spreadsheet_and_back(table):
     table.click("rest beat lf", "likelihood")
     table.click("rest beat lf", "cooldown", CTRL)
@@ -145,6 +150,7 @@ def test_cells_go_to_a_spreadsheet_and_back(table):
     assert table.steps() == steps + 1
 
 
+@pytest.mark.nightly
 def test_one_pasted_cell_fills_the_selection_and_what_has_no_place_is_reported(table):
     QGuiApplication.clipboard().setText("left")
     table.click("rest short", "limb")
@@ -159,6 +165,7 @@ def test_one_pasted_cell_fills_the_selection_and_what_has_no_place_is_reported(t
     assert "2 pasted cells had no place" in table.panel.message.text()
 
 
+@pytest.mark.nightly
 def test_what_cannot_be_written_is_marked_and_explained_and_the_rest_is_written(table):
     table.click("rest beat lf", "stance")
     table.type("nowhere")
@@ -172,6 +179,7 @@ def test_what_cannot_be_written_is_marked_and_explained_and_the_rest_is_written(
     assert not table.panel.message.isVisible()
 
 
+@pytest.mark.nightly
 def test_what_was_refused_is_forgotten_with_the_next_change(table):
     table.click("rest beat lf", "tags")
     table.type("one")
@@ -183,6 +191,7 @@ def test_what_was_refused_is_forgotten_with_the_next_change(table):
     assert not table.panel.message.isVisible() and not table.rows.refused
 
 
+@pytest.mark.nightly
 def test_delete_empties_cells_and_removes_no_action(table):
     table.click("rest beat lf", "tags")
     table.type("one, two")
@@ -194,6 +203,7 @@ def test_delete_empties_cells_and_removes_no_action(table):
     assert len(list(table.drive.document.project.actions())) == count
 
 
+@pytest.mark.nightly
 def test_the_space_bar_still_plays_and_undo_is_the_windows(table):
     playing = table.drive.session.transport.playing
     table.click("rest beat lf", "kind")
@@ -202,6 +212,7 @@ def test_the_space_bar_still_plays_and_undo_is_the_windows(table):
     table.drive.wait(lambda: table.drive.session.transport.playing is not playing)
 
 
+@pytest.mark.nightly
 def test_a_clip_waits_half_labelled_and_is_placed_when_the_rest_is_typed(table, toy):
     drive = table.drive
     drive.document.edit("Add", lambda p: edits.add_clips(p, [("n.glb", 0, "", toy.clip("new one"))]))
@@ -222,6 +233,7 @@ def test_a_clip_waits_half_labelled_and_is_placed_when_the_rest_is_typed(table, 
     drive.wait(lambda: [row.ident for row in table.rows.rows] == [clip])
 
 
+@pytest.mark.nightly
 def test_a_clip_that_waits_for_a_stance_is_placed_by_whatever_makes_that_stance(table, toy):
     drive = table.drive
     clips = [("n.glb", 0, "", toy.clip("new one")), ("l.glb", 0, "", toy.clip("new loop"))]
@@ -239,6 +251,7 @@ def test_a_clip_that_waits_for_a_stance_is_placed_by_whatever_makes_that_stance(
     assert find_row(drive.document.project, table.ident("new one")).action is not None
 
 
+@pytest.mark.nightly
 def test_rows_and_the_rest_of_the_window_select_the_same(table):
     drive = table.drive
     table.click("rest beat lf", "kind")
@@ -248,6 +261,7 @@ def test_rows_and_the_rest_of_the_window_select_the_same(table):
     assert table.view.selected_rows() == table.rows.find([table.ident("up yawn")])
 
 
+@pytest.mark.nightly
 def test_search_and_named_filters_show_some_rows(table, monkeypatch):
     every = len(table.rows.rows)
     table.panel.search.setText("gesture up -point")
@@ -271,6 +285,7 @@ def test_filters_are_kept_and_broken_ones_left_out():
     assert read_filters() == {"a": TableFilter("x", "waiting")}
 
 
+@pytest.mark.nightly
 def test_words_are_replaced_in_a_column_in_one_step(table):
     table.panel.replace_button.setChecked(True)
     row = table.panel.replacing
@@ -286,12 +301,14 @@ def test_words_are_replaced_in_a_column_in_one_step(table):
     assert not row.go.isEnabled()
 
 
+@pytest.mark.nightly
 def test_a_click_on_a_title_sorts_and_another_sorts_the_other_way(table):
     table.view.sortByColumn(COLUMNS.index("end"), Qt.SortOrder.DescendingOrder)
     ends = [float(read_cell(table.rows.project, r, "end")) for r in table.rows.rows]
     assert ends == sorted(ends, reverse=True)
 
 
+@pytest.mark.nightly
 def test_a_column_is_hidden_and_stays_so(table):
     panel = table.panel
     panel._choose_columns(panel.view.rect().center())
@@ -302,6 +319,7 @@ def test_a_column_is_hidden_and_stays_so(table):
     panel._show_column(COLUMNS.index("cooldown"), True)
 
 
+@pytest.mark.nightly
 def test_completions_are_the_stances_of_the_rows_layer(table):
     table.click("rest beat lf", "stance")
     table.key(KEY.Key_F2)
@@ -313,6 +331,7 @@ def test_completions_are_the_stances_of_the_rows_layer(table):
     table.key(KEY.Key_Escape)
 
 
+@pytest.mark.nightly
 def test_enter_takes_what_was_typed_or_the_choice_that_was_gone_to(table):
     table.click("rest beat lf", "kind")
     QTest.keyClicks(QApplication.focusWidget(), "fid")

@@ -43,6 +43,7 @@ def names(drive):
     return {a.name for a in drive.document.project.actions()}
 
 
+@pytest.mark.nightly
 def test_a_project_is_looked_at_taken_and_taken_back(drive, toy, other, monkeypatch):
     drive.document.edit("Begin", lambda _: toy.project())
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(other), ""))
@@ -63,6 +64,7 @@ def test_a_project_is_looked_at_taken_and_taken_back(drive, toy, other, monkeypa
     assert names(drive) == before
 
 
+@pytest.mark.nightly
 def test_what_the_dialog_shows_follows_edits_and_cancel_takes_nothing(drive, toy, other, monkeypatch):
     drive.document.edit("Begin", lambda _: toy.project())
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(other), ""))

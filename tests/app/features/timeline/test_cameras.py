@@ -110,6 +110,7 @@ def test_cuts_by_who_speaks_are_dragged_and_taken_away(talking):
     assert timeline.now.cuts == () and talking.document.project.timelines == {}
 
 
+@pytest.mark.nightly
 def test_captions_stand_over_the_preview_and_go_with_the_words(talking):
     label = talking.preview.directing.label
     talking.do("captions")

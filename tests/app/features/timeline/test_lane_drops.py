@@ -57,6 +57,7 @@ def test_what_cannot_be_is_said(toy, project):
         assert not drop.possible and drop.words
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_a_row_of_the_graph_is_dragged_onto_its_lane(toys):
     toys.session.transport.show_plan()

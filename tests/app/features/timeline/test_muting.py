@@ -28,6 +28,7 @@ def title(view, layer):
     return QPointF(20, place_lanes(view.height())[layer].center().y())
 
 
+@pytest.mark.nightly
 def test_a_click_on_a_title_mutes_a_layer_and_another_lets_it_be_seen(stage):
     view, performance = stage.timeline.lanes, stage.performance
     plan = performance.shown.plan

@@ -53,6 +53,7 @@ def test_in_a_conversation_rows_are_of_the_side_on_stage_and_a_click_takes_one_o
     drive.timeline.ghosts.setChecked(False)
 
 
+@pytest.mark.nightly
 def test_live_rows_follow_what_agents_ask_and_a_click_is_for_the_next_session(toys: Any) -> None:
     what_if, live = toys.timeline.what_if, toys.performance.live
     seed = toys.document.project.settings.seed

@@ -93,6 +93,7 @@ ALT = Qt.KeyboardModifier.AltModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
+@pytest.mark.nightly
 def test_it_is_wide_beside_the_character_and_says_what_the_problems_say(editor):
     editor.workspaces.choose("time")
     editor.settle()
@@ -122,6 +123,7 @@ def test_a_handle_is_dragged_by_its_line_and_comes_to_rest_with_a_reason_in_one_
     assert timing(editor).end == 1.5
 
 
+@pytest.mark.nightly
 def test_with_alt_it_rests_nowhere_and_escape_takes_it_back(editor):
     near = min(facts(editor).seen.snaps("end")) + 4 / editor.view.axis.each
     pull(editor, at(editor, 1.5), at(editor, near), ALT)
@@ -134,6 +136,7 @@ def test_with_alt_it_rests_nowhere_and_escape_takes_it_back(editor):
     assert timing(editor).start == 0.1 and editor.document.undo_stack.index() == before
 
 
+@pytest.mark.nightly
 def test_what_gave_way_comes_back_within_one_drag(editor):
     pull(editor, at(editor, 1.5), at(editor, 0.7), ALT, let_go=False)
     assert timing(editor).relax < 0.8
@@ -141,6 +144,7 @@ def test_what_gave_way_comes_back_within_one_drag(editor):
     assert timing(editor).relax == 1.2 and timing(editor).end == 1.5
 
 
+@pytest.mark.nightly
 def test_a_phase_is_dragged_as_a_block_and_with_shift_all_of_it(editor):
     pull(editor, at(editor, 0.7, "phases"), at(editor, 0.8, "phases"), ALT)
     found = handle_times(editor.document.project, editor.document.project.action(editor.ident))
@@ -150,12 +154,14 @@ def test_a_phase_is_dragged_as_a_block_and_with_shift_all_of_it(editor):
     assert [found[e] for e in EDGES] == pytest.approx([0.3, 0.8, 1.2, 1.4, 1.7], abs=0.02)
 
 
+@pytest.mark.nightly
 def test_the_edge_between_two_phases_is_dragged_alone(editor):
     pull(editor, at(editor, 0.9, "phases"), at(editor, 1.05, "phases"), ALT)
     assert timing(editor).stroke_end == pytest.approx(1.05, abs=0.01)
     assert (timing(editor).ready, timing(editor).relax) == (0.5, 1.2)
 
 
+@pytest.mark.nightly
 def test_a_number_is_taken_like_its_line_and_typed_after_a_double_click(editor):
     box = editor.view.numbers[editor.ident]["out"]
     place = box.center().toPoint()
@@ -190,6 +196,7 @@ def test_the_character_is_scrubbed_and_a_part_of_the_clip_is_looped(editor):
     assert transport.part is None
 
 
+@pytest.mark.nightly
 def test_the_wheel_zooms_about_the_pointer(editor):
     point = at(editor, 0.9)
     seconds, each = editor.view.axis.seconds(point.x()), editor.view.axis.each
@@ -212,6 +219,7 @@ def test_the_wheel_zooms_about_the_pointer(editor):
     assert editor.view.axis.is_whole
 
 
+@pytest.mark.nightly
 def test_keys_step_and_begin_and_end_the_action_at_the_playhead(editor):
     transport = editor.session.transport
     transport.scrub(editor.document.project.action(editor.ident).clip, 0.3)
@@ -226,6 +234,7 @@ def test_keys_step_and_begin_and_end_the_action_at_the_playhead(editor):
     assert timing(editor).end == pytest.approx(1.3, abs=0.002)
 
 
+@pytest.mark.nightly
 def test_before_and_after_are_compared_on_the_stage_and_nothing_is_changed(editor):
     project = editor.document.project
     pull(editor, at(editor, 1.5), at(editor, 1.9), ALT)
@@ -236,6 +245,7 @@ def test_before_and_after_are_compared_on_the_stage_and_nothing_is_changed(edito
     assert editor.performance.before is None and editor.document.project is changed
 
 
+@pytest.mark.nightly
 def test_the_key_a_shows_them_as_they_were_and_again_as_they_are(editor):
     project = editor.document.project
     pull(editor, at(editor, 1.5), at(editor, 1.9), ALT)
@@ -246,6 +256,7 @@ def test_the_key_a_shows_them_as_they_were_and_again_as_they_are(editor):
     assert editor.performance.before is None and editor.panel.compare.text() == "A/B"
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("handle", ["in", "out"])
 def test_a_blend_that_was_dragged_plays_between_its_stances(editor, handle):
     shown = facts(editor)
@@ -264,6 +275,7 @@ def test_a_blend_that_was_dragged_plays_between_its_stances(editor, handle):
     assert transport.seconds >= (0 if handle == "in" else out - 1)
 
 
+@pytest.mark.nightly
 def test_onion_skin_shows_start_stroke_and_end(editor):
     editor.panel.onion.click()
     moments = [at for at, _ in editor.session.onion.skin.moments]
@@ -276,6 +288,7 @@ def test_onion_skin_shows_start_stroke_and_end(editor):
     assert editor.session.onion.skin is None and len(editor.preview.scene().actors) == 1
 
 
+@pytest.mark.nightly
 def test_many_actions_stand_below_each_other_and_are_moved_by_the_same(editor, toy):
     project = editor.document.project
     others = [editor.ident, toy.id(project, "rest wave rt"), toy.id(project, "rest loop")]
@@ -292,6 +305,7 @@ def test_many_actions_stand_below_each_other_and_are_moved_by_the_same(editor, t
     assert editor.document.project.action(others[1]).timing.start == starts[others[1]]
 
 
+@pytest.mark.nightly
 def test_the_sheet_of_joints_and_the_joint_whose_speed_is_drawn_are_chosen(editor):
     least = editor.view.minimumHeight()
     editor.panel.subject.show(dope=True)
@@ -303,6 +317,7 @@ def test_the_sheet_of_joints_and_the_joint_whose_speed_is_drawn_are_chosen(edito
     assert [c.name for c in facts(editor).curves] == [chosen]
 
 
+@pytest.mark.nightly
 def test_nothing_selected_is_said_and_a_new_project_forgets(editor):
     editor.session.selection.clear()
     editor.view.grab()
@@ -310,6 +325,7 @@ def test_nothing_selected_is_said_and_a_new_project_forgets(editor):
     assert editor.view.hit(QPointF(300, 60)) is None
 
 
+@pytest.mark.nightly
 def test_a_clip_is_slowed_and_held_in_place_and_undone(editor):
     clip = editor.document.project.action(editor.ident).clip
     before = editor.document.project
@@ -327,6 +343,7 @@ def test_a_clip_is_slowed_and_held_in_place_and_undone(editor):
     assert timing(editor).end == pytest.approx(1.9, abs=0.03)
 
 
+@pytest.mark.nightly
 def test_a_hold_is_dragged_longer_and_to_nothing(editor):
     clip = editor.document.project.action(editor.ident).clip
     editor.session.transport.scrub(clip, 1.0)
@@ -344,6 +361,7 @@ def test_a_hold_is_dragged_longer_and_to_nothing(editor):
     assert editor.document.project.clips[clip].retime.plain
 
 
+@pytest.mark.nightly
 def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
     clip = editor.document.project.action(editor.ident).clip
     editor.session.transport.set_part((clip, 0.5, 0.9))
@@ -361,12 +379,14 @@ def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
     editor.session.transport.set_part(None)
 
 
+@pytest.mark.nightly
 def test_the_plot_in_the_properties_follows_a_clip_that_is_slowed(editor):
     editor.panel.speed.setValue(0.5)
     xs, _ = editor.properties.action.plot.curve.getData()
     assert xs[-1] == pytest.approx(4.8, abs=0.05)
 
 
+@pytest.mark.nightly
 def test_a_drag_of_the_real_pointer_moves_the_end(editor):
     start, end = (editor.view, at(editor, 1.5)), (editor.view, at(editor, 1.9))
     editor.drag(start, end, lambda: (timing(editor).end or 9) > 1.8)
@@ -385,6 +405,7 @@ def kept(editor):
     return editor
 
 
+@pytest.mark.nightly
 def test_a_kept_hand_is_dragged_by_its_ends_in_one_step_each(kept):
     count = kept.document.undo_stack.count()
     pull(kept, at(kept, 0.9, "hand 0"), at(kept, 1.1, "hand 0"), ALT, let_go=False)
@@ -397,11 +418,13 @@ def test_a_kept_hand_is_dragged_by_its_ends_in_one_step_each(kept):
     assert kept.document.undo_stack.count() == count + 2
 
 
+@pytest.mark.nightly
 def test_a_kept_hand_comes_to_rest_where_the_action_has_something(kept):
     pull(kept, at(kept, 0.9, "hand 0"), at(kept, 1.2, "hand 0") + QPoint(3, 0))
     assert kept.contacts()[0].last == pytest.approx(1.2, abs=0.001), "its retraction begins there"
 
 
+@pytest.mark.nightly
 def test_all_of_a_kept_hand_is_moved_and_escape_and_nothing_let_it_be(kept):
     before = kept.document.project
     pull(kept, at(kept, 0.7, "hand 0"), at(kept, 0.8, "hand 0"), let_go=False)
@@ -415,6 +438,7 @@ def test_all_of_a_kept_hand_is_moved_and_escape_and_nothing_let_it_be(kept):
     assert kept.contacts() == ()
 
 
+@pytest.mark.nightly
 def test_the_number_of_a_kept_hands_end_is_typed(kept):
     box = kept.view.numbers[kept.ident]["kept 0 last"]
     place = box.center().toPoint()
@@ -425,6 +449,7 @@ def test_the_number_of_a_kept_hands_end_is_typed(kept):
     assert kept.contacts()[0].last == pytest.approx(1.3)
 
 
+@pytest.mark.nightly
 def test_the_line_that_asks_for_an_action_is_seen_before_anything_was_performed(editor):
     line = Line(text="well now", duration=0.8, asks=(Play(action=editor.ident, at=0.1),))
     editor.document.edit("Line", lambda p: replace(p, lines={"l9": line}))

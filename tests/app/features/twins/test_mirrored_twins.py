@@ -44,6 +44,7 @@ def make(drive, *names):
     drive.wait(lambda: len(drive.document.project.clips) > before)
 
 
+@pytest.mark.nightly
 def test_an_action_gets_a_twin_of_the_other_side_that_is_selected_and_told(saved):
     drive = saved
     make(drive, "wave rt")
@@ -62,6 +63,7 @@ def test_an_action_gets_a_twin_of_the_other_side_that_is_selected_and_told(saved
     np.testing.assert_allclose(b[:, left] * [-1, 1, 1], a[:, right], atol=1e-3)
 
 
+@pytest.mark.nightly
 def test_several_are_one_step_and_their_files_outlive_undo(saved):
     drive = saved
     make(drive, "wave rt", "beat lf")
@@ -74,6 +76,7 @@ def test_several_are_one_step_and_their_files_outlive_undo(saved):
     assert drive.document.project is project
 
 
+@pytest.mark.nightly
 def test_made_again_no_file_is_written_over(saved):
     drive = saved
     make(drive, "wave rt")
@@ -83,6 +86,7 @@ def test_made_again_no_file_is_written_over(saved):
     assert drive.document.project.clips[drive.action("wave lf").clip].path == f"{FOLDER}/wave lf_2.glb"
 
 
+@pytest.mark.nightly
 def test_saved_and_opened_the_twin_is_what_it_was(saved):
     drive = saved
     make(drive, "wave rt")
@@ -96,6 +100,7 @@ def test_saved_and_opened_the_twin_is_what_it_was(saved):
     np.testing.assert_array_equal(again.motion.rotations, before.motion.rotations)
 
 
+@pytest.mark.nightly
 def test_a_clip_of_the_library_is_mirrored_alone(saved):
     drive = saved
     clip = drive.action("beat lf").clip
@@ -108,6 +113,7 @@ def test_a_clip_of_the_library_is_mirrored_alone(saved):
     assert drive.window.statusBar().currentMessage().startswith("Mirrored 1 clip: beat rt.")
 
 
+@pytest.mark.nightly
 def test_what_has_no_side_is_told_and_nothing_is_written(saved, toy):
     from dataclasses import replace
 

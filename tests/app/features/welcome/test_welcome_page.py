@@ -21,6 +21,7 @@ def page(drive):
     return found
 
 
+@pytest.mark.nightly
 def test_it_goes_when_there_is_something_and_comes_with_nothing(drive, page, toy):
     from metagraph.graph.model import Project
 

@@ -230,6 +230,7 @@ def test_a_folder_without_a_study_is_told(tmp_path: Path) -> None:
         collect_study(tmp_path)
 
 
+@pytest.mark.nightly
 def test_nothing_is_missing_of_a_whole_study(study: Path) -> None:
     found = collect_study(study)
     assert (found.missing, len(found.rows), found.simulated) == ((), 16, True)

@@ -50,6 +50,7 @@ def fitted(rows: tuple[list[float], list[float], list[int], list[int]]) -> Cross
     return fit_crossed(chosen, {"preference": [1.0] * len(chosen), "side": sides}, who, what)
 
 
+@pytest.mark.nightly
 def test_crossed_deviations_are_those_that_a_plain_minimiser_finds() -> None:
     from scipy.optimize import minimize
 
@@ -110,6 +111,7 @@ def test_of_studies_without_a_preference_about_one_in_twenty_finds_one(
     assert hits <= most, hits  # of 30 or 120 with 5 % each, more are less likely than 1 in 100
 
 
+@pytest.mark.nightly
 def test_intervals_hold_what_was_planted_about_as_often_as_they_say() -> None:
     studies, planted = many(20, 80), 0.7
     held = 0

@@ -79,6 +79,7 @@ def test_from_a_file_everything_is_answered_by_keyboard_saved_and_read(
     assert len(rows) == len(trials) + 1 and rows[1].split(",")[2] == "training"
 
 
+@pytest.mark.nightly
 def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(
     made: Perceived, browse: Browser
 ) -> None:
@@ -110,6 +111,7 @@ def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(
     assert [e["type"] for e in log.events] == [e["type"] for e in events] and not log.problems
 
 
+@pytest.mark.nightly
 def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(
     made: Perceived, browse: Browser
 ) -> None:
@@ -130,6 +132,7 @@ def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(
     assert next(p for p in collect_answers(made).people if p.participant == "P03").why == "withdrawn"
 
 
+@pytest.mark.nightly
 def test_who_does_not_agree_leaves_no_trace_but_that(made: Perceived, browse: Browser) -> None:
     page = (made.show / "index.html").as_uri()
     steps = [{"url": page, "until": "document.querySelector('#code')"}, {"fill": ["#code", " p01 "]}]
@@ -138,6 +141,7 @@ def test_who_does_not_agree_leaves_no_trace_but_that(made: Perceived, browse: Br
     assert not errors and [e["type"] for e in events] == ["declined"]
 
 
+@pytest.mark.nightly
 def test_a_video_that_is_missing_is_told(made: Perceived, browse: Browser) -> None:
     for path in (made.show / "videos").iterdir():
         path.unlink()

@@ -25,12 +25,14 @@ def test_what_is_expected_is_the_share_of_all_together() -> None:
     assert len(set(who)) == 400 and set(np.bincount(what).tolist()) == {400}
 
 
+@pytest.mark.nightly
 def test_where_nobody_and_nothing_differs_simulated_power_is_the_exact_one() -> None:
     found = simulate_power(Expected(0.65, 0, 0), 10, 10, 10, studies=thorough.many(60, 120))
     assert found.low is not None and found.high is not None
     assert found.low - 0.03 < binomial.share_power(100, 0.65) < found.high + 0.03
 
 
+@pytest.mark.nightly
 def test_people_who_differ_need_more_answers() -> None:
     alike, unlike = Expected(0.6, 0, 0.3), Expected(0.6, 1.0, 0.3)
     assert design_effect(alike, 10) == 1 < 3 < design_effect(unlike, 10)

@@ -58,6 +58,7 @@ def people() -> Iterator[list[subprocess.Popen[str]]]:
             process.communicate()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("left", ["nothing", "a stale lock", "a lock of a process that was killed"])
 def test_eight_who_begin_at_once_have_eight_places(
     concealed: Path, people: list[subprocess.Popen[str]], left: str

@@ -27,6 +27,7 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     return out
 
 
+@pytest.mark.nightly
 def test_people_are_told_apart_and_sites_are_a_random_effect(folders: list[Path]) -> None:
     data = merge_site_data(folders, jumps=False)
     assert len(data.participants) == 18 and data.participants[6] == "Bonn-P01"

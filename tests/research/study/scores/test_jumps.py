@@ -6,6 +6,8 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits
 from metagraph.graph.manual import edits as manual_edits
@@ -44,6 +46,7 @@ def test_clips_that_the_reference_has_not_are_left_out() -> None:
     assert judged(small()).jumps == 0
 
 
+@pytest.mark.nightly
 def test_a_good_machine_does_not_jump_in_either_condition() -> None:
     assert judged(sample()).jumps == judged(draw_every_connection(sample())).jumps == 0
     assert not any(jumps(sample(), Measured(sample(), layer)) for layer in sample().graphs)
@@ -93,6 +96,7 @@ def test_what_can_be_left_at_any_time_is_judged_at_no_moment_in_particular() -> 
     assert judged(project.with_manual(replace(machine, links=links))).jumps == 1
 
 
+@pytest.mark.nightly
 def test_a_mask_leaves_out_what_is_not_moved() -> None:
     project = sample()
     graph = project.graphs["arms"]

@@ -18,6 +18,7 @@ from metagraph.research.study.study_plan import read_study
 SAMPLE = Path(__file__).resolve().parents[4] / "sample_clips" / "study"
 
 
+@pytest.mark.nightly
 def test_the_example_study_is_gone_through_by_people_who_do_not_exist(tmp_path: Path) -> None:
     study = read_study(SAMPLE)
     made = write_like(study, tmp_path / "made", Truth(ratio=3.0, order=0.8))

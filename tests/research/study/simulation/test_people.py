@@ -52,6 +52,7 @@ def test_the_same_seed_gives_the_same_people_and_more_of_them_the_same_first_one
     assert list(simulate_participants(Truth(participants=4, seed=2), TWO)) != few
 
 
+@pytest.mark.nightly
 def test_without_any_chance_the_truth_comes_out_exactly() -> None:
     truth = Truth(participants=4, ratio=6.0, pace=0, spread=0, chance=0, order=0.8)
     found = analyse_study(simulate_times(truth, TWO))
@@ -131,6 +132,7 @@ def results(folder: Path) -> Results:
     return analyse_study(collect_study(folder))
 
 
+@pytest.mark.nightly
 def test_a_folder_with_something_in_it_is_left_alone(folder: Path) -> None:
     with pytest.raises(FileError, match="is not empty"):
         write_study(folder, Truth())
@@ -163,6 +165,7 @@ def test_the_logs_say_what_was_drawn(folder: Path) -> None:
             assert sus_score(answers) == score
 
 
+@pytest.mark.nightly
 def test_the_report_recovers_what_was_put_in(results: Results) -> None:
     truth, time = Truth(), results.time
     assert time is not None and time.order is not None
@@ -179,6 +182,7 @@ def test_the_report_recovers_what_was_put_in(results: Results) -> None:
     assert 1.2 < results.predicted["manual"].share.value < 2.2
 
 
+@pytest.mark.nightly
 def test_the_same_truth_gives_the_same_files(tmp_path: Path) -> None:
     one, two = (write_study(tmp_path / name, Truth(participants=2)).folder for name in ("one", "two"))
     files = sorted(p.relative_to(one) for p in one.rglob("*") if p.is_file())

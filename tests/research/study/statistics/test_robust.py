@@ -76,6 +76,7 @@ def test_censored_values_agree_with_scipy() -> None:
     assert found.low is not None and found.high is not None and found.low < 1 < found.high
 
 
+@pytest.mark.nightly
 def test_intervals_of_censored_values_hold_the_truth_as_often_as_they_promise() -> None:
     rng, held = np.random.default_rng(5), 0
     studies = many(100, 200)

@@ -207,6 +207,7 @@ def test_practice_as_least_squares_have_it() -> None:
     assert found[1] == close(exp(4.542294121789409))
 
 
+@pytest.mark.nightly
 def test_it_agrees_with_scipy() -> None:
     theirs = pytest.importorskip("scipy.stats", reason="SciPy is not installed")
     for df in (1.0, 2.5, 9.0, 60.0, 1000.0):
