@@ -110,7 +110,8 @@ class Document(QObject):
 
     `changed` has the projects before and after. `loaded` comes first if `after` is another project, not an
     edited one. `state_changed` comes after `changed`, too: path, dirty mark or undo texts may differ. `saved`
-    is emitted after writing. `failed` has words for the user, `warned` words that the user must have read.
+    is emitted after writing, `exported` after files for an engine were written. `failed` has words for the
+    user, `warned` words that the user must have read.
 
     `common` is the project as its file was when it was last read or saved, None if unknown; `digest` is the
     SHA-256 of that file. `lock` is the file's, while this window has it. With `read_only`, another window has
@@ -122,6 +123,7 @@ class Document(QObject):
     loaded = Signal()
     state_changed = Signal()
     saved = Signal()
+    exported = Signal()
     failed = Signal(str)
     warned = Signal(str)
 

@@ -377,6 +377,7 @@ class ExportDialog(QDialog):
         )
         if self.target.name == made.target:
             self._show_result()
+        self.document.exported.emit()
 
     def _failed(self, target: str, error: Exception) -> None:
         self.progress.hide()

@@ -41,7 +41,7 @@ class GuideFeature(Feature):
             self.line.turned.connect(self.shell.show)
             window.addToolBarBreak(Qt.ToolBarArea.BottomToolBarArea)  # below the line of an import
             window.addToolBar(Qt.ToolBarArea.BottomToolBarArea, self.line)
-            self.shell.actions["export"].triggered.connect(self.line.notice_export)
+            self.document.exported.connect(self.line.notice_export)
         self.line.begin()
 
     def find_part(self, panel: str) -> QWidget | None:

@@ -128,7 +128,7 @@ class GuideLine(QToolBar):
         self._go_on()
 
     def notice_export(self) -> None:
-        """The export was opened."""
+        """Files for an engine were written."""
         self.seen = replace(self.seen, exported=True)
         self._go_on()
 

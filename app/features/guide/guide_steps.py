@@ -19,7 +19,7 @@ WATCHED = 6.0  # seconds of playing after which somebody has watched
 @dataclass(frozen=True)
 class Seen:
     """What has happened since the guide began. watched: seconds of the performance that were played.
-    exported: the export was opened.
+    exported: files for an engine were written.
     """
 
     project: Project

@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.table.cell_words import list_choices
+from app.features.table.frozen_names import NAME, FrozenNames
 from app.features.table.table_model import TableModel
 from app.translation import tr
 from app.widgets.restyling import set_sheet
@@ -125,6 +126,17 @@ class TableView(QTableView):
         for place, column in enumerate(COLUMNS):
             self.setColumnWidth(place, WIDTHS.get(column, USUAL))
         self.setSortingEnabled(True)
+        self.names = FrozenNames(self)
+
+    def scrollTo(
+        self, index: Index, hint: QAbstractItemView.ScrollHint = QAbstractItemView.ScrollHint.EnsureVisible
+    ) -> None:
+        """Bring a cell into sight, also from beneath the names that stay."""
+        super().scrollTo(index, hint)
+        hidden = self.names.covered() - self.columnViewportPosition(index.column())
+        if hidden > 0 and index.column() != NAME:
+            bar = self.horizontalScrollBar()
+            bar.setValue(bar.value() - hidden)
 
     # --- keys
 

@@ -225,7 +225,8 @@ def test_every_target_is_written_by_a_click(toys, tmp_path):
     """One after the other, each into a folder of its own; an avatar, which needs a mesh, says so."""
     drive = toys
     dialog = opened(drive)
-    refused = {}
+    refused, written = {}, []
+    told = drive.document.exported.connect(lambda: written.append(dialog.target.name))
     for name in registry.targets():
         pick(drive, dialog, name)
         put(dialog, str(tmp_path / name))
@@ -237,4 +238,6 @@ def test_every_target_is_written_by_a_click(toys, tmp_path):
         else:
             refused[name] = dialog.trouble.text()
     dialog.reject()
+    drive.document.exported.disconnect(told)
     assert refused.keys() == {"vrm"} and "choose a mesh" in refused["vrm"]
+    assert written == list(dialog.results)

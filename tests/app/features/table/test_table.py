@@ -320,6 +320,27 @@ def test_a_column_is_hidden_and_stays_so(table):
 
 
 @pytest.mark.nightly
+def test_names_stay_in_sight_when_the_table_is_scrolled_to_the_right(table):
+    names, bar, name = table.view.names, table.view.horizontalScrollBar(), COLUMNS.index("name")
+    assert not names.isVisible(), "the table's own names are in sight"
+    bar.setValue(bar.maximum())
+    assert bar.value() > 0 and names.isVisible()
+    row = table.rows.find([table.ident("rest wave rt")])[0]
+    at = names.visualRect(table.rows.index(row, name)).center()
+    QTest.mouseClick(names.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at)
+    assert table.view.selected_rows() == [row], "a click on a name selects in the table"
+    tops = [view.visualRect(table.rows.index(row, name)).top() for view in (names, table.view)]
+    assert tops[0] == tops[1], "each name stands beside its row"
+    kind = table.rows.index(row, COLUMNS.index("kind"))
+    table.view.scrollTo(kind)
+    left = table.view.columnViewportPosition(kind.column())
+    assert left >= table.view.names.covered(), "no cell that is gone to lies beneath the names"
+    bar.setValue(bar.maximum())
+    QTest.mouseDClick(names.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at)
+    assert table.view.is_editing() and not names.isVisible(), "a double click edits the name in the table"
+    QTest.keyClick(QApplication.focusWidget(), KEY.Key_Escape)
+
+
 def test_completions_are_the_stances_of_the_rows_layer(table):
     table.click("rest beat lf", "stance")
     table.key(KEY.Key_F2)
