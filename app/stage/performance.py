@@ -97,8 +97,8 @@ class StagePerformance(QObject):
             self.changed.emit()
 
     def compare(self, before: Project | None) -> None:
-        """Show single clips and actions as they were in another state of the project, or, for None, as they
-        are.
+        """Show single clips and actions as they were in another state of the project, with what they are now
+        as a ghost; for None, only as they are.
         """
         if before is not self.before:
             self.before = before
@@ -201,8 +201,7 @@ class StagePerformance(QObject):
             return
         self._busy, self._again = True, False
         project, kept, length = self.document.project, self.requests.kept, self.length
-        if self.before is not None and self.session.transport.show != "plan":
-            project = self.before
+        before = self.before if self.session.transport.show != "plan" else None
         manual, fires = self.session.onstage.mode == "manual", self._fires
         show, shown, anew = (
             self.session.transport.show,
@@ -214,6 +213,10 @@ class StagePerformance(QObject):
         talk, side, folder = self.conversation, self.session.onstage.side, self.document.folder or Path()
 
         def work(_: object) -> ShownPlayback:
+            now = play(project)
+            return now if before is None else replace(play(before), beside=now)
+
+        def play(project: Project) -> ShownPlayback:
             if show == "clip" and shown in project.clips:
                 return play_clip_alone(project, shown or "")
             if manual:

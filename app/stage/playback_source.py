@@ -81,6 +81,7 @@ class ShownPlayback:
     looks: tuple[GazeShare, ...] = ()
     over: Callable[[float], Overlay | None] | None = None
     muted: frozenset[Layer] = frozenset()
+    beside: ShownPlayback | None = None
 
     @cached_property
     def moving(self) -> Plan:

@@ -1,5 +1,6 @@
-"""Make ghosts beside the character: moments before and after now (onion skin), the stance below, and moments
-that the timing editor wants to show. Each has its name where it is farthest from the present pose.
+"""Make ghosts beside the character: moments before and after now (onion skin), the stance below, moments that
+the timing editor wants to show, and what it is compared with. Each has its name where it is farthest from
+the present pose.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import theme
 from app.stage.playback_source import ShownPlayback
-from app.translation import format_number
+from app.translation import format_number, tr
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
@@ -27,6 +28,7 @@ from preview.scene import Actor
 NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 NEAREST, FARTHEST = 0.34, 0.12  # how much of the ghost next to now is seen, and of the last
 STANCE = 0.30  # how much of the stance is
+COMPARED = 0.45  # how much of what it is compared with is
 # What was is dark and what comes is light.
 BEFORE = (0.30, 0.32, 0.36)
 AFTER, AFTER_ON_LIGHT = (0.86, 0.88, 0.92), (0.56, 0.58, 0.62)
@@ -59,6 +61,7 @@ class Ghosts(QWidget):
             return []
         return [
             *self._of_action(figure, shown, seconds),
+            *self._of_other(figure, shown, seconds),
             *(self._of_moments(figure, shown, seconds) if watch.before or watch.after else ()),
             *(self._of_stance(figure, shown, seconds) if watch.stance else ()),
         ]
@@ -74,6 +77,17 @@ class Ghosts(QWidget):
             if pose is not None:
                 out.append(self._ghost(figure, shown, pose, opacity))
         return out
+
+    def _of_other(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[Actor]:
+        """Return the pose of now, beside what was before (A/B)."""
+        if shown.beside is None or shown.beside.skeleton != shown.skeleton:
+            return []
+        pose = shown.beside.pose(min(seconds, shown.beside.length))
+        if pose is None:
+            return []
+        color = QColor(theme(self.panel.session.look.name).strong)
+        ghost = self._ghost(figure, shown, pose, COMPARED, (color.redF(), color.greenF(), color.blueF()))
+        return [ghost] if self._label(tr("Now"), ghost) else []
 
     def _of_moments(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[Actor]:
         watch = self.panel.session.watch.now

@@ -141,7 +141,7 @@ class Looking(QObject):
     @property
     def trailing(self) -> bool:
         """Whether the trails of hands and head are shown."""
-        return not self.trails.isHidden()
+        return self.trails.on
 
     def set_trailing(self, on: bool) -> None:
         self.trails.show_or_hide(on)

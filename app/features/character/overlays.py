@@ -56,7 +56,8 @@ class Overlays:
     def made(self, figure: MeshFigure, seconds: float) -> list[Actor]:
         """Return the ghosts at a time."""
         session, watch = self.panel.session, self.panel.session.watch.now
-        wanted = watch.stance or watch.before or watch.after or session.onion.skin is not None
+        compared = self.panel.performance.shown.beside is not None
+        wanted = watch.stance or watch.before or watch.after or compared or session.onion.skin is not None
         return self.ghosts.made(figure, seconds) if wanted or "ghosts" in self.__dict__ else []
 
     def set_bare(self) -> None:

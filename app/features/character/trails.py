@@ -1,10 +1,8 @@
 """Draw trails of hands and head over the character: where they were and will be within 1.5 s. They show arcs,
-spacing and pops at a glance.
+spacing and pops at a glance. While two states of an action are compared, both have trails.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
@@ -14,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.look.theme import theme
+from app.stage.playback_source import ShownPlayback
 from metagraph.graph import anatomy
 
 RATE = 30  # samples a second: dots are as far apart as frames, so what is quick has gaps
@@ -26,46 +25,31 @@ ROLES = (
 KEPT = 600  # samples
 
 
-class Trails(QWidget):
-    """A pane over the view of a preview panel. It passes all mouse events on."""
+class TrailSamples:
+    """Keeps where hands and head of one playback are, at `RATE` samples a second."""
 
-    def __init__(self, panel: OverlayHost) -> None:
-        super().__init__(panel.view)
-        self.panel = panel
-        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._of: Any = None  # whose samples they are
+    def __init__(self) -> None:
+        self._of: ShownPlayback | None = None
         self._samples: dict[int, np.ndarray] = {}  # number of the sample -> places `[roles, 3]`
-        self.hide()
-        panel.view.painted.connect(self._follow)
-        panel.performance.changed.connect(self._forget)
-        panel.performance.document.changed.connect(self._forget)
 
-    def _forget(self, *_: object) -> None:
+    def forget(self, *_: object) -> None:
         self._of = None
         self._samples.clear()
 
-    def show_or_hide(self, on: bool) -> None:
-        self.setVisible(on)
-        self._follow()
-
-    def _follow(self, *_: object) -> None:
-        if self.isVisible():
-            lie_over(self, self.panel.view)
-
-    def places(self) -> tuple[np.ndarray, np.ndarray, list[str]]:
-        """Return times `[N]`, places `[N, R, 3]` and roles, of the roles that the character has."""
-        shown = self.panel.performance.shown
+    def places(self, shown: ShownPlayback, seconds: float) -> tuple[np.ndarray, np.ndarray, list[str]]:
+        """Return times `[N]` within `SPAN` of `seconds`, places `[N, R, 3]` and roles, of the roles that the
+        character has.
+        """
         nothing: tuple[np.ndarray, np.ndarray, list[str]] = (np.zeros(0), np.zeros((0, 0, 3)), [])
         skeleton = shown.skeleton
         if skeleton is None or skeleton != shown.project.skeleton:
             return nothing
         roles = anatomy.project_roles(shown.project)
         known = [role for role, _ in ROLES if role in roles]
-        if shown is not self._of:
-            self._forget()
+        if shown is not self._of or len(self._samples) > KEPT:
+            self.forget()
             self._of = shown
-        now = round(self.panel.session.transport.seconds * RATE)
-        last = int(shown.length * RATE)
+        now, last = round(seconds * RATE), int(shown.length * RATE)
         wanted = range(max(0, now - int(SPAN * RATE)), min(last, now + int(SPAN * RATE)) + 1)
         missing = [n for n in wanted if n not in self._samples]
         if missing and known:
@@ -76,24 +60,68 @@ class Trails(QWidget):
             if shown.stand is not None:
                 rotations, places = shown.stand.placed(rotations, places)
             joints = [roles[role] for role in known]
-            if len(self._samples) > KEPT:
-                self._samples.clear()
-                return self.places()
             self._samples.update(zip(missing, places[:, joints], strict=True))
         if not known or not len(wanted):
             return nothing
         return np.array(wanted) / RATE, np.array([self._samples[n] for n in wanted]), known
 
+
+class Trails(QWidget):
+    """A pane over the view of a preview panel. It passes all mouse events on. `on`: the user wants trails."""
+
+    def __init__(self, panel: OverlayHost) -> None:
+        super().__init__(panel.view)
+        self.panel = panel
+        self.on = False
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._samples, self._beside = TrailSamples(), TrailSamples()
+        self.hide()
+        panel.view.painted.connect(self._follow)
+        panel.performance.changed.connect(self._changed)
+        panel.performance.document.changed.connect(self._forget)
+
+    def _changed(self) -> None:
+        self._forget()
+        self.show_or_hide(self.on)
+
+    def _forget(self, *_: object) -> None:
+        self._samples.forget()
+        self._beside.forget()
+
+    def show_or_hide(self, on: bool) -> None:
+        """Show trails if they are wanted, or if two states are compared."""
+        self.on = on
+        self.setVisible(on or self.panel.performance.shown.beside is not None)
+        self._follow()
+
+    def _follow(self, *_: object) -> None:
+        if self.isVisible():
+            lie_over(self, self.panel.view)
+
+    def places(self) -> tuple[np.ndarray, np.ndarray, list[str]]:
+        """Return times `[N]`, places `[N, R, 3]` and roles of what plays."""
+        return self._samples.places(self.panel.performance.shown, self.panel.session.transport.seconds)
+
     def paintEvent(self, event: QPaintEvent) -> None:
-        times, places, known = self.places()
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._paint(painter, *self.places(), Qt.PenStyle.SolidLine)
+        beside = self.panel.performance.shown.beside
+        if beside is not None:
+            seconds = self.panel.session.transport.seconds
+            self._paint(painter, *self._beside.places(beside, seconds), Qt.PenStyle.DotLine)
+        painter.end()
+
+    def _paint(
+        self, painter: QPainter, times: np.ndarray, places: np.ndarray, known: list[str], style: Qt.PenStyle
+    ) -> None:
+        """Paint a trail for each role: dots as far apart as frames, on a line."""
         if len(times) < 2:
             return
         look, view = theme(self.panel.session.look.name), self.panel.view
         seen = view.camera.project(places, view.width() / max(1, view.height()))
         seen = seen * [self.width(), self.height()]
         now = self.panel.session.transport.seconds
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         kinds = dict(ROLES)
         for n, role in enumerate(known):
             color = QColor(look.fill(kinds[role]))
@@ -103,8 +131,8 @@ class Trails(QWidget):
                     continue
                 away = abs(times[k] - now) / SPAN
                 color.setAlphaF(max(0.08, (1 - away) * (0.9 if times[k] < now else 0.5)))
-                painter.setPen(QPen(color, 2.0, c=Qt.PenCapStyle.RoundCap))
+                painter.setPen(QPen(color, 2.0, style, Qt.PenCapStyle.RoundCap))
                 painter.drawLine(QPointF(*a), QPointF(*b))
-                painter.setPen(QPen(color, 5.0, c=Qt.PenCapStyle.RoundCap))
-                painter.drawPoint(QPointF(*a))
-        painter.end()
+                if style == Qt.PenStyle.SolidLine:
+                    painter.setPen(QPen(color, 5.0, c=Qt.PenCapStyle.RoundCap))
+                    painter.drawPoint(QPointF(*a))

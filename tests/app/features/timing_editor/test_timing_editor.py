@@ -252,8 +252,17 @@ def test_the_key_a_shows_them_as_they_were_and_again_as_they_are(editor):
     editor.view.setFocus()
     editor.key(Qt.Key.Key_A, widget=editor.view)
     assert editor.performance.before is project and editor.panel.compare.text() == "A: before"
+    editor.wait(lambda: editor.performance.shown.beside is not None)
+    character = editor.shell.panel("character")
+    editor.wait(character.looking.trails.isVisible)
+    assert not character.looking.trailing, "the paths go with the comparison"
+    assert character.overlays.ghosts.isVisible() or not character.overlays.ghosts._labels
+    shown = editor.performance.shown
+    assert shown.project is project and shown.beside.project is editor.document.project
     editor.key(Qt.Key.Key_A, widget=editor.view)
     assert editor.performance.before is None and editor.panel.compare.text() == "A/B"
+    editor.wait(lambda: editor.performance.shown.beside is None)
+    editor.wait(lambda: not character.looking.trails.isVisible())
 
 
 @pytest.mark.nightly
