@@ -301,8 +301,9 @@ uniform sampler2D u_grain;
 in vec2 v_grain;
 // The normal that a normal map bends n to, and how deep in the grain the place is: 1 on top. The directions of
 // the map come from how its coordinates change on the screen.
+const float BLUR = 1.3;  // mipmaps beyond the nearest, or rows of stitches make rings where they are a few pixels wide
 vec4 grained(vec3 n) {
-    vec3 map = texture(u_grain, v_grain).xyz * 2.0 - 1.0;
+    vec3 map = texture(u_grain, v_grain, BLUR).xyz * 2.0 - 1.0;
     vec3 right = cross(dFdy(v_world), n), up = cross(n, dFdx(v_world));
     vec2 x = dFdx(v_grain), y = dFdy(v_grain);
     vec3 along = right * x.x + up * y.x, across = right * x.y + up * y.y;
