@@ -144,6 +144,16 @@ def test_losses_count_what_the_project_has(sample: Project) -> None:
     assert not any("repeats for" in words for words in registry.losses(sample, "playcanvas"))
 
 
+@pytest.mark.parametrize("name", sorted(registry.targets()))
+def test_every_target_says_that_conversations_are_left_out(sample: Project, name: str) -> None:
+    assert sample.conversations
+    words = f"{len(sample.conversations)} conversation"
+    assert any(loss.startswith(words) for loss in registry.losses(sample, name))
+    assert not any(
+        "conversation" in loss for loss in registry.losses(replace(sample, conversations={}), name)
+    )
+
+
 def test_a_target_that_does_not_exist_is_told_with_the_nearest(sample: Project, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="did you mean 'playcanvas'"):
         registry.write_for_target(sample, "playcanvass", tmp_path)

@@ -43,6 +43,24 @@ def _weighted(project: Project) -> int:
     return sum(1 for g in project.graphs.values() for w in g.weights.values() if w not in (0.0, 1.0))
 
 
+CONVERSATIONS = Loss(
+    plural_phrase(
+        "{count} conversation is left out: no export holds conversations. Render it as a video, or play its "
+        "two characters yourself",
+        "{count} conversations are left out: no export holds conversations. Render them as videos, or play "
+        "their characters yourself",
+        0,
+    ),
+    lambda project: len(project.conversations),
+)
+PERFORMANCES = Loss(
+    plural_phrase(
+        "{count} saved performance is left out",
+        "{count} saved performances are left out",
+        0,
+    ),
+    lambda project: len(project.performances),
+)
 MACHINE: tuple[Loss, ...] = (
     Loss(
         phrase(
@@ -105,6 +123,7 @@ MACHINE: tuple[Loss, ...] = (
         ),
         _seams,
     ),
+    PERFORMANCES,
 )
 WEIGHTS = Loss(
     plural_phrase(

@@ -12,6 +12,7 @@ from pathlib import Path
 from metagraph.common.wording import phrase
 from metagraph.engines.export import require_exportable, stem_of
 from metagraph.engines.export_error import ExportError
+from metagraph.engines.targets.losses import CONVERSATIONS
 from metagraph.engines.targets.next_steps import README, find_steps, list_steps, make_readme
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place_files as move
@@ -71,7 +72,8 @@ def target(name: str) -> ExportTarget:
 
 def losses(project: Project, name: str) -> tuple[str, ...]:
     """Return in words what a target loses of a project."""
-    return tuple(words for loss in target(name).losses if (words := loss.told(project)) is not None)
+    every = (*target(name).losses, CONVERSATIONS)
+    return tuple(words for loss in every if (words := loss.told(project)) is not None)
 
 
 def write_for_target(

@@ -19,6 +19,7 @@ from metagraph.common.files import read_file
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
 from metagraph.engines.export_error import ExportError
+from metagraph.engines.targets.losses import PERFORMANCES
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import FileError
@@ -247,6 +248,7 @@ TARGETS = (
             Loss(phrase("no meta-graph: the avatar's program moves it and finds the clips by name")),
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
             Loss(UNREPEATED, count_unrepeated),
+            PERFORMANCES,
         ),
     ),
 )

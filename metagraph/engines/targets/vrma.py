@@ -19,6 +19,7 @@ from metagraph.common.file_names import make_file_stems
 from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
 from metagraph.engines.export_error import ExportError
+from metagraph.engines.targets.losses import PERFORMANCES
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_pose, humanoid
 from metagraph.formats.atomic import write_atomically
@@ -201,6 +202,7 @@ TARGETS = (
             Loss(phrase("no blends: an action begins and ends in its stance, and the program blends")),
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
             Loss(UNREPEATED, count_unrepeated),
+            PERFORMANCES,
         ),
     ),
 )
