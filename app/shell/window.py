@@ -35,6 +35,7 @@ from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
 from app.translation import tr
+from app.widgets.drop_frame import DropFrame
 
 LATE = 4000  # milliseconds after which the late panels are made in any case
 
@@ -121,6 +122,7 @@ class Window(QMainWindow):
         tabs = HeaderItem("middle", lambda parent: WorkspaceTabs(self.workspaces, shell.actions, parent))
         self.header = shell.services.add(Header(shell.document, session, shell.actions, [tabs, *items], self))
         self.addToolBar(self.header)
+        self.drop_frame = DropFrame(self, session.look, tr("Drop to import"))
         self.job_line = JobLine(shell.jobs, self)
         self.statusBar().addPermanentWidget(self.job_line)
         self.statusBar().addPermanentWidget(shell.notice)
@@ -285,6 +287,7 @@ class Window(QMainWindow):
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if self.shell.importing.takes(list_dropped_files(event)):
             event.acceptProposedAction()
+            self.drop_frame.follow(event)
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
         if self.shell.importing.takes(list_dropped_files(event)):

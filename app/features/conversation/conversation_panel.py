@@ -17,6 +17,7 @@ from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from app.translation import group_thousands, tr, tr_noop, tr_plural
+from app.widgets.drop_frame import DropFrame
 from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
 from app.widgets.more_button import MoreButton
@@ -70,6 +71,7 @@ class ConversationPanel(QWidget):
         session.onstage.mode_changed.connect(self._soon.start)
         self.editing.changed.connect(self._soon.start)
         performance.changed.connect(self._soon.start)
+        self.drop_frame = DropFrame(self, session.look, tr("Drop to make a conversation"))
         self._restage()
 
     def _header(self) -> QHBoxLayout:
@@ -195,6 +197,7 @@ class ConversationPanel(QWidget):
     def dragEnterEvent(self, event: QDragMoveEvent) -> None:
         if sounds_of(event.mimeData()):
             event.acceptProposedAction()
+            self.drop_frame.follow(event)
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
         self.dragEnterEvent(event)

@@ -29,6 +29,7 @@ from app.features.library.clip_scrub import ClipScrub
 from app.features.library.clip_sizes import SIZES, Style, measure_cell, picture_of
 from app.stage.session import StageSession
 from app.translation import tr, tr_plural
+from app.widgets.drop_frame import DropFrame
 from app.widgets.mime import drag_picture, load_of, make_mime
 
 Move = QAbstractItemView.CursorAction
@@ -65,6 +66,7 @@ class ClipList(QListView):
         self.setDragEnabled(True)
         self.setDragDropMode(QAbstractItemView.DragDropMode.DragDrop)
         self.viewport().setAcceptDrops(True)
+        self.drop_frame = DropFrame(self.viewport(), session.look, tr("Drop to import clips"))
         self.viewport().setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # what is scrolled is moved
         self.setMouseTracking(True)
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
@@ -349,6 +351,7 @@ class ClipList(QListView):
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if load_of(event.mimeData()).files:
             event.acceptProposedAction()
+            self.drop_frame.follow(event)
         else:
             event.ignore()
 

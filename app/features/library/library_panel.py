@@ -40,6 +40,7 @@ from app.project.load import describe_readable_formats
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_noop, tr_plural
+from app.widgets.drop_frame import DropFrame
 from app.widgets.flow import FlowLayout
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -82,6 +83,7 @@ class LibraryPanel(QWidget):
         pictures = ClipPictures(thumbnails)
         delegate = ClipDelegate(session.look, self.facts, pictures, names)
         self.list = ClipList(session, self.rows, delegate, self)
+        self.drop_frame = DropFrame(self, session.look, tr("Drop to import clips"))
         self.list.menu_wanted.connect(lambda entry, at: self.acts.menu(entry).exec(at))
         self.list.files_dropped.connect(self.files_dropped)
         self.search.left.connect(self._into_list)
@@ -234,6 +236,7 @@ class LibraryPanel(QWidget):
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         self.list.dragEnterEvent(event)
+        self.drop_frame.follow(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
         self.list.dropEvent(event)

@@ -36,6 +36,7 @@ from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from app.translation import format_number, lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
+from app.widgets.drop_frame import DropFrame
 from app.widgets.flow import FlowLayout
 from app.widgets.making import make_widget
 from metagraph.graph.edit_error import EditError
@@ -154,6 +155,7 @@ class LinesPanel(QWidget):
         document.changed.connect(self._edited)
         document.loaded.connect(self.search.clear)  # what is not looked for here must not hide lines there
         session.look.changed.connect(self._changed)
+        self.drop_frame = DropFrame(self, session.look, tr("Drop to add lines"))
 
     # --- showing
 
@@ -354,6 +356,7 @@ class LinesPanel(QWidget):
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if self._files(event):
             event.acceptProposedAction()
+            self.drop_frame.follow(event)
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
         event.acceptProposedAction()
