@@ -23,6 +23,7 @@ from metagraph.suggest.estimate import Belief
 from metagraph.suggest.jumps import compatibility
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.proposal import Proposal, RestMoment, StancePlace, name_words
+from metagraph.suggest.stances.pose_words import is_lying
 from metagraph.suggest.traits import Traits
 
 Array = NDArray[Any]
@@ -32,6 +33,7 @@ STAYS = 0.01  # heights that the hips move in it, at most
 LONGEST = 2.0  # seconds: the longest such moment
 MANY = 12  # clips that are searched for one
 LATE = 2 / 3  # of a cycle: its stroke is sought from there on
+RARE = 0.02  # likelihood of lying down, beside the usual 1 of sitting down
 
 
 def with_timing(
@@ -237,6 +239,23 @@ def with_likelihoods(project: Project, proposals: Mapping[str, Proposal]) -> dic
             p = proposals[clip]
             out[clip] = replace(p, details={**p.details, "likelihood": belief})
     return {clip: out[clip] for clip in proposals}
+
+
+def with_rare_lying(proposals: Mapping[str, Proposal], traits: Mapping[str, Traits]) -> dict[str, Proposal]:
+    """Return proposals in which a character that stands or sits hardly ever lies down: nobody does while
+    talking, unless it is requested.
+    """
+    out = dict(proposals)
+    for c, p in proposals.items():
+        body = traits[c].layers["body"] if c in traits else None
+        if p.kind.value != "transition" or body is None:
+            continue
+        if is_lying(body.names, body.last) and not is_lying(body.names, body.first):
+            why = phrase(
+                "ends on the ground, where nobody lies down while talking: it is rare unless requested"
+            )
+            out[c] = replace(p, details={**p.details, "likelihood": Belief(RARE, 0.8, why)})
+    return out
 
 
 def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> tuple[str, str, str, str]:

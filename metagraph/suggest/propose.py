@@ -18,7 +18,14 @@ from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Pro
 from metagraph.suggest.accept import AcceptedProposals, accept
 from metagraph.suggest.alike import Alike, LabelledExample
 from metagraph.suggest.clip_measures import is_cycle, layer_of, with_tremble
-from metagraph.suggest.details import rest_of, with_likelihoods, with_moved_joints, with_stroke, with_timing
+from metagraph.suggest.details import (
+    rest_of,
+    with_likelihoods,
+    with_moved_joints,
+    with_rare_lying,
+    with_stroke,
+    with_timing,
+)
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.folder_tags import join_tags, read_folder_tags
 from metagraph.suggest.left_aside import FAR, MANY, explain_skipping
@@ -216,7 +223,11 @@ def propose(
             for c, p in out.items()
         }
     return Proposals(
-        with_likelihoods(project, out), _with_rests(project, places.by_key, out, traits), aside, whole, spare
+        with_rare_lying(with_likelihoods(project, out), traits),
+        _with_rests(project, places.by_key, out, traits),
+        aside,
+        whole,
+        spare,
     )
 
 

@@ -295,6 +295,14 @@ def test_a_robot_nobody_made_here_sits_where_its_clip_of_sitting_ends(shared_dat
     assert ends["Sitting"] == "sitting" and ends["Standing"] == "standing"
 
 
+def test_who_stands_and_talks_hardly_ever_lies_down(shared_data):
+    project = import_files(Project(), None, [shared_data / "kaykit-rogue"]).into(Project())
+    found = propose(project)
+    likely = {project.clips[c].name: p.details["likelihood"] for c, p in found.proposals.items()}
+    assert likely["Lie_Down"].value < 0.05 and "lies down" in likely["Lie_Down"].reason
+    assert likely["Sit_Chair_Down"].value == likely["Lie_StandUp"].value == 1.0
+
+
 def test_a_transition_that_travels_to_where_no_other_clip_plays_is_skipped_not_slid_back(toy: Any) -> None:
     def away(name: str, metres: float, end: float) -> Any:
         clip = toy.clip(name, 2.0, 0.0, end, swing=0.0)

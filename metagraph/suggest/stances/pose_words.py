@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ Array = NDArray[Any]
 Points = Mapping[str, Array]
 
 ARM = 0.35  # heights, an arm's usual length: what hands are measured by on figures with others
+LEVEL = 0.4  # sine of the angle between the trunk and the ground below which somebody lies
 LEAN = 9.0  # degrees a trunk leans, beyond what is usual for the set
 AWRY = 0.015  # heights the crown or nose is to a side, of a head that is tilted or turned
 WEIGHT = 0.02  # heights the hips are to a side of the feet, of a body that rests on one leg
@@ -43,11 +44,20 @@ def _points(shape: Shape, scale: Mapping[Layer, float] | None) -> dict[str, Arra
     }
 
 
+def is_lying(names: Sequence[str], pose: Array) -> bool:
+    """Return whether somebody lies: the trunk is nearer to level than to upright. pose: `[n, 3]`, the named
+    points.
+    """
+    if not {"hips", "trunk"} <= set(names):
+        return False
+    up = pose[names.index("trunk")] - pose[names.index("hips")]
+    return bool(up[1] < LEVEL * np.linalg.norm(up))
+
+
 def _legs(p: Points) -> str:
     if not {"hips", "trunk"} <= set(p):
         return ""
-    up = p["trunk"] - p["hips"]
-    if up[1] < 0.4 * np.linalg.norm(up):
+    if is_lying([*p], np.array([*p.values()])):
         return "lying"
     upright, reach = [], 0.0
     for side in ("left", "right"):

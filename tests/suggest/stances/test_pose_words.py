@@ -11,7 +11,7 @@ from metagraph.formats.imports import import_files
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import propose
 from metagraph.suggest.stances.known import Shape
-from metagraph.suggest.stances.pose_words import describe_pose
+from metagraph.suggest.stances.pose_words import describe_pose, is_lying
 
 ROOT = Path(__file__).resolve().parents[3]
 ARMS = ("left_hand", "left_lower_arm", "left_upper_arm", "right_hand", "right_lower_arm", "right_upper_arm")
@@ -57,3 +57,11 @@ def test_stances_that_names_do_not_speak_of_are_called_as_they_look() -> None:
     names = {place.name for place in propose(project, sources=("motion",)).places.values()}
     assert {"arms crossed", "hands on the hips", "hands clasped", "weight left", "head tilted right"} <= names
     assert not any("stance" in name for name in names)
+
+
+def test_somebody_lies_whose_trunk_is_nearer_to_level_than_to_upright():
+    names = ["hips", "trunk"]
+    assert is_lying(names, np.array([[0.0, 0.1, 0.0], [0.0, 0.12, 0.3]]))
+    assert not is_lying(names, np.array([[0.0, 0.5, 0.0], [0.0, 0.7, 0.1]]))
+    assert is_lying(names, np.array([[0.0, 0.5, 0.0], [0.0, 0.3, 0.0]])), "head down"
+    assert not is_lying(["hips"], np.zeros((1, 3))), "nothing is known of the trunk"
