@@ -1,17 +1,20 @@
-"""Choose how near a clip is shown: the whole body if it walks or stands, down to the hips if the arms
-gesture, down to the chest if only the head moves.
+"""Choose how near a clip is shown, and from where: the whole body if it walks or stands, down to the hips if
+the arms gesture, down to the chest if only the head moves; from the front.
 """
 
 from __future__ import annotations
 
 from typing import Any, Literal
 
+import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
 from metagraph.motion.moving import find_moved_parts
 from metagraph.motion.roles import find_roles, is_humanoid
 from metagraph.motion.skeleton import Skeleton
+from preview import joints as rules
+from preview.figure import MeshFigure
 
 Array = NDArray[Any]
 Near = Literal["whole", "upper", "head"]
@@ -22,6 +25,7 @@ Box = tuple[Array, Array]  # its lowest and its highest corner, metres
 ASIDE: dict[Near, float] = {"upper": 0.3, "head": 0.15}
 BELOW: dict[Near, float] = {"upper": 0.03, "head": 0.02}
 HAND = 0.07  # beyond a wrist
+AVERTED = 1.0  # radians from the front beyond which a face is hardly seen
 
 
 def nearness(clip: Clip) -> Near:
@@ -51,3 +55,28 @@ def near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, heigh
     low[2], high[2] = shown[..., 2].min() - beside, shown[..., 2].max() + beside
     low[1] = min(low[1], shown[..., 1].min() - beside)
     return low, high
+
+
+def find_heading(figure: MeshFigure, positions: Array) -> float:
+    """Return where the hips face, radians about +Y: across the line from the right limbs to the left ones;
+    0 where that is not known. positions: `[J, 3]`.
+    """
+    side = rules.sides_of_joints(figure.skeleton) * figure.drawn
+    if not ((side > 0).any() and (side < 0).any()):
+        return 0.0
+    p = np.asarray(positions, float)
+    near = np.array([rules.is_finger(n) for n in figure.skeleton.names])
+    upper = [i for i in range(len(side)) if side[i] and not near[i] and side[figure.skeleton.parents[i]] == 0]
+    left, right = [i for i in upper if side[i] > 0], [i for i in upper if side[i] < 0]
+    if not left or not right:
+        return 0.0
+    across = p[left].mean(0) - p[right].mean(0)
+    return float(np.arctan2(-across[2], across[0])) if np.hypot(across[0], across[2]) > 1e-6 else 0.0
+
+
+def turn_to_face(figure: MeshFigure, positions: Array) -> float:
+    """Return by how far a camera goes round a figure to see its face, radians about +Y: 0 for one that faces
+    the front, or nearly. positions: `[J, 3]`, of its first pose.
+    """
+    heading = find_heading(figure, positions)
+    return heading if abs(heading) > AVERTED else 0.0

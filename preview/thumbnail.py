@@ -15,7 +15,7 @@ from metagraph.motion.skeleton import Pose
 from preview import joints as rules
 from preview.camera import Camera
 from preview.figure import MeshFigure
-from preview.framing import Box, near_box, nearness
+from preview.framing import Box, find_heading, near_box, nearness
 from preview.offscreen import Offscreen
 from preview.scene import DARK, Actor, Scene, SceneTheme
 
@@ -82,7 +82,7 @@ def thumbnail(
     pixels = style.size * style.scale
     # The figure is turned towards the lamp, not the camera round it, so that all thumbnails have the same
     # light.
-    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
+    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-find_heading(figure, positions)))
     centred = rotation.rotate_vectors(turn, positions - positions[0] * [1, 0, 1])
     actor = Actor(figure, rotation.multiply(turn, rotations), centred)
     camera = _camera(_person(figure, figure.posed_bounds(actor.rotations, actor.positions)))
@@ -108,7 +108,7 @@ def thumbnails(
     looked = np.unique(np.linspace(0, clip.frames - 1, min(clip.frames, FRAMED)).round().astype(int))
     every = np.concatenate((looked[:1], np.unique(np.concatenate((looked, frames)))))
     rotations, positions = clip.skeleton.globals(clip.poses()[every])
-    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions[0])))
+    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-find_heading(figure, positions[0])))
     centred = rotation.rotate_vectors(turn, positions - positions[:, :1] * [1, 0, 1])
     turned = rotation.multiply(turn, rotations)
     near = nearness(clip)
@@ -151,18 +151,3 @@ def draw_clip_thumbnail(
     """Return `thumbnail` of the clip's telling frame. The clip is on the figure's skeleton."""
     rotations, positions = clip.skeleton.globals(clip.poses()[find_telling_frame(clip)])
     return thumbnail(offscreen, figure, rotations, positions, style)
-
-
-def _heading(figure: MeshFigure, positions: Array) -> float:
-    """Return where the hips face, radians about +Y: across the line from the right limbs to the left ones."""
-    side = rules.sides_of_joints(figure.skeleton) * figure.drawn
-    if not ((side > 0).any() and (side < 0).any()):
-        return 0.0
-    p = np.asarray(positions, float)
-    near = np.array([rules.is_finger(n) for n in figure.skeleton.names])
-    upper = [i for i in range(len(side)) if side[i] and not near[i] and side[figure.skeleton.parents[i]] == 0]
-    left, right = [i for i in upper if side[i] > 0], [i for i in upper if side[i] < 0]
-    if not left or not right:
-        return 0.0
-    across = p[left].mean(0) - p[right].mean(0)
-    return float(np.arctan2(-across[2], across[0])) if np.hypot(across[0], across[2]) > 1e-6 else 0.0

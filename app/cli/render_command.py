@@ -124,14 +124,22 @@ def render_pictures(
     from app.stage.stools import stools
     from preview.camera import frame_whole_figure
     from preview.drawing_apart import draw_scenes
-    from preview.scene import THEMES, Scene
+    from preview.framing import turn_to_face
+    from preview.scene import THEMES, LampTurn, Scene
 
     theme = THEMES[look] if isinstance(look, str) else look
 
     seats = tuple(seat for _, shown in seen for seat in stools(shown))
     if camera is None:
         box = measure_bounds(seen, times)
-        camera = frame_whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
+        figure, shown = seen[0]
+        pose = shown.pose(float(times[0])) if len(seen) == 1 else None
+        turn = 0.0
+        if pose is not None and shown.skeleton is not None:
+            turn = turn_to_face(figure, shown.skeleton.globals(pose)[1])
+        whole = frame_whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else turn)
+        filmed = Filmed(whole, LampTurn(turn) if turn else None)
+        camera = lambda _: filmed  # noqa: E731
 
     def scenes() -> Iterator[tuple[Scene, Any]]:
         for first in range(0, len(times), TOGETHER):

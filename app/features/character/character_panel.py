@@ -37,7 +37,8 @@ from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import Camera, close_up, frame_whole_figure
 from preview.figure import MeshFigure, SkinnedFigure
-from preview.scene import Actor, Scene
+from preview.framing import turn_to_face
+from preview.scene import Actor, LampTurn, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = tr_noop(
@@ -67,6 +68,7 @@ class PreviewPanel(QWidget):
         self.bones = False
         self.shown_elsewhere = False  # in a window of its own
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
+        self._lamp: LampTurn | None = None  # how the light is turned for one who faces elsewhere
         self.composed = Scene()  # what was drawn last
         self._last: tuple[MeshFigure, np.ndarray, np.ndarray] | None = None
         self._marks: dict[int, tuple[float, float, float]] = {}  # of joints, as drawn last
@@ -269,13 +271,16 @@ class PreviewPanel(QWidget):
             return replace(scene, lamp=lamp)
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
-            aside = ASIDE if shown.others else 0.0
+            first = solid.actors[0]
+            turn = 0.0 if shown.others else turn_to_face(first.figure, first.positions)
+            self._lamp = LampTurn(turn) if turn else None
+            aside = ASIDE if shown.others else turn
             self.view.camera = frame_whole_figure(
                 solid.drawn_bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         elif self._last is not None:
             self.looking.keep_in_picture(shown, self._last[0])
-        return scene
+        return replace(scene, lamp=self._lamp)
 
     def _run_or_rest(self) -> None:
         """Count the time while it plays; what is paused costs nothing."""

@@ -17,7 +17,9 @@ from app.look.theme import theme
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from metagraph.graph import anatomy
+from metagraph.motion.skeleton import Pose
 from preview.camera import Camera, frame_whole_figure
+from preview.framing import turn_to_face
 
 if TYPE_CHECKING:
     from app.stage.gl_view import GLView, ImageView
@@ -63,8 +65,11 @@ class Looking(QObject):
 
     @property
     def heading(self) -> float:
-        stand = self.panel.performance.shown.stand
-        return stand.turn if stand is not None else 0.0
+        """Return where the character faces, radians about +Y."""
+        stand, last = self.panel.performance.shown.stand, self.panel.drawn
+        if stand is not None:
+            return stand.turn
+        return turn_to_face(last[0], last[2]) if last is not None else 0.0
 
     def see_from(self, side: str) -> None:
         """Look from one of SIDES, as near as before."""
@@ -110,7 +115,8 @@ class Looking(QObject):
         inside = (at > -CUT) & (at < 1 + CUT) if clip is not None else (middle > 0) & (middle < 1)
         if self._stepped_back or not inside.all():
             self._stepped_back = clip is not None and not inside.all()
-            view.camera = frame_whole_figure((low, high), aspect)
+            first = shown.skeleton.globals(Pose(pose.rotations[0], pose.translations[0]))[1]
+            view.camera = frame_whole_figure((low, high), aspect, turn_to_face(figure, first))
 
     @property
     def flat(self) -> bool:
