@@ -35,18 +35,12 @@ def run(options: Namespace) -> int:
     if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
         if not options.json:
             print("There is no screen, so Metagraph runs the demo without a window.\n")
-        from app.cli.demo_command import run as demo
+        from app.cli import demo_command
 
-        return demo(
-            Namespace(
-                json=options.json,
-                out=Path("out"),
-                seconds=60.0,
-                seed=None,
-                performance=None,
-                project=options.project,
-            )
-        )
+        parser = ArgumentParser()
+        demo_command.add_arguments(parser)
+        wanted = Namespace(json=options.json, project=options.project)
+        return demo_command.run(parser.parse_args([], wanted))
     from app.main import run_window
     from metagraph.formats.outputs import writing_freely
 

@@ -9,10 +9,13 @@ import os
 import re
 import subprocess
 import sys
+from argparse import Namespace
 from pathlib import Path
 
 import pytest
 
+from app.cli import demo_command, window_command
+from app.cli.command_output import stage_performance
 from app.cli.parser import COMMANDS, main
 from metagraph.engines.reading import read_export
 from metagraph.formats.gltf.reader import write_glb
@@ -381,6 +384,23 @@ def test_without_a_screen_the_same_job_runs_headless(tmp_path: Path, small: Path
     results = json.loads(made.stdout)
     assert set(results) == {"sheet", "video", "json", "glb"}
     assert all(Path(p).stat().st_size > 1000 for p in results.values())
+
+
+def test_a_window_without_a_screen_is_the_demo_with_its_usual_options(
+    small: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Namespace] = []
+
+    def run_demo(options: Namespace) -> int:
+        stage_performance(open_project(options.project).project, options)  # it has all that this needs
+        asked.append(options)
+        return 0
+
+    monkeypatch.setattr(demo_command, "run", run_demo)
+    monkeypatch.setattr(window_command, "has_screen", lambda: False)
+    monkeypatch.delenv("QT_QPA_PLATFORM", raising=False)
+    assert window_command.run(Namespace(project=small, json=True, sample=False, clip=None)) == 0
+    assert asked[0].seconds == 60.0 and asked[0].out == Path("out")
 
 
 @pytest.mark.nightly
