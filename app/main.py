@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QSettings, Qt, QTimer, QTranslator
-from PySide6.QtGui import QSurfaceFormat
+from PySide6.QtGui import QIcon, QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
 from metagraph.common.programs import leave_working_folder
@@ -50,6 +50,8 @@ def _application() -> QApplication:
     QCoreApplication.setApplicationName("Metagraph")
     QCoreApplication.setOrganizationName("Metagraph")
     app = QApplication(sys.argv[:1])
+    app.setWindowIcon(QIcon(str(Path(__file__).parent / "look" / "metagraph.svg")))
+    app.setDesktopFileName("metagraph")  # under Wayland the icon is that of the menu entry
     translation.choose_language(QSettings(), QLocale.system().uiLanguages())
     follow_language(app)
     return app

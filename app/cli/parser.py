@@ -122,6 +122,8 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         False,
         "make the papers' tables and figures again, next to the published ones",
     ),
+    "extras": ("extras_command", False, "list, add and remove what is installed only when it is needed"),
+    "doctor": ("doctor_command", False, "report what this computer has of what Metagraph needs"),
     "info": ("info_command", False, "describe a project, an export or a clip file"),
     "demo": (
         "demo_command",

@@ -16,9 +16,11 @@ from threading import Lock
 from types import ModuleType
 from typing import Any
 
+from metagraph.common.extras import ExtraError, install_extra, is_bundle
 from metagraph.common.programs import ROOT, is_own, run_program
 
 NUMBA = "numba>=0.60"
+LOADING = "Installing the compiler that new motion needs (60 MB to load, once) ..."
 
 _ONE = Lock()  # one thread installs, the others wait
 
@@ -71,9 +73,17 @@ def _numba() -> ModuleType:
 
 
 def _install() -> None:
-    """Have run.py install numba into the environment it made: whoever started run.py asked for what it
-    takes.
+    """Install numba: a bundle into the user's extras; run.py into the environment it made, since whoever
+    started it asked for what it takes.
     """
+    if is_bundle():
+        try:
+            print(LOADING, file=sys.stderr, flush=True)
+            install_extra("compiled")
+        except ExtraError as error:
+            raise CompilerError(f"This needs numba. {error}") from None
+        importlib.invalidate_caches()
+        return
     setup = ROOT / "run.py"
     if not setup.exists() or not any(
         (Path(sys.prefix) / name).exists() for name in (".installed", ".installed-test")
@@ -82,9 +92,7 @@ def _install() -> None:
             f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install '
             f'"{NUMBA}"'
         )
-    print(
-        "Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True
-    )
+    print(LOADING, file=sys.stderr, flush=True)
     retries = os.environ.get("PIP_RETRIES", "2")  # if there is no network that is given in seconds
     code, words = run_program(
         [sys.executable, "-I", str(setup), "install"], cwd=ROOT, env={"PIP_RETRIES": retries}

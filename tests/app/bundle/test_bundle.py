@@ -1,0 +1,103 @@
+"""The parts of a bundle that can be looked at without making one."""
+
+from __future__ import annotations
+
+import configparser
+import shutil
+import subprocess
+import tarfile
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from app.bundle import folder, libraries, packages
+from metagraph import __version__
+
+LAUNCHER = Path(folder.__file__).parent / "launcher"
+linux = pytest.mark.skipif(shutil.which("ldd") is None, reason="bundles are made on Linux")
+
+
+@pytest.fixture
+def bundle(tmp_path):
+    """A bundle whose Python only says what it was called with."""
+    made = tmp_path / "a folder" / "metagraph"
+    python = made / "python" / "bin" / "python3"
+    python.parent.mkdir(parents=True)
+    python.write_text('#!/bin/sh\nprintf "%s\\n" "$QT_QPA_PLATFORMTHEME" "$@"\n')
+    python.chmod(0o755)
+    for name in ("metagraph", "metagraph.desktop", "metagraph.xml"):
+        shutil.copy(LAUNCHER / name, made)
+    shutil.copy(folder.ROOT / "app" / "look" / "metagraph.svg", made)
+    (made / "metagraph").chmod(0o755)
+    return made
+
+
+def start(program, *words):
+    environment = {"PATH": "/usr/bin:/bin"}
+    said = subprocess.run([program, *words], capture_output=True, text=True, check=True, env=environment)
+    return said.stdout.splitlines()
+
+
+def test_the_launcher_starts_the_python_beside_it_from_anywhere_also_by_a_link(bundle, tmp_path):
+    link = tmp_path / "metagraph"
+    link.symlink_to(bundle / "metagraph")
+    expected = ["-I", "-X", "utf8", "-B", "-m", "app.cli", "window", "my project.metagraph.yaml"]
+    for program in (bundle / "metagraph", link):
+        theme, *words = start(program, "window", "my project.metagraph.yaml")
+        assert words == expected and theme == "xdgdesktopportal"
+    assert start(link)[1:] == expected[:6]
+
+
+def test_the_menu_entry_and_the_type_of_projects_are_well_formed():
+    entry = configparser.ConfigParser(interpolation=None)
+    entry.read(LAUNCHER / "metagraph.desktop", encoding="utf-8")
+    assert entry["Desktop Entry"]["Exec"] == "metagraph window %f"
+    kinds = ET.parse(LAUNCHER / "metagraph.xml").getroot()
+    pattern = kinds.find(".//{*}glob").get("pattern")
+    assert pattern == "*.metagraph.yaml"
+    assert kinds[0].get("type") in entry["Desktop Entry"]["MimeType"]
+
+
+def test_two_packed_alike_are_alike_to_the_byte(bundle, tmp_path):
+    first = packages.pack_tar(bundle, tmp_path).read_bytes()
+    (bundle / "metagraph").touch()
+    path = packages.pack_tar(bundle, tmp_path)
+    assert path.read_bytes() == first
+    with tarfile.open(path) as tar:
+        names = tar.getnames()
+        assert names[0] == "metagraph" and all(name.startswith("metagraph") for name in names)
+        assert {entry.uid for entry in tar} == {0}
+
+
+@pytest.mark.skipif(shutil.which("dpkg-deb") is None, reason="needs dpkg-deb")
+def test_a_debian_package_has_a_command_a_menu_entry_and_what_it_needs(bundle, tmp_path):
+    path = packages.pack_deb(bundle, tmp_path, "2.36")
+    control = subprocess.run(["dpkg-deb", "-f", path], capture_output=True, text=True, check=True).stdout
+    assert f"Version: {__version__}" in control and "libc6 (>= 2.36)" in control
+    listed = subprocess.run(["dpkg-deb", "-c", path], capture_output=True, text=True, check=True).stdout
+    for name in (
+        "./usr/bin/metagraph -> /opt/metagraph/metagraph",
+        "./usr/share/applications/metagraph.desktop",
+        "./usr/share/mime/packages/metagraph.xml",
+        "./usr/share/icons/hicolor/scalable/apps/metagraph.svg",
+        "./opt/metagraph/python/bin/python3",
+    ):
+        assert name in listed
+    assert not (tmp_path / "deb").exists(), "nothing is left beside it"
+
+
+def test_a_pattern_of_leftovers_that_matches_nothing_is_reported(tmp_path):
+    (tmp_path / "a.txt").touch()
+    folder.remove_matches(tmp_path, ("*.txt",))
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(ValueError, match="gone"):
+        folder.remove_matches(tmp_path, ("gone",))
+
+
+@linux
+def test_the_systems_own_libraries_are_left_to_it():
+    assert libraries.find_library("libc.so.6") is not None
+    assert libraries.find_library("no such library.so.1") is None
+    assert all(libraries.is_left_to_system(name) for name in ("libc.so.6", "libGL.so.1", "libX11.so.6"))
+    assert not any(libraries.is_left_to_system(name) for name in ("libxcb-cursor.so.0", "libffi.so.8"))

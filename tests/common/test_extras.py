@@ -1,0 +1,80 @@
+"""Extras are installed into the user's folder of a bundle, whole or not at all."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from metagraph.common import extras
+from metagraph.common.extras import EXTRAS, ExtraError
+
+
+@pytest.fixture
+def bundle(tmp_path, monkeypatch):
+    """A bundle and a home; pip is replaced by what `told` says."""
+    (tmp_path / "program").mkdir()
+    (tmp_path / "program" / "bundled").touch()
+    monkeypatch.setattr(extras, "ROOT", tmp_path / "program")
+    monkeypatch.setattr(extras, "find_user_folder", lambda kind: tmp_path / "home" / kind)
+    (tmp_path / "home" / "data").mkdir(parents=True)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    return tmp_path
+
+
+def pip(code=0, said="", files=("made_up.py",)):
+    """Stand in for pip: write files where it is told to."""
+    from pathlib import Path
+
+    def run_program(command, timeout=None, **options):
+        place = Path(command[command.index("--target") + 1])
+        place.mkdir(parents=True)
+        for name in files:
+            (place / name).write_text("x = 1")
+        return code, said
+
+    return run_program
+
+
+def test_an_extra_comes_into_a_folder_of_its_own_and_can_be_imported(bundle, monkeypatch):
+    monkeypatch.setattr(extras, "run_program", pip())
+    extras.install_extra("lab")
+    place = extras.find_extras_folder() / "lab"
+    assert (place / "made_up.py").is_file() and sys.path[-1] == str(place)
+    assert not list(place.parent.parent.glob("*-new"))
+    assert extras.remove_extra("lab") and not place.exists()
+    assert not extras.remove_extra("lab"), "it is gone"
+
+
+def test_what_fails_half_way_leaves_what_was_there(bundle, monkeypatch):
+    monkeypatch.setattr(extras, "run_program", pip())
+    extras.install_extra("lab")
+    monkeypatch.setattr(extras, "run_program", pip(1, "ERROR: no network", ("half.py",)))
+    with pytest.raises(ExtraError, match=r"no network.*Check the network"):
+        extras.install_extra("lab")
+    place = extras.find_extras_folder()
+    assert [path.name for path in (place / "lab").iterdir()] == ["made_up.py"]
+    assert [path.name for path in place.parent.iterdir()] == [place.name]
+
+
+def test_pip_that_hangs_is_reported(bundle, monkeypatch):
+    def hang(*_, **__):
+        raise TimeoutError("pip took more than 1800 s")
+
+    monkeypatch.setattr(extras, "run_program", hang)
+    with pytest.raises(ExtraError, match="1800 s"):
+        extras.install_extra("lab")
+
+
+def test_outside_a_bundle_the_command_is_named(monkeypatch):
+    with pytest.raises(ExtraError, match=r'pip install "metagraph-studio\[lab\]"'):
+        extras.install_extra("lab")
+
+
+def test_extras_are_those_that_the_package_offers():
+    import tomllib
+
+    offered = tomllib.loads((extras.ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    declared = offered["project"]["optional-dependencies"]
+    for name, extra in EXTRAS.items():
+        assert declared[name] == [extra.wants[0]]
