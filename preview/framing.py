@@ -59,7 +59,7 @@ def near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, heigh
 
 def find_heading(figure: MeshFigure, positions: Array) -> float:
     """Return where the hips face, radians about +Y: across the line from the right limbs to the left ones;
-    0 where that is not known. positions: `[J, 3]`.
+    0 if that is not known. positions: `[J, 3]`.
     """
     side = rules.sides_of_joints(figure.skeleton) * figure.drawn
     if not ((side > 0).any() and (side < 0).any()):

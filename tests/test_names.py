@@ -39,7 +39,7 @@ VERBS = set(
     handle has hear hide hit hold holds import improvise infer install is join judge keep keeps key label
     land last lay lead leap learn leave level lie lift limit list load lock log look main make mark
     mask match matches may mean measure meet merge mimic mirror mix move moves multiply name needs
-    normalize note nudge offer open order pad paint parse paste perceive perform pick place plan
+    normalize note nudge offer open order pack pad paint parse paste perceive perform pick place plan
     play plot predict prepare preregister print process project propose put quote rank reach read
     recall receive recover refuse register rehearse relabel relocate remake remember remove rename
     render reopen reorder repair repeat replace replay repoint report require reread resample reset

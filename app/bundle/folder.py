@@ -35,7 +35,7 @@ def make_folder(out: Path, tell: Tell = print) -> Path:
     python = copy_python(folder / "python")
     tell("Installing Metagraph and what it depends on")
     site = find_site(folder)
-    install(site)
+    install_packages(site)
     tell("Leaving out what is not used")
     remove_matches(site, SITE)
     shutil.copytree(ROOT / "docs", site / "docs", ignore=shutil.ignore_patterns("*.py", "__pycache__"))
@@ -95,7 +95,7 @@ def strip(binaries: Iterable[Path]) -> None:
         subprocess.run([str(program), "--strip-unneeded", str(binary)], check=False)
 
 
-def install(site: Path) -> None:
+def install_packages(site: Path) -> None:
     """Install Metagraph, its dependencies and pip, which extras are installed with, into a folder."""
     with TemporaryDirectory() as place:
         # What setuptools leaves in a checkout would come into the next package.

@@ -9,11 +9,11 @@ from metagraph.common.extras import add_extras
 _find = ctypes.util.find_library
 
 
-def find_library(name):
+def find_beside(name):
     """Return a library of the bundle, or of the system."""
     beside = Path(sys.prefix) / "lib" / "libportaudio.so.2"
     return str(beside) if name == "portaudio" and beside.exists() else _find(name)
 
 
-ctypes.util.find_library = find_library
+ctypes.util.find_library = find_beside
 add_extras()

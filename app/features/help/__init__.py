@@ -123,6 +123,11 @@ def contribute(shell: Shell) -> Contribution:
     def read_of_panel() -> None:
         read(shell.services[PanelPlaces].holding(QApplication.focusWidget()))
 
+    def report_system() -> None:
+        from app.features.help.system_report_dialog import SystemReportDialog
+
+        SystemReportDialog(shell.widget).open()
+
     def about() -> None:
         from metagraph import __version__
 
@@ -159,6 +164,14 @@ def contribute(shell: Shell) -> Contribution:
                 palette,
                 ("Ctrl+Shift+P",),
                 tip=tr("Find commands, panels, stances and actions by name"),
+            ),
+            Command(
+                "system_report",
+                "&Help",
+                "",
+                tr("&System report"),
+                report_system,
+                tip=tr("Versions, drawing and folders, for a report of a fault"),
             ),
             Command("about", "&Help", "", tr("&About Metagraph"), about, study=True),
         ),

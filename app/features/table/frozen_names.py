@@ -49,7 +49,7 @@ class FrozenNames(QTableView):
         self.hide()
 
     def is_needed(self) -> bool:
-        """Return whether the table's own column of names is not wholly in sight."""
+        """Return whether the table's own column of names is not entirely in sight."""
         head = self.table.horizontalHeader()
         at = head.sectionViewportPosition(NAME)
         return at < 0 or at + head.sectionSize(NAME) > self.table.viewport().width()

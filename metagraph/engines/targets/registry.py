@@ -13,7 +13,7 @@ from metagraph.common.wording import phrase
 from metagraph.engines.export import require_exportable, stem_of
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.losses import CONVERSATIONS
-from metagraph.engines.targets.next_steps import README, find_steps, list_steps, make_readme
+from metagraph.engines.targets.next_steps import README, find_next_steps, list_steps, make_readme
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place_files as move
 from metagraph.engines.targets.target import (
@@ -124,7 +124,7 @@ def _with_readme(
     made: ExportedFiles, chosen: ExportTarget, order: ExportOrder, lost: Sequence[str]
 ) -> ExportedFiles:
     """Write a README into an export's folder, unless the target writes a guide of its own."""
-    if find_steps(chosen.name).guide:
+    if find_next_steps(chosen.name).guide:
         return made
     path = order.folder / README
     names = [file.relative_to(order.folder).as_posix() for file in made.files]

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from app.cli import doctor_command
 from app.cli.parser import main
+from app.shell import system_report
 from metagraph import __version__
 from metagraph.common.extras import EXTRAS
 from preview.offscreen import OpenGLError
@@ -32,7 +32,7 @@ def test_without_opengl_it_says_what_to_install_and_ends_with_3(monkeypatch, cap
 
 def test_without_sound_it_says_why(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "sounddevice", None)
-    assert doctor_command.make_system_report()["Sound"].startswith("none: ")
+    assert system_report.make_system_report()["Sound"].startswith("none: ")
 
 
 def test_extras_are_listed_and_one_without_a_name_is_refused(capsys):
