@@ -14,10 +14,10 @@ from app.cli.kept_options import check_kept_name
 from app.cli.outputs import ProjectOutput
 from app.project.annotation_reading import (
     AnnotationReading,
+    apply_reading,
     begin_reading,
     count_replayed,
     describe_doubts,
-    work_into_project,
 )
 from app.project.opening import open_whole
 from metagraph.errors import FileError
@@ -107,7 +107,7 @@ def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
             options.annotation, f"no tier is read as an action; the tiers are {tiers}", "in its tiers",
             f"Set their roles: --tier \"NAME=left arm\" (or {', '.join(list(ROLES)[1:])}).",
         )  # fmt: skip
-    made = work_into_project(
+    made = apply_reading(
         project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing
     )
     saved = output is not None and (bool(made.learned) or made.performance is not None)

@@ -6,7 +6,7 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from app.cli.command_output import add_performance_arguments, open_for_command, stage_performance
+from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command
 from app.cli.render_command import Shot, draw_to, load_figure, mix_sound
 from app.stage.playback_source import ShownPlayback
 from metagraph.formats.store import SUFFIX
@@ -35,7 +35,7 @@ def run(options: Namespace) -> int:
     source: Path = getattr(options, "project", None) or SAMPLE
     project = open_for_command(source)
     folder = source.resolve().parent
-    made = stage_performance(project, options)
+    made = choose_plan(project, options)
     out: Path = options.out
     sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
     own = out / f"{stem_of(project)}.json", out / f"{stem_of(project)}.glb"

@@ -151,11 +151,11 @@ def find_floor(
         if missing:
             why = f" ({batch.failures[0]})" if batch.failures else ""
             raise ValueError(f"{folder} has no other motion for '{missing[0]}'{why}")
-        return [part_like(found[t.source.name], t) for t in takes]
+        return [cut_like(found[t.source.name], t) for t in takes]
     return perform_planted_floor(given, takes, rig)
 
 
-def part_like(whole: Take, take: Take) -> Any:
+def cut_like(whole: Take, take: Take) -> Any:
     first = round(take.source.start * 25) - round(whole.source.start * 25)
     return whole.poses[first : first + len(take.poses)]
 
@@ -172,7 +172,7 @@ def perform_planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseR
     project = open_for_command(SAMPLE)
     if project.skeleton is None or project.skeleton.fingerprint != cards[0].project:
         return None
-    return [part_like(again(project, cards[0], t, rig), t) for t in takes]
+    return [cut_like(again(project, cards[0], t, rig), t) for t in takes]
 
 
 def list_judging_cautions(

@@ -116,7 +116,7 @@ class ProjectOutput:
         """Write the project, and keep what was there as an earlier version; return it as it was saved. Raises
         FileError. was_at: see `save_project`.
         """
-        from app.project.version_count import version_count
+        from app.project.version_count import count_kept_versions
         from metagraph.errors import FileError
         from metagraph.formats.project.versions import write_project
         from metagraph.formats.store import encode_project, file_digest, move_project
@@ -130,7 +130,7 @@ class ProjectOutput:
             )
         if was_at is not None:
             project = move_project(project, was_at, self.path)
-        versions = version_count() if self.versions is None else self.versions
+        versions = count_kept_versions() if self.versions is None else self.versions
         note = write_project(self.path, encode_project(project, self.path), versions)
         if note is not None:
             print(f"note: {note}", file=sys.stderr)

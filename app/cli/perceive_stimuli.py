@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from app.cli.command_output import open_for_command, stage_performance
+from app.cli.command_output import choose_plan, open_for_command
 from app.cli.render_command import load_figure, measure_bounds, mix_sound, render_pictures
 from app.stage.conversation_plans import ConversationPlans
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
@@ -202,7 +202,7 @@ class Stimuli:
         wanted = Namespace(
             performance=made.performance, seconds=None, seed=made.seed, usual_seconds=10.0, mode=None
         )
-        plan = stage_performance(project, wanted)
+        plan = choose_plan(project, wanted)
         return ShownPlayback(project, plan, wanted.seconds), folder
 
     def _motion(self, name: str, made: Condition, item: Stretch) -> tuple[ShownPlayback, Path]:

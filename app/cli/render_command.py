@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.cli.command_output import add_performance_arguments, open_for_command, say, stage_performance
-from app.look.names import node_names
+from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command, say
+from app.look.names import name_node_rows
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.formats.outputs import claim, declare_inputs
 from metagraph.formats.store import list_project_files
@@ -121,14 +121,14 @@ def render_pictures(
     with one before they ask for the next.
     """
     from app.stage.cutting import Filmed
-    from app.stage.stools import stools
+    from app.stage.stools import make_stools
     from preview.camera import frame_whole_figure
     from preview.drawing_apart import draw_scenes
     from preview.scene import THEMES, Scene
 
     theme = THEMES[look] if isinstance(look, str) else look
 
-    seats = tuple(seat for _, shown in seen for seat in stools(shown))
+    seats = tuple(seat for _, shown in seen for seat in make_stools(shown))
     if camera is None:
         box = measure_bounds(seen, times)
         camera = frame_whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
@@ -233,7 +233,7 @@ def run(options: Namespace) -> int:
         shown = (
             play_clip_alone(project, clip)
             if clip is not None
-            else ShownPlayback(project, stage_performance(project, options), options.start + options.seconds)
+            else ShownPlayback(project, choose_plan(project, options), options.start + options.seconds)
         )
     for one in shown.everyone:
         declare_inputs(*list_project_files(one.project, one.folder or folder))
@@ -428,4 +428,4 @@ def _doing(shown: ShownPlayback, seconds: float) -> str:
     if cue is None:
         return ""
     action = cue.action
-    return node_names(shown.project, action.layer, action.stance, action.kind).get(action.id, action.name)
+    return name_node_rows(shown.project, action.layer, action.stance, action.kind).get(action.id, action.name)

@@ -93,11 +93,11 @@ KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": 
 SOUND_MARKS = {"clause": "■", "response": "✓", "hesitation": "…"}
 
 
-def theme(name: str) -> WindowTheme:
+def get_theme(name: str) -> WindowTheme:
     return THEMES.get(name, DARK)
 
 
-def palette(look: WindowTheme) -> QPalette:
+def make_palette(look: WindowTheme) -> QPalette:
     out = QPalette()
     role = QPalette.ColorRole
     for key, color in (
@@ -246,7 +246,7 @@ def apply_theme(app: QApplication, look: WindowTheme) -> None:
         app.setFont(make_window_font())
     if app.property("look") != look.name:
         app.setProperty("look", look.name)
-        app.setPalette(palette(look))
+        app.setPalette(make_palette(look))
         app.setStyleSheet(make_style_sheet(look))
 
 

@@ -86,7 +86,7 @@ class ReadingResult:
     performance: str | None = None
 
 
-def work_into_project(
+def apply_reading(
     project: Project,
     reading: AnnotationReading,
     learned: Collection[Layer],

@@ -15,7 +15,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.fixes import Fix
-from app.stage.remedies import end_in, fix_gap, move_to
+from app.stage.remedies import fix_gap, move_to, set_end_stance
 from app.translation import tr, tr_plural
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Action, Layer, Project
@@ -147,7 +147,7 @@ def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | No
         )
     if fits is not None and action.kind == "transition" and jump.edge == "ends" and fits.id != action.stance:
         return tr("It looks like '{name}' there. End it in that stance.", name=fits.name), Fix(
-            tr("End in '{name}'", name=fits.name), action.id, does=end_in, args=(action.id, fits.id)
+            tr("End in '{name}'", name=fits.name), action.id, does=set_end_stance, args=(action.id, fits.id)
         )
     if jump.change:
         seconds = next(iter(jump.change.values()))

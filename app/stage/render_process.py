@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.project.jobs import WindowJob
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.common.network_paths import is_allowed
 from metagraph.common.programs import python_command, start
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Mode, Project
 
-SUFFIXES = lazy_texts(
+SUFFIXES = make_lazy_texts(
     lambda: {
         ".mp4": tr("Video with sound"),
         ".png": tr("Contact sheet"),

@@ -10,7 +10,7 @@ from preview.scene import Actor
 from preview.stool import stool
 
 
-def stools(shown: ShownPlayback) -> tuple[Actor, ...]:
+def make_stools(shown: ShownPlayback) -> tuple[Actor, ...]:
     """Return the stool of a character whose graph has a sitting stance; it stays there while the character
     stands. Empty for a clip that plays alone.
     """

@@ -10,10 +10,10 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.look.theme import KIND_MARKS, WindowTheme, get_theme
 from app.stage.session import StageSession
 from app.translation import format_number, tr
-from app.widgets.vocabulary import vocabulary_title
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import KINDS, Layer
 from metagraph.playback.learning.learn import Act, describe_state, state_of
 
@@ -94,7 +94,7 @@ class ActStrip(QWidget):
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._ruler(painter, t)
@@ -105,7 +105,7 @@ class ActStrip(QWidget):
                 painter.drawText(
                     QRectF(2, lane.top(), LEFT - 8, lane.height()),
                     Qt.AlignmentFlag.AlignVCenter,
-                    vocabulary_title(layer),
+                    get_vocabulary_title(layer),
                 )
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(t.field))

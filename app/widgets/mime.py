@@ -40,7 +40,7 @@ def load_of(data: QMimeData) -> Load:
     )
 
 
-def sounds_of(data: QMimeData) -> tuple[Path, ...]:
+def read_sound_paths(data: QMimeData) -> tuple[Path, ...]:
     """Return the sounds that mime data carries, and their transcripts after them; nothing if no sound is
     among them.
     """

@@ -202,7 +202,7 @@ def test_why_clips_are_taken_for_what_they_are_is_said_in_the_language(english: 
     translation.choose("de")
     assert all(tr_phrase(one) != one for one in said)
     for p in every:  # and so it is shown
-        shown = review_words.timing(p, 9.0)
+        shown = review_words.describe_proposed_times(p, 9.0)
         beliefs = [p.details[name] for name in ("stroke", "likelihood") if name in p.details]
         assert beliefs and all(escape(tr_phrase(belief.reason)) in shown for belief in beliefs)
 
@@ -231,11 +231,11 @@ def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
 
 def test_what_a_language_lacks_is_english(english: None) -> None:
     translation.choose("de")
-    assert translation.current_language() == "de"
+    assert translation.get_language() == "de"
     assert tr("no such text {n}", n=3) == "no such text 3"
     assert tr("braces {stay} as they are") == "braces {stay} as they are"
     translation.choose("xx")
-    assert translation.current_language() == "en"
+    assert translation.get_language() == "en"
 
 
 def test_the_environment_wins_over_the_settings(english: None, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -245,10 +245,10 @@ def test_the_environment_wins_over_the_settings(english: None, monkeypatch: pyte
             return "de"
 
     translation.choose_language(Settings())
-    assert translation.current_language() == "de"
+    assert translation.get_language() == "de"
     monkeypatch.setenv("METAGRAPH_LANGUAGE", "en")
     translation.choose_language(Settings())
-    assert translation.current_language() == "en"
+    assert translation.get_language() == "en"
 
 
 def connections(count: int) -> str:
@@ -319,4 +319,4 @@ def test_the_language_follows_the_settings_then_the_system(
             return kept or usual
 
     translation.choose_language(Settings(), system)
-    assert translation.current_language() == chosen
+    assert translation.get_language() == chosen

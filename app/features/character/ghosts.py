@@ -14,10 +14,10 @@ from PySide6.QtWidgets import QWidget
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.playback_source import ShownPlayback
 from app.translation import format_number
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.posing.composer import playable
@@ -100,9 +100,9 @@ class Ghosts(QWidget):
         pose = self._stance(shown, seconds)
         if pose is None:
             return []
-        color = QColor(theme(self.panel.session.look.name).fill("stance"))
+        color = QColor(get_theme(self.panel.session.look.name).fill("stance"))
         actor = self._ghost(figure, shown, pose, STANCE, (color.redF(), color.greenF(), color.blueF()))
-        return [actor] if self._label(vocabulary_word("stance"), actor) else []
+        return [actor] if self._label(get_vocabulary_word("stance"), actor) else []
 
     def _label(self, words: str, ghost: Actor) -> bool:
         """Name a ghost where it is farthest from now; return whether it is anywhere."""
@@ -150,7 +150,7 @@ class Ghosts(QWidget):
             lie_over(self, self.panel.view)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        view, look = self.panel.view, theme(self.panel.session.look.name)
+        view, look = self.panel.view, get_theme(self.panel.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         taken: list[QRectF] = []

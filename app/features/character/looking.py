@@ -13,7 +13,7 @@ from PySide6.QtGui import QGuiApplication
 
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.trails import Trails
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from metagraph.graph import anatomy
@@ -160,7 +160,7 @@ def mask_marks(performance: StagePerformance, session: StageSession) -> dict[int
     if len(actions) != 1 or project.skeleton is None or not (actions[0].joints or actions[0].joint_weights):
         return {}
     moved = anatomy.action_mask(project, actions[0])
-    color = theme(session.look.name).fill(actions[0].kind)
+    color = get_theme(session.look.name).fill(actions[0].kind)
     rgb = np.array([color.redF(), color.greenF(), color.blueF()])
     if moved is None:
         return {}

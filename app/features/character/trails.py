@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
-from app.look.theme import theme
+from app.look.theme import get_theme
 from metagraph.graph import anatomy
 
 RATE = 30  # samples a second: dots are as far apart as frames, so what is quick has gaps
@@ -88,7 +88,7 @@ class Trails(QWidget):
         times, places, known = self.places()
         if len(times) < 2:
             return
-        look, view = theme(self.panel.session.look.name), self.panel.view
+        look, view = get_theme(self.panel.session.look.name), self.panel.view
         seen = view.camera.project(places, view.width() / max(1, view.height()))
         seen = seen * [self.width(), self.height()]
         now = self.panel.session.transport.seconds

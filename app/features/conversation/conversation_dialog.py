@@ -29,7 +29,7 @@ from PySide6.QtWidgets import (
 from app.features.conversation.conversation_settings import make_caption
 from app.features.conversation.speaker_card import Cards, SpeakerCard
 from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, name_language
-from app.look.theme import strengthen, theme
+from app.look.theme import get_theme, strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.project.speech_files import TRANSCRIPTS, describe_sound_file
@@ -144,7 +144,7 @@ class ImportDialog(QDialog):
         self.go.setEnabled(self.read is not None and sum(c.taken.isChecked() for c in self.cards) > 1)
 
     def _restyle(self) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         self.setStyleSheet(
             f"QFrame#card {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}"
         )
@@ -287,7 +287,7 @@ class ImportDialog(QDialog):
         self._show_parts()
         notes = list(self.read.notes) if self.read is not None else [failure] if failure else []
         more = [tr("… and {count} more", count=len(notes) - MOST)] if len(notes) > MOST else []
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         self.notes.setStyleSheet(f"color: {t.error if failure else t.warning}")
         lines = [f"⚠  {tr_phrase(n)}" for n in notes[:MOST]]
         self.notes.setText("\n".join((*lines, *more)))

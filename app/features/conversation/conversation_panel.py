@@ -11,14 +11,14 @@ from app.features.conversation.segment_lanes import KINDS, PLURALS, describe_seg
 from app.features.conversation.segment_view import SegmentView
 from app.features.conversation.sound_reading import Sounds
 from app.look.plural import list_in_words
-from app.look.theme import SOUND_MARKS, theme
+from app.look.theme import SOUND_MARKS, get_theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from app.translation import group_thousands, tr, tr_noop, tr_plural
 from app.widgets.making import make_widget
-from app.widgets.mime import sounds_of
+from app.widgets.mime import read_sound_paths
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
@@ -131,7 +131,7 @@ class ConversationPanel(QWidget):
         self.session.transport.set_playing(True)
 
     def _words(self) -> None:
-        of, t = self.editing.conversation, theme(self.session.look.name)
+        of, t = self.editing.conversation, get_theme(self.session.look.name)
         self.legend.setVisible(of is not None)
         if of is None:
             self.title.say("")
@@ -193,14 +193,14 @@ class ConversationPanel(QWidget):
     # --- drops
 
     def dragEnterEvent(self, event: QDragMoveEvent) -> None:
-        if sounds_of(event.mimeData()):
+        if read_sound_paths(event.mimeData()):
             event.acceptProposedAction()
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
         self.dragEnterEvent(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
-        paths = sounds_of(event.mimeData())
+        paths = read_sound_paths(event.mimeData())
         if paths:
             event.acceptProposedAction()
             self.files_dropped.emit(paths)

@@ -24,7 +24,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.stage.performance import StagePerformance
 from app.stage.playback_source import ShownPlayback
-from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_phrase
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_phrase
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation import edits as conversation_edits
@@ -33,7 +33,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.speech.gaze_shares import join_shares
 
-RATES = lazy_texts(
+RATES = make_lazy_texts(
     lambda: {
         "clause": (tr("gestures on own clauses"), tr("How often the hands move with a clause")),
         "response": (
@@ -58,7 +58,7 @@ RATES = lazy_texts(
         ),
     }
 )
-BLINKS = lazy_texts(
+BLINKS = make_lazy_texts(
     lambda: {
         "life": (
             tr("As in Life, plus on stresses"),
@@ -73,7 +73,7 @@ BLINKS = lazy_texts(
         ),
     }
 )
-ORDINALS = lazy_texts(
+ORDINALS = make_lazy_texts(
     lambda: (
         tr("first"),
         tr("second"),
@@ -85,7 +85,7 @@ ORDINALS = lazy_texts(
         tr("eighth"),
     )
 )
-ACTORS = lazy_texts(lambda: {"female": tr("the woman"), "male": tr("the man")})
+ACTORS = make_lazy_texts(lambda: {"female": tr("the woman"), "male": tr("the man")})
 
 
 def parse_word_list(words: str) -> tuple[str, ...]:

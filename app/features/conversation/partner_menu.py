@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, count_channels
-from app.translation import lazy_texts, tr, tr_error
+from app.translation import make_lazy_texts, tr, tr_error
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.conversation.model import Conversation, side_name
@@ -21,7 +21,7 @@ from metagraph.graph.edit_error import EditError
 BODIES = (".glb", ".gltf")
 MOST = 24  # files of a kind that a menu offers; all others are chosen in the dialog
 LOOKED_AT = 2000  # files of a folder
-EARS = lazy_texts(lambda: (tr("left"), tr("right")))
+EARS = make_lazy_texts(lambda: (tr("left"), tr("right")))
 
 
 def make_partner_menu(

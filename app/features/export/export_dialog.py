@@ -39,7 +39,7 @@ from app.project.jobs import Jobs, WindowJob
 from app.project.reveal import open_folder
 from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.making import make_widget
-from app.widgets.tree_items import items_below, top_items
+from app.widgets.tree_items import list_items_below, list_top_items
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
 from metagraph.engines.targets.target import Contents, ExportTarget, TargetReport
@@ -236,7 +236,10 @@ class ExportDialog(QDialog):
 
     def _select(self, name: str) -> None:
         found = next(
-            i for group in top_items(self.targets) for i in items_below(group) if i.data(0, NAME) == name
+            i
+            for group in list_top_items(self.targets)
+            for i in list_items_below(group)
+            if i.data(0, NAME) == name
         )
         self.targets.setCurrentItem(found)
 

@@ -26,7 +26,7 @@ from app.look.theme import strengthen
 from app.project.leftovers import find_telling_pose
 from app.project.questions import describe_moment
 from app.project.recovering import PICTURE, SittingPicture
-from app.project.version_count import set_version_count, version_count
+from app.project.version_count import count_kept_versions, set_version_count
 from app.translation import tr, tr_phrase, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.errors import FileError, describe_error
@@ -109,7 +109,7 @@ class VersionsDialog(QDialog):
         self.changes.setSelectionMode(QListWidget.SelectionMode.NoSelection)
         self.count = SpinBox(self)
         self.count.setRange(0, MOST)
-        self.count.setValue(version_count())
+        self.count.setValue(count_kept_versions())
         self.count.setSpecialValueText(tr("none"))
         self.count.setAccessibleName(tr("Versions kept"))
         self.count.valueChanged.connect(set_version_count)

@@ -144,7 +144,7 @@ class Speaker:
     folder: Path
 
 
-def side_motion(
+def make_side_motion(
     model: Model, named: str, speaker: Speaker, chance: Chance, progress: Progress, cancelled: Cancelled
 ) -> tuple[Loaded, tuple[str, ...]]:
     """Make the motion of one side of a conversation and keep it as a file; return what `add_clips` takes, and

@@ -25,7 +25,7 @@ from app.features.generation.generation_jobs import (
     describe_model,
     find_first_stance,
     keep_pieces,
-    side_motion,
+    make_side_motion,
     with_pieces,
     with_side_moved,
 )
@@ -329,7 +329,7 @@ class UsePage(GenerationPage):
             from metagraph.generation.stored import read_model
 
             speaker = Speaker(project, ident, side, folder)
-            return side_motion(read_model(path), named, speaker, chance, job.tell, lambda: job.cancelled)
+            return make_side_motion(read_model(path), named, speaker, chance, job.tell, lambda: job.cancelled)
 
         def done(made: Any) -> None:
             loaded, notes = made

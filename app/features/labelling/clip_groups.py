@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from app.features.labelling.review_watch import order_similar
 from app.translation import tr, tr_plural
-from app.widgets.vocabulary import vocabulary_title
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import Kind, Layer
 from metagraph.suggest.flags import chance_wrong, needs_look
 from metagraph.suggest.proposal import Proposal
@@ -34,8 +34,8 @@ class ClipGroup:
     @property
     def title(self) -> str:
         """Return the group in words, such as "Gesture · idle 1"."""
-        where = self.stance or vocabulary_title(self.layer)
-        return tr("{kind} · {where}", kind=vocabulary_title(self.kind), where=where)
+        where = self.stance or get_vocabulary_title(self.layer)
+        return tr("{kind} · {where}", kind=get_vocabulary_title(self.kind), where=where)
 
     def count(self) -> str:
         """Return the number of clips in words."""

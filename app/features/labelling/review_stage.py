@@ -21,7 +21,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from app.features.labelling.proposal_preview import Span
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.figures import Figures
 from app.stage.gl_view import make_view
 from app.stage.playback_source import ShownPlayback
@@ -53,7 +53,7 @@ class ReviewStrip(QWidget):
         return QSize(300, 30)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         box = QRectF(self.rect()).adjusted(0, 2, 0, -2)
@@ -143,7 +143,7 @@ class ReviewStage(QWidget):
         self._restyle()
 
     def _restyle(self) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         ground = QColor(look.panel)
         self.words.setStyleSheet(
             f"background: rgba({ground.red()}, {ground.green()}, {ground.blue()}, 215); border-radius: 6px; "

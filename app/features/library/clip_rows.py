@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from PySide6.QtCore import QAbstractListModel, QMimeData, QModelIndex, QPersistentModelIndex, Qt
 
-from app.features.library.clip_columns import stars
+from app.features.library.clip_columns import format_stars
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_filter import Filter
 from app.features.library.clip_groups import GROUPS, NONE
@@ -178,7 +178,7 @@ class ClipRows(QAbstractListModel):
     def _marks(self, entry: ClipEntry) -> str:
         """Return a clip's label, rating and heart in words, after a comma each."""
         mark = self.facts.mark(entry)
-        some = (tr("{color} label", color=mark.color) if mark.color else "", stars(mark.rating))
+        some = (tr("{color} label", color=mark.color) if mark.color else "", format_stars(mark.rating))
         return "".join(f", {w}" for w in (*some, tr("a favourite") if mark.favourite else "") if w)
 
     def flags(self, index: Index) -> Qt.ItemFlag:

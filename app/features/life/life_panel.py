@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.life.dial_words import in_sentence
+from app.features.life.dial_words import put_in_sentence
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr, tr_error
@@ -253,7 +253,7 @@ class LifePanel(QWidget):
         """Set a number; what is dragged is one step to undo."""
         value = round(value, 4)
         self._change(
-            tr("Change {amount}", amount=in_sentence(dial)),
+            tr("Change {amount}", amount=put_in_sentence(dial)),
             f"life/{mode}/{dial.name}",
             mode,
             **{dial.name: value},

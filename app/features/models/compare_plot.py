@@ -14,10 +14,10 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.features.models.heatmap import SIDES
 from app.features.models.state_names import name_state
-from app.look.theme import KIND_MARKS, theme
+from app.look.theme import KIND_MARKS, get_theme
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.still_plot import clear_plot, still_plot
+from app.widgets.still_plot import clear_plot, make_still_plot
 from metagraph.playback.learning.compare import SURE, ModelComparison, quantiles
 from metagraph.playback.learning.learn import State
 
@@ -90,7 +90,7 @@ class ComparePlot(QWidget):
         self._draw()  # in the theme's colours before there is anything, too
 
     def _plot(self) -> Any:
-        plot = still_plot(self)
+        plot = make_still_plot(self)
         plot.getAxis("left").setWidth(34)
         plot.plotItem.vb.sigResized.connect(self._name_bars)
         plot.setMinimumHeight(96)
@@ -104,7 +104,7 @@ class ComparePlot(QWidget):
         self._draw()
 
     def _draw(self) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         for plot in (self.often, self.long):
             clear_plot(plot, t)
         if self.found is None:
@@ -171,7 +171,7 @@ class ComparePlot(QWidget):
         line = pg.PlotDataItem([x, x], [low, high])
         line.setPen(pg.mkPen(color, width=1.4))
         plot.addItem(line)
-        pale = QColor(theme(self.session.look.name).panel)
+        pale = QColor(get_theme(self.session.look.name).panel)
         box = pg.BarGraphItem(x=[x], width=WIDTH - 0.05, y0=[quarter], height=[three - quarter])
         box.setOpts(pen=pg.mkPen(color, width=1.4), brush=color if filled else pale)
         plot.addItem(box)

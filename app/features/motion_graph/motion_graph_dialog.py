@@ -29,9 +29,9 @@ from app.features.motion_graph.synthesis_jobs import (
     MOST,
     ChosenTakes,
     FoundMotion,
+    choose_takes,
     count_graph_states,
     synthesise,
-    takes_of,
 )
 from app.features.motion_graph.takes_list import TakesList
 from app.project.document import Document
@@ -226,7 +226,7 @@ class MotionGraphDialog(QDialog):
     def _changed(self) -> None:
         """Something was chosen: compare frames again, soon."""
         self.graph = None
-        self.takes = takes_of(self.document.project, self.picked.chosen())
+        self.takes = choose_takes(self.document.project, self.picked.chosen())
         if self._counted != (self.takes.clips, self.level.value()):
             self._show_table({})
         seconds = sum(clip.duration for clip in self.takes.clips)
@@ -483,7 +483,7 @@ class MotionGraphDialog(QDialog):
         """Cut the selected takes, or all that are chosen, into clips that wait to be labelled."""
         ids = self.picked.selected()
         project, k, level = self.document.project, self.k.value(), self.level.value() / 100
-        clips = takes_of(project, ids).clips
+        clips = choose_takes(project, ids).clips
         if not clips:
             self._failed(ValueError(tr("choose takes first")))
             return

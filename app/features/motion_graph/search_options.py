@@ -21,13 +21,13 @@ from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import describe_side
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, segments_heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
-KINDS: tuple[tuple[Sound, str], ...] = lazy_texts(
+KINDS: tuple[tuple[Sound, str], ...] = make_lazy_texts(
     lambda: (
         ("clause", tr("Clauses")),
         ("response", tr("Responses")),

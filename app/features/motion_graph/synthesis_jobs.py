@@ -96,7 +96,7 @@ def cut_to_take(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]
     return tuple(out)
 
 
-def takes_of(project: Project, ids: Collection[str]) -> ChosenTakes:
+def choose_takes(project: Project, ids: Collection[str]) -> ChosenTakes:
     """Return the chosen clips as takes; those without motion are left out."""
     found = [i for i in list_usable_clips(project) if i in ids]
     speech, sides = [], []

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.stage.performance import StagePerformance
-from app.translation import lazy_texts, tr, tr_error, tr_noop
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop
 from app.widgets.lane_geometry import describe_outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, describe_mood, describe_request
@@ -32,7 +32,7 @@ from metagraph.graph.words import FEELINGS
 
 SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two
 UNSET = tr_noop("automatic")
-LABELS = lazy_texts(
+LABELS = make_lazy_texts(
     lambda: {
         "at": tr("Start at"),
         "stroke": tr("Stroke at"),
@@ -59,7 +59,7 @@ LABELS = lazy_texts(
         "stay": tr("Stay in the stance"),
     }
 )
-TIPS = lazy_texts(
+TIPS = make_lazy_texts(
     lambda: {
         "at": tr("Time in the performance. It can start later while another action plays."),
         "stroke": tr("When its stroke should come, instead of when it should start"),

@@ -21,12 +21,12 @@ from app.features.timeline.stage_words import count_cues, describe_machine, desc
 from app.features.timeline.voices import Voices
 from app.features.timeline.what_if import WhatIf
 from app.look import icons
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -41,7 +41,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS
 
-IMPROVISED = lazy_texts(
+IMPROVISED = make_lazy_texts(
     lambda: {
         "talking": tr("Improvised, talking"),
         "listening": tr("Improvised, listening"),
@@ -192,10 +192,10 @@ class TimelinePanel(QWidget):
         return out
 
     def _restyle(self) -> None:
-        color = theme(self.session.look.name).text
-        self.magnet.setIcon(icons.icon("magnet", color))
-        self.ghosts.setIcon(icons.icon("ghosts", color))
-        self.ripple.setIcon(icons.icon("ripple", color))
+        color = get_theme(self.session.look.name).text
+        self.magnet.setIcon(icons.make_icon("magnet", color))
+        self.ghosts.setIcon(icons.make_icon("ghosts", color))
+        self.ripple.setIcon(icons.make_icon("ripple", color))
 
     def _switched(self) -> None:
         """Requests and kept performances are the meta-graph's."""

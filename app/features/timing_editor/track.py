@@ -10,10 +10,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.translation import format_number, tr, tr_phrase
 from app.widgets.memo import Once
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.clip_source import course_of
@@ -149,7 +149,7 @@ class TimingTrack:
         limb = action.limb if action.layer == "arms" else None
         return Facts(
             action,
-            plain_action_name(action.name, stance.name if stance is not None else "", limb),
+            make_readable_name(action.name, stance.name if stance is not None else "", limb),
             entry,
             project.span(action),
             list_handles(project, action),
@@ -192,7 +192,7 @@ def list_stays(entry: ClipEntry) -> tuple[Stay, ...]:
 
 def describe_handle(handle: Handle) -> str:
     """Return a handle's name and number: "blend in 0.20"."""
-    return f"{vocabulary_word(WORDS[handle.name])} {format_number(handle.number, '.2f')}"
+    return f"{get_vocabulary_word(WORDS[handle.name])} {format_number(handle.number, '.2f')}"
 
 
 def _verdict(project: Project, action: Action, seen: SeenJumps | None) -> tuple[str, bool]:

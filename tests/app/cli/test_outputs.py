@@ -17,7 +17,7 @@ import pytest
 from app.cli import outputs
 from app.cli.outputs import FOLDERS, NEVER, OUTPUTS, WRITTEN, ProjectOutput
 from app.cli.parser import COMMANDS, _parser, main
-from app.project.version_count import set_version_count, version_count
+from app.project.version_count import count_kept_versions, set_version_count
 from metagraph.errors import FileError
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.project.versions import earlier_versions
@@ -226,13 +226,13 @@ def test_a_project_changed_in_place_keeps_its_earlier_versions(project: Path) ->
 
 
 def test_how_many_are_kept_is_one_setting(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert version_count() == 3
+    assert count_kept_versions() == 3
     set_version_count(7)
-    assert version_count() == 7
+    assert count_kept_versions() == 7
     monkeypatch.setenv("METAGRAPH_VERSIONS", "2")
-    assert version_count() == 2
+    assert count_kept_versions() == 2
     monkeypatch.setenv("METAGRAPH_VERSIONS", "many")
-    assert version_count() == 3
+    assert count_kept_versions() == 3
 
 
 def test_a_project_that_was_written_meanwhile_is_left_as_it_is(project: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.project.annotation_reading import AnnotationReading, begin_reading, work_into_project
+from app.project.annotation_reading import AnnotationReading, apply_reading, begin_reading
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Mode, Project
 from metagraph.graph.requests import Behave
@@ -67,9 +67,9 @@ def test_shares_are_those_that_were_seen() -> None:
 
 def test_what_is_learned_from_the_sample_gestures_more_talking_than_not(sample: Project) -> None:
     reading = begin_reading(read_elan(SAMPLE))
-    made = work_into_project(sample, reading, LAYERS, False, None).project
+    made = apply_reading(sample, reading, LAYERS, False, None).project
     idle, _, talking, *_ = made.markov["arms"].modes
     assert talking[0] > idle[0]
     silent = AnnotationReading(reading.annotation, {**reading.roles, "Speech": "ignore"})
-    made = work_into_project(sample, silent, LAYERS, False, None).project
+    made = apply_reading(sample, silent, LAYERS, False, None).project
     assert made.markov["arms"].modes == DEFAULTS["arms"].modes

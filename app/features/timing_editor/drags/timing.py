@@ -85,7 +85,7 @@ def handle_change(idents: tuple[str, ...], handle: str) -> Callable[[Project, fl
     return lambda project, by: move_handle_by(project, idents, handle, by)
 
 
-def block_change(idents: tuple[str, ...], block: str) -> Callable[[Project, float], Changes]:
+def make_block_change(idents: tuple[str, ...], block: str) -> Callable[[Project, float], Changes]:
     """Return what dragging a phase changes in some actions; "" stands for all of it at once: another part of
     the clip.
     """

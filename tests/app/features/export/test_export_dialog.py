@@ -28,9 +28,9 @@ def opened(drive):
 def pick(drive, dialog, name: str) -> None:
     """Click a target in the list."""
     from app.features.export.export_dialog import NAME
-    from app.widgets.tree_items import items_below, top_items
+    from app.widgets.tree_items import list_items_below, list_top_items
 
-    items = [item for group in top_items(dialog.targets) for item in items_below(group)]
+    items = [item for group in list_top_items(dialog.targets) for item in list_items_below(group)]
     item = next(i for i in items if i.data(0, NAME) == name)
     dialog.targets.scrollToItem(item)  # as one would by the wheel: the list is longer than its view
     spot = dialog.targets.visualItemRect(item).center()
@@ -64,9 +64,9 @@ def test_a_group_cannot_be_chosen(toys):
     drive = toys
     dialog = opened(drive)
     before = dialog.target
-    from app.widgets.tree_items import top_items
+    from app.widgets.tree_items import list_top_items
 
-    spot = dialog.targets.visualItemRect(top_items(dialog.targets)[-1]).center()
+    spot = dialog.targets.visualItemRect(list_top_items(dialog.targets)[-1]).center()
     QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=spot)
     assert dialog.target is before
     dialog.reject()

@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.features.files.versions_dialog import VersionsDialog, find_versions
-from app.project.version_count import version_count
+from app.project.version_count import count_kept_versions
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.project.versions import earlier_versions, make_version_path
 from metagraph.formats.store import SUFFIX, read_project, save_project
@@ -93,7 +93,7 @@ def test_how_many_are_kept_is_set_there_and_none_is_said_in_words(drive, path: P
     dialog = VersionsDialog(path.name, (), lambda _: None, drive.window)
     assert dialog.count.value() == 3 and dialog.current is None and not dialog.go.isEnabled()
     dialog.count.setValue(1)
-    assert version_count() == 1
+    assert count_kept_versions() == 1
     dialog.count.setValue(0)
     assert dialog.count.text() == "none"
     dialog.deleteLater()

@@ -18,7 +18,7 @@ from app.features.models.compare_plot import (
     shorten_state,
 )
 from app.features.models.models_panel import IMPORTED, ModelsPanel
-from app.project.annotation_reading import begin_reading, work_into_project
+from app.project.annotation_reading import apply_reading, begin_reading
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import StageSession
@@ -157,7 +157,7 @@ def test_another_sample_is_another_minute_of_the_same_model(panel):
 
 
 def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
-    made = work_into_project(panel.document.project, reading, LAYERS, True, "talk")
+    made = apply_reading(panel.document.project, reading, LAYERS, True, "talk")
     panel.document.edit("Import annotation", lambda _: made.project)
     panel.show_imported(reading.observed, made.performance)
     assert panel.chooser.currentText() == "talk" and not panel.teach.isVisible()
@@ -193,7 +193,7 @@ def test_what_stands_under_bars_does_not_touch_however_narrow_the_plot(panel, qt
 
 
 def test_what_was_read_but_not_kept_can_be_compared_with_until_another_project_comes(panel, reading, toy):
-    made = work_into_project(panel.document.project, reading, ("arms",), False, None)
+    made = apply_reading(panel.document.project, reading, ("arms",), False, None)
     panel.document.edit("Import annotation", lambda _: made.project)
     panel.show_imported(reading.observed, None)
     assert panel.chooser.currentData() == IMPORTED and panel.chooser.currentText() == "the last import"

@@ -12,7 +12,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.features.problems.problems_panel import FIX, breakable
+from app.features.problems.problems_panel import FIX, make_breakable
 from app.stage.compatibility_state import describe_jumps, judge_jumps, merge_problems
 from app.stage.fixes import Fix, fix_unreachable
 from app.stage.remedies import fix_clips
@@ -33,7 +33,7 @@ def lines_cut(tree) -> list[str]:
             rect = tree.visualRect(tree.indexFromItem(item, column))
             wide = rect.width() - (26 if column == 0 else 0) - 8
             words = tree.fontMetrics().boundingRect(
-                0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, breakable(item.text(column))
+                0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, make_breakable(item.text(column))
             )
             if words.height() > rect.height() or words.width() > wide:
                 out.append(item.text(column))
