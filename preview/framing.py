@@ -24,7 +24,7 @@ BELOW: dict[Near, float] = {"upper": 0.03, "head": 0.02}
 HAND = 0.07  # beyond a wrist
 
 
-def nearness(clip: Clip) -> Near:
+def choose_nearness(clip: Clip) -> Near:
     """Return how near to show a clip, by what it moves. Skeletons that are no humanoids are shown whole."""
     parts = set(find_moved_parts(clip))
     if not parts or parts & {"place", "legs"} or not is_humanoid(find_roles(clip.skeleton)):
@@ -32,7 +32,7 @@ def nearness(clip: Clip) -> Near:
     return "upper" if parts & {"arms", "spine"} else "head"
 
 
-def near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, height: float) -> Box:
+def find_near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, height: float) -> Box:
     """Return the box to show of a character in poses `positions [F, J, 3]`, which faces +Z above the origin.
     `whole` is the box round all of it, `height` the height of the character at rest, in metres.
     """

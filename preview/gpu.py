@@ -16,7 +16,7 @@ from metagraph.common.budgets import PICTURE_PIXELS
 from metagraph.common.pictures import picture_size
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch, arrange_vertices
 from preview.occlusion import Rods
-from preview.paint import without_invisible_texture
+from preview.paint import remove_invisible_texture
 from preview.scene import Actor
 
 Array = NDArray[Any]
@@ -173,7 +173,7 @@ class Store:
         if loaded is None:
             buffer = self._ctx.buffer
             drawn, origins = (
-                without_invisible_texture(mesh, decode_texture)
+                remove_invisible_texture(mesh, decode_texture)
                 if self._software
                 else (mesh, np.arange(len(mesh.vertices)))
             )

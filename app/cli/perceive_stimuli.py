@@ -86,7 +86,7 @@ class Stimuli:
 
     def camera(self, item: Stretch) -> Any:
         """Return the camera that sees an item in all conditions; None if nothing is drawn."""
-        from preview.camera import frame_whole_figure
+        from preview.camera import make_whole_figure_camera
 
         boxes, several = [], False
         for name in self.plan.conditions:
@@ -98,7 +98,7 @@ class Stimuli:
             return None
         box = np.min([b[0] for b in boxes], 0), np.max([b[1] for b in boxes], 0)
         look = self.plan.video
-        return frame_whole_figure(box, look.width / look.height, ASIDE if several else 0.0)
+        return make_whole_figure_camera(box, look.width / look.height, ASIDE if several else 0.0)
 
     def pictures(self, name: str, item: Stretch, camera: Any) -> Iterator[np.ndarray]:
         """Yield the pictures that a condition shows for an item."""

@@ -76,7 +76,7 @@ def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
     """Return the figure that draws a project, and print a note if it is not the character's mesh. `sticks`
     draws a stick figure in place of the default body. Raises FileError.
     """
-    from preview.character_file import figure_from_file as drawn
+    from preview.character_file import load_mesh_figure as drawn
     from preview.default_body.footing import choose_footing
     from preview.figure import StickFigure
 
@@ -122,7 +122,7 @@ def render_pictures(
     """
     from app.stage.cutting import Filmed
     from app.stage.stools import make_stools
-    from preview.camera import frame_whole_figure
+    from preview.camera import make_whole_figure_camera
     from preview.drawing_apart import draw_scenes
     from preview.scene import THEMES, Scene
 
@@ -131,7 +131,7 @@ def render_pictures(
     seats = tuple(seat for _, shown in seen for seat in make_stools(shown))
     if camera is None:
         box = measure_bounds(seen, times)
-        camera = frame_whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
+        camera = make_whole_figure_camera(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
 
     def scenes() -> Iterator[tuple[Scene, Any]]:
         for first in range(0, len(times), TOGETHER):
@@ -157,10 +157,10 @@ def render_directed(
     camera: Callable[[float], Any] | None = None
     if cuts:
         from app.stage.cutting import Cutting, Filmed
-        from preview.camera import frame_whole_figure
+        from preview.camera import make_whole_figure_camera
 
         aspect, cutting = size[0] / size[1], Cutting()
-        whole = frame_whole_figure(measure_bounds(seen, times), aspect, ASIDE)
+        whole = make_whole_figure_camera(measure_bounds(seen, times), aspect, ASIDE)
         camera = lambda at: cutting.camera(seen, cuts, at, aspect) or Filmed(whole)  # noqa: E731
     if not captions:
         yield from render_pictures(seen, times, size, look, camera, into)
@@ -365,7 +365,7 @@ def draw_to(
         drawn = render_directed(seen, times, shot.size, shot.look, shot.direction, into)
         write_video(out, drawn, shot.fps, shot.size, told, sound=sound)
     elif out.suffix == ".png":
-        from preview.sheet import contact_sheet, write_png
+        from preview.sheet import make_contact_sheet, write_png
 
         times = shot.start + np.linspace(0, shot.seconds, max(2, shot.frames))
         small = (max(16, width * 2 * min(len(seen), 2) // 9), max(16, height * 5 // 9))
@@ -374,7 +374,7 @@ def draw_to(
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times
         ]
-        write_png(out, contact_sheet(images, 8 // min(len(seen), 2), labels))
+        write_png(out, make_contact_sheet(images, 8 // min(len(seen), 2), labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 

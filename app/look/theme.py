@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication, QPushButton
 
 from app.look.domain_words import KIND_TITLES as KIND_TITLES
 from metagraph.graph.model import Kind
-from preview.typeface import FAMILY, WEIGHTS, typeface_file
+from preview.typeface import FAMILY, WEIGHTS, find_typeface_file
 
 FONT_PIXELS = 15
 
@@ -232,7 +232,7 @@ def make_window_font() -> QFont:
     letters that it does not have.
     """
     for weight in WEIGHTS:
-        QFontDatabase.addApplicationFont(str(typeface_file(weight)))
+        QFontDatabase.addApplicationFont(str(find_typeface_file(weight)))
     font = QFont(FAMILY)
     font.setPixelSize(FONT_PIXELS)
     return font

@@ -32,7 +32,7 @@ from metagraph.formats.recovery import Left
 from metagraph.formats.store import read_project
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.motion.clip import Clip
-from preview.joints import find_drawn_joints, nearest_above
+from preview.joints import find_drawn_joints, find_nearest_above
 
 Choice = Literal["recover", "copy", "later", "discard"]
 WORDS: dict[Choice, str] = make_lazy_texts(
@@ -290,7 +290,7 @@ def _figure(clip: Clip) -> np.ndarray | None:
     if not np.isfinite(places).all():
         return None
     shown = find_drawn_joints(skeleton)
-    starts = nearest_above(skeleton, shown)
+    starts = find_nearest_above(skeleton, shown)
     ends = np.flatnonzero(shown & (starts >= 0))
     turned = np.stack([0.88 * places[:, 0] + 0.47 * places[:, 2], places[:, 1]], -1)
     return turned[np.stack([starts[ends], ends], -1)] if len(ends) else None

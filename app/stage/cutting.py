@@ -24,7 +24,7 @@ from metagraph.speech.captions import (
 )
 from preview.camera import Camera
 from preview.scene import LampTurn
-from preview.shots import lamp_side, shot_camera
+from preview.shots import is_lamp_on_right, make_shot_camera
 
 Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
 SAMPLED = 2  # moments of a cut at which the positions of heads are taken
@@ -99,8 +99,8 @@ def _film(
         heads.append(middle + np.array([0.0, lift, 0.0]))
         heights.append(height)
     at = np.array(heads)
-    camera = shot_camera(cut.shot, cut.side, at, heights, aspect)
-    return Filmed(camera, LampTurn(camera.yaw, lamp_side(camera, cut.shot, cut.side, at)))
+    camera = make_shot_camera(cut.shot, cut.side, at, heights, aspect)
+    return Filmed(camera, LampTurn(camera.yaw, is_lamp_on_right(camera, cut.shot, cut.side, at)))
 
 
 def list_captions(

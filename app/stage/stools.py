@@ -7,7 +7,7 @@ from dataclasses import replace
 from app.stage.playback_source import ShownPlayback
 from metagraph.graph.seats import seat_of
 from preview.scene import Actor
-from preview.stool import stool
+from preview.stool import make_stool
 
 
 def make_stools(shown: ShownPlayback) -> tuple[Actor, ...]:
@@ -17,7 +17,7 @@ def make_stools(shown: ShownPlayback) -> tuple[Actor, ...]:
     seat = seat_of(shown.project) if shown.clip is None else None
     if seat is None:
         return ()
-    actor = stool(seat.at, seat.radius)
+    actor = make_stool(seat.at, seat.radius)
     if shown.stand is None:
         return (actor,)
     rotations, positions = shown.stand.placed(actor.rotations, actor.positions)

@@ -35,7 +35,7 @@ from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
 from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import LAYERS, Project
-from preview.camera import Camera, close_up, frame_whole_figure
+from preview.camera import Camera, close_up, make_whole_figure_camera
 from preview.figure import MeshFigure, SkinnedFigure
 from preview.scene import Actor, Scene
 
@@ -270,7 +270,7 @@ class PreviewPanel(QWidget):
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.others else 0.0
-            self.view.camera = frame_whole_figure(
+            self.view.camera = make_whole_figure_camera(
                 solid.drawn_bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         elif self._last is not None:

@@ -17,7 +17,7 @@ from app.look.theme import get_theme
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from metagraph.graph import anatomy
-from preview.camera import Camera, frame_whole_figure
+from preview.camera import Camera, make_whole_figure_camera
 
 if TYPE_CHECKING:
     from app.stage.gl_view import GLView, ImageView
@@ -110,7 +110,7 @@ class Looking(QObject):
         inside = (at > -CUT) & (at < 1 + CUT) if clip is not None else (middle > 0) & (middle < 1)
         if self._stepped_back or not inside.all():
             self._stepped_back = clip is not None and not inside.all()
-            view.camera = frame_whole_figure((low, high), aspect)
+            view.camera = make_whole_figure_camera((low, high), aspect)
 
     @property
     def flat(self) -> bool:

@@ -27,7 +27,7 @@ from app.stage.gl_view import make_view
 from app.stage.playback_source import ShownPlayback
 from app.stage.session import StageSession
 from app.translation import tr
-from preview.camera import frame_whole_figure
+from preview.camera import make_whole_figure_camera
 from preview.figure import MeshFigure
 from preview.scene import THEMES, Actor, Scene
 
@@ -238,7 +238,7 @@ class ReviewStage(QWidget):
         room = np.array(
             [0.0, ABOVE * (high[1] - low[1]), 0.0]
         )  # what is written over the picture hides no face
-        self.view.camera = frame_whole_figure((low, high + room), aspect)
+        self.view.camera = make_whole_figure_camera((low, high + room), aspect)
 
         self._stood, self._tall = positions[0, [0, 2]], float(high[1] - low[1])
 
