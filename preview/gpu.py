@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import PICTURE_PIXELS
-from metagraph.common.pictures import picture_size
+from metagraph.common.pictures import read_picture_size
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch, arrange_vertices
 from preview.occlusion import Rods
 from preview.paint import remove_invisible_texture
@@ -240,7 +240,7 @@ def decode_texture(encoded: bytes) -> tuple[tuple[int, int], bytes]:
     from PIL import Image
 
     try:
-        size = picture_size(encoded)
+        size = read_picture_size(encoded)
         if size is None or size[0] * size[1] > PICTURE_PIXELS:
             raise ValueError("no picture that can be drawn")
         picture = Image.open(io.BytesIO(encoded)).convert("RGBA")

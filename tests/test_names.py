@@ -51,11 +51,13 @@ VERBS = set(
     uses vary verify wait walk warn watch weigh with withdraw write
     """.split()  # noqa: SIM905 - three hundred quotes more to read
 )
-# Names that plain mathematics has: each is shorter and clearer than a verb with it.
+# Names that stay: of plain mathematics, where each is clearer than a verb with it, and of marks on texts.
 SHORT = {
     "exp",  # the exponential map from rotation vectors to quaternions
     "logistic",  # the logistic function
     "nlerp",  # normalised linear interpolation, as every book on animation calls it
+    "phrase",  # marks a text in the domain, as `tr` does in the window; it is a verb, too
+    "plural_phrase",  # marks a text that depends on a count, as `tr_plural` does in the window
     "slerp",  # spherical linear interpolation
     "slerp_exact",  # slerp for keys that are far apart
 }

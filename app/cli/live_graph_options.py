@@ -130,11 +130,11 @@ def keep_motion(session: LiveSession, options: Namespace) -> None:
     motions = session.generating.motions()
     if not motions:
         return
-    from metagraph.common.file_names import file_stem
+    from metagraph.common.file_names import make_file_stem
     from metagraph.formats.store import SUFFIX as PROJECT
     from metagraph.live.kept_motion import write_kept
 
-    stem = file_stem(f"{options.project.name.removesuffix(PROJECT)} - {options.keep}", most=200)
+    stem = make_file_stem(f"{options.project.name.removesuffix(PROJECT)} - {options.keep}", most=200)
     path = options.project.resolve().parent / f"{stem}{SUFFIX}"
     write_kept(path, motions)
     print(

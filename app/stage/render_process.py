@@ -13,7 +13,7 @@ from pathlib import Path
 from app.project.jobs import WindowJob
 from app.translation import make_lazy_texts, tr
 from metagraph.common.network_paths import is_allowed
-from metagraph.common.programs import python_command, start
+from metagraph.common.programs import make_python_command, start
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Mode, Project
 
@@ -95,7 +95,7 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
         if wanted.conversation is not None:
             words += ["--conversation", wanted.conversation]
         process = start(
-            python_command("app.cli", *words),
+            make_python_command("app.cli", *words),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,

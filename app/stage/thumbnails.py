@@ -23,7 +23,7 @@ from app.stage.kept_pictures import KeptPictures
 from app.stage.picture_process import LONG, PictureOrder
 from app.stage.picture_store import KEPT
 from app.stage.session import StageSession
-from metagraph.common.programs import python_command, start
+from metagraph.common.programs import make_python_command, start
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
@@ -224,7 +224,7 @@ class Thumbnails(QObject):
     def _start(self) -> None:
         """Start the process. Output and input have a thread each, because a full pipe blocks."""
         self._process = start(
-            python_command("app.stage.picture_process"),
+            make_python_command("app.stage.picture_process"),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

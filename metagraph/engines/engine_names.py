@@ -11,7 +11,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 
-from metagraph.common.file_names import file_stem, fold_file_name
+from metagraph.common.file_names import fold_file_name, make_file_stem
 from metagraph.graph.ids import derived_id
 
 MOST = 1 << 24  # Unity compares numbers as single precision, which is exact below
@@ -47,7 +47,7 @@ def name_apart(texts: Mapping[str, str], key: Callable[[str], str] = str) -> dic
 def name_files(idents: Mapping[str, str]) -> dict[str, str]:
     """Return for each name the stem of a file, apart on every system. idents: the id behind each name."""
     names = {ident: name for name, ident in idents.items()}
-    stems = name_apart({ident: file_stem(name) for ident, name in names.items()}, fold_file_name)
+    stems = name_apart({ident: make_file_stem(name) for ident, name in names.items()}, fold_file_name)
     return {name: stems[ident] for name, ident in idents.items()}
 
 

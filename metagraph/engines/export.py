@@ -11,8 +11,8 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.common.budgets import SOUND_FILE
-from metagraph.common.file_names import file_stem, make_file_stems
-from metagraph.common.files import is_inside, read_file, unforeseen_error
+from metagraph.common.file_names import make_file_stem, make_file_stems
+from metagraph.common.files import is_inside, make_unforeseen_error, read_file
 from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
 from metagraph.engines.export_document import list_used_clips, to_document
@@ -127,7 +127,7 @@ def require_exportable(project: Project) -> tuple[str, ...]:
 
 def stem_of(project: Project) -> str:
     """Return the stem of a project's exported files."""
-    return file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
+    return make_file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
 
 
 def write_project_files(
@@ -183,7 +183,7 @@ def _sounds(document: c.Export, folder: Path, voices: LineSounds) -> tuple[tuple
             inside = f"lines/{name}{ending if as_it_is else '.wav'}"
             content = read_file(source, SOUND_FILE) if as_it_is else _as_wav(source, line.channel)
         except Exception as error:  # one bad sound never spoils an export
-            missing.append(f"the sound of line '{ident}' is left out: {unforeseen_error(source, error)}")
+            missing.append(f"the sound of line '{ident}' is left out: {make_unforeseen_error(source, error)}")
             document.lines[ident] = msgspec.structs.replace(line, audio=None, channel=None)
             continue
         write_atomically(folder / inside, content)

@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
-from metagraph.common.files import is_file, is_inside, open_file, read_file, unforeseen_error
+from metagraph.common.files import is_file, is_inside, make_unforeseen_error, open_file, read_file
 from metagraph.common.network_paths import explain_refusal
 from metagraph.engines import contract as c
 from metagraph.engines.reading import read_export
@@ -203,7 +203,7 @@ def _file_faults(folder: Path, record: ExportRecord) -> Iterator[VerificationFau
         try:
             found = digest(folder / name)
         except Exception as error:  # one bad file never hides the others
-            yield fault_of(unforeseen_error(folder / name, error), clean_text(name))
+            yield fault_of(make_unforeseen_error(folder / name, error), clean_text(name))
             continue
         if found == wanted:
             continue
@@ -310,7 +310,7 @@ def _glb(path: Path, document: c.Export) -> list[VerifiedPart]:
             return [pair, VerifiedPart("animations", "not compared, since the GLB is another")]
         faults = list(_content_faults(document, glb))
     except Exception as error:  # whatever a damaged file does to its reader
-        return [VerifiedPart("GLB", "not whole", (fault_of(unforeseen_error(glb, error)),))]
+        return [VerifiedPart("GLB", "not whole", (fault_of(make_unforeseen_error(glb, error)),))]
     animations = count_in_words(len(document.clips), "animation")
     words = f"{animations} and {count_in_words(len(document.joints), 'joint')} are there"
     return [pair, VerifiedPart("animations", "not whole" if faults else words, tuple(faults))]

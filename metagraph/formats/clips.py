@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.common.budgets import MOTION_FILE, SOUND_FILE
-from metagraph.common.files import guard_reader, open_file, unforeseen_error
+from metagraph.common.files import guard_reader, make_unforeseen_error, open_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.clip_readers import (
@@ -209,7 +209,7 @@ def _import_clips(
         try:
             takes = begun[path].result() if path in begun else read_clips(path)
         except Exception as error:  # readers may raise any kind of error
-            failures.append(unforeseen_error(path, error))
+            failures.append(make_unforeseen_error(path, error))
             continue
         for number, clip in enumerate(takes):
             if clip.face_of:

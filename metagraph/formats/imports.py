@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from metagraph.common.files import unforeseen_error
+from metagraph.common.files import make_unforeseen_error
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError, describe_error
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
@@ -296,7 +296,7 @@ def bring_over(
             why = describe_error(error)
             failures.append(phrase("{file}: {why}. {remedy}", file=Path(path).name, why=why, remedy=_ALONE))
         except Exception as error:  # one bad clip never spoils the others
-            failures.append(unforeseen_error(path, error).words)
+            failures.append(make_unforeseen_error(path, error).words)
     maps = {strangers.fingerprint: joint_map} if loaded else {}
     return Imported(
         tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded)

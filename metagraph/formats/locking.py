@@ -23,7 +23,7 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.common.programs import run_program, system_program
+from metagraph.common.programs import find_system_program, run_program
 from metagraph.formats.new_file import Access, access_of, open_new
 
 REFRESH = 30.0  # seconds
@@ -95,7 +95,7 @@ def _started(pid: int) -> str:
                 raise ProcessLookupError(pid)
             return fields[19].decode()
         return ""
-    ps = system_program("ps")
+    ps = find_system_program("ps")
     if ps is not None:
         with contextlib.suppress(OSError):  # TimeoutError is one
             return run_program([ps, "-o", "lstart=", "-p", str(pid)], 5.0)[1].strip()

@@ -16,7 +16,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from metagraph.common.csv_text import csv_text, restore_cell
+from metagraph.common.csv_text import format_csv, restore_cell
 from metagraph.common.files import guard_reader, read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
@@ -257,7 +257,7 @@ def encode_machine_as_table(manual: Manual) -> str:
         c = x.condition
         numbers = (f"{c.weight:g}", _exit_word(x), f"{x.blend:g}")
         rows.append((*ends, c.when, c.trigger if c.when == "request" else "", *numbers))
-    return csv_text(rows)
+    return format_csv(rows)
 
 
 def _exit_word(link: Link) -> str:

@@ -19,15 +19,15 @@ from typing import Any
 import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
-from metagraph.common.files import is_file, is_text, read_file, unforeseen_error
+from metagraph.common.files import is_file, is_text, make_unforeseen_error, read_file
 from metagraph.common.network_paths import (
     ANOTHER,
     explain_refusal,
     is_allowed,
     is_closed,
     make_escape_check,
-    original_path,
-    path_to_nowhere,
+    make_path_to_nowhere,
+    recover_original_path,
 )
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError, clean_text
@@ -279,7 +279,7 @@ def _closed_below(project: Project, folder: Path) -> Project:
         if is_closed(name) or not away(name):
             return name
         found = True
-        return path_to_nowhere(name)
+        return make_path_to_nowhere(name)
 
     made = _each_path(project, close)
     return made if found else project
@@ -425,7 +425,7 @@ def list_closed_paths(project: Project) -> tuple[str, ...]:
 
     def see(name: str) -> str:
         if is_closed(name):
-            found[original_path(name)] = None
+            found[recover_original_path(name)] = None
         return name
 
     _each_path(project, see)
@@ -434,7 +434,7 @@ def list_closed_paths(project: Project) -> tuple[str, ...]:
 
 def reopen_paths(project: Project) -> Project:
     """Return a project whose closed paths are as in its file, to be opened."""
-    return _each_path(project, original_path)
+    return _each_path(project, recover_original_path)
 
 
 def describe_closed_paths(names: Sequence[str]) -> str:
@@ -554,7 +554,7 @@ class _Loading:
         place = self.found.get(name) or find_clip_place(entries[0], self.folder)
         path = self._path(name, place)
         if name in self.found:
-            self.notes.append(f"'{original_path(name)}' has moved to '{path}'")
+            self.notes.append(f"'{recover_original_path(name)}' has moved to '{path}'")
         if is_closed(name) and name not in self.found:
             return  # one note says so for all of them
         if not is_file(place):
@@ -564,7 +564,7 @@ class _Loading:
             now = digest(place)
             read = {a: read_or_kept(place, now, a) for a in dict.fromkeys(e.as_is for e in entries)}
         except Exception as error:  # one bad file never spoils a project
-            self.notes.append(str(unforeseen_error(place, error)))
+            self.notes.append(str(make_unforeseen_error(place, error)))
             return
         if any(e.digest and now != e.digest for e in entries):
             self.notes.append(f"'{path}' has changed since it was imported")

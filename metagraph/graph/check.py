@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from metagraph.common.network_paths import ANOTHER, explain_refusal, original_path
+from metagraph.common.network_paths import ANOTHER, explain_refusal, recover_original_path
 from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
@@ -63,7 +63,7 @@ def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
 
 def _why_missing(entry: ClipEntry) -> tuple[str, str]:
     """Return the reason why a clip has no motion, and the remedy."""
-    path = original_path(entry.path)
+    path = recover_original_path(entry.path)
     if path != entry.path:
         return (
             phrase("the file of clip '{name}' was not opened: {why} ({path})",

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS, LINE_SECONDS
-from metagraph.common.files import unforeseen_error
+from metagraph.common.files import make_unforeseen_error
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Word
@@ -156,7 +156,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
             try:
                 voice = read_line(attempt, folder, notes)
             except Exception as error:  # a bad sound must not stop a project
-                why = unforeseen_error(folder / (line.audio or line.phones or ""), error)
+                why = make_unforeseen_error(folder / (line.audio or line.phones or ""), error)
                 note = phrase("line '{ident}': {why}", ident=ident, why=why.words)
                 if note not in notes:
                     notes.append(note)

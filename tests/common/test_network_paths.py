@@ -16,7 +16,7 @@ from metagraph.common.network_paths import (
     explain_refusal,
     is_closed,
     make_escape_check,
-    original_path,
+    recover_original_path,
 )
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_gltf_clips
@@ -59,7 +59,7 @@ def not_allowed() -> Iterator[None]:
 def test_a_strange_name_is_known_closed_and_given_back_as_it_was(name: str) -> None:
     assert explain_refusal(name) is not None
     path = close_path(name)
-    assert is_closed(path) and original_path(path) == name
+    assert is_closed(path) and recover_original_path(path) == name
     assert explain_refusal(path) is None and not Path(path).is_absolute() and ".." not in Path(path).parts
     network_paths.allow(True)
     assert close_path(name) == name
@@ -67,7 +67,7 @@ def test_a_strange_name_is_known_closed_and_given_back_as_it_was(name: str) -> N
 
 @pytest.mark.parametrize("name", ORDINARY)
 def test_an_ordinary_name_stays_as_it_is(name: str) -> None:
-    assert explain_refusal(name) is None and close_path(name) == name and original_path(name) == name
+    assert explain_refusal(name) is None and close_path(name) == name and recover_original_path(name) == name
 
 
 def _project(folder: Path, name: str) -> Path:

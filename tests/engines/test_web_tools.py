@@ -22,7 +22,7 @@ ELEMENT = Path(RUNTIMES[0]) / "javascript" / "element.js"
 
 @pytest.fixture
 def without_npm(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(programs, "system_program", lambda name: None)
+    monkeypatch.setattr(programs, "find_system_program", lambda name: None)
 
 
 def _lay_out(modules: Path, ran: Path) -> None:
@@ -134,5 +134,5 @@ def test_what_belongs_to_somebody_else_is_not_used(
 
 def test_an_npm_that_fails_is_as_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(web_tools, "web_tools_folder", lambda: tmp_path / "kept")
-    monkeypatch.setattr(programs, "system_program", lambda name: "/bin/false")
+    monkeypatch.setattr(programs, "find_system_program", lambda name: "/bin/false")
     assert not web_tools.is_three_at_hand()

@@ -257,7 +257,7 @@ def _keypoints() -> dict[str, bytes]:
 def every_reader() -> dict[str, Fuzzed]:
     from app.features.lines.line_files import read_lines
     from app.project.pattern_files import read_patterns
-    from metagraph.common.pictures import picture_size
+    from metagraph.common.pictures import read_picture_size
     from metagraph.engines.reading import read_export
     from metagraph.formats.clips import read_clips
     from metagraph.formats.elan import read_elan
@@ -302,7 +302,7 @@ def every_reader() -> dict[str, Fuzzed]:
             assert str(error).isascii() and str(error).isprintable()
 
     def picture(path: Path) -> None:
-        size = picture_size(path.read_bytes())
+        size = read_picture_size(path.read_bytes())
         assert size is None or min(size) > 0
 
     def bml(path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.project.jobs import WindowJob
 from app.translation import tr, tr_error, tr_plural
-from metagraph.common.file_names import file_stem
+from metagraph.common.file_names import make_file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import Loaded
@@ -94,7 +94,7 @@ def write_twin(twin: TwinClip, folder: Path) -> Loaded:
     """
     place = folder / FOLDER
     place.mkdir(exist_ok=True)
-    stem = file_stem(twin.name, "clip")
+    stem = make_file_stem(twin.name, "clip")
     path, n = place / f"{stem}.glb", 2
     while path.exists():
         path, n = place / f"{stem}_{n}.glb", n + 1

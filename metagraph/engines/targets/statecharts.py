@@ -12,7 +12,7 @@ from typing import Any
 from xml.etree import ElementTree as Xml
 
 from metagraph.common.wording import phrase
-from metagraph.common.xml_text import xml_text
+from metagraph.common.xml_text import clean_xml_text
 from metagraph.engines.engine_machine import Arrow, EngineState, Machine, machines, write_machine_glb
 from metagraph.engines.engine_names import write_word
 from metagraph.engines.targets.losses import MACHINE
@@ -138,7 +138,7 @@ def _state(region: Xml.Element, machine: Machine, state: EngineState) -> None:
     end = (done.leave or 0.0) if done is not None else 0.0
     bound = done is not None and leave > 0
     own = {"my_animation": state.name, "my_loop": str(state.loop).lower(), "my_name": state.action.name}
-    node = _tag(region, "state", id=state.name, **{key: xml_text(text) for key, text in own.items()})
+    node = _tag(region, "state", id=state.name, **{key: clean_xml_text(text) for key, text in own.items()})
     taking = node
     if bound and leave < end:
         node.set("initial", f"{state.name}.bound")

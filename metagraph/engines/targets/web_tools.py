@@ -138,7 +138,7 @@ def _esbuild() -> Path | None:
 
 def _fetch() -> bool:
     """Let npm fetch both; return whether it said that it did. Their own scripts are not run."""
-    npm, place = programs.system_program("npm"), web_tools_folder()
+    npm, place = programs.find_system_program("npm"), web_tools_folder()
     if npm is None or place is None or not programs.make_own(place):
         return False
     command = [

@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.common.network_paths import close_path, original_path
+from metagraph.common.network_paths import close_path, recover_original_path
 from metagraph.formats.clip_identity import remove_clip_identity
 from metagraph.formats.project.contact_data import decode_contacts, encode_contacts
 from metagraph.formats.project.fields import (
@@ -88,7 +88,7 @@ _CONTACT = ("upper", "lower", "hand", "to", "first", "last")
 
 def clip_data(entry: ClipEntry) -> Data:
     out = sparse(entry, ("motion", "source", "digest", "retime"))
-    out["path"] = original_path(entry.path)
+    out["path"] = recover_original_path(entry.path)
     if entry.retime.speed != 1.0:
         out["speed"] = as_plain(entry.retime.speed)
     if entry.retime.contacts:

@@ -9,7 +9,7 @@ from dataclasses import MISSING, fields
 from functools import cache
 from typing import Any
 
-from metagraph.common.network_paths import original_path
+from metagraph.common.network_paths import recover_original_path
 
 Data = dict[str, Any]
 LARGEST = 1e15  # no number in a project is larger; up to here whole numbers are exact
@@ -39,7 +39,7 @@ def round_number(value: float) -> float | int:
 def as_plain(value: Any) -> Any:
     """Return a value as it can be written. Raises ValueError and TypeError."""
     if isinstance(value, str):
-        return original_path(value) if value.startswith(".") else value
+        return recover_original_path(value) if value.startswith(".") else value
     if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, int) and abs(value) <= LARGEST:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
-from metagraph.common.csv_text import csv_text
+from metagraph.common.csv_text import format_csv
 from metagraph.research.study.analysis.reading import Data
 from metagraph.research.study.analysis.results import Results
 from metagraph.research.study.scores.machines import WORDS, Score
@@ -34,7 +34,7 @@ def study_tables(results: Results) -> dict[str, str]:
 
 def format_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
     """Return rows as text; None is written as MISSING, numbers to six digits at most."""
-    return csv_text([columns, *([cell(v) for v in row] for row in rows)], separator)
+    return format_csv([columns, *([cell(v) for v in row] for row in rows)], separator)
 
 
 def cell(value: Any) -> str:
