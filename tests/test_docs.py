@@ -261,11 +261,11 @@ def test_first_lines_for_engines_are_lines_that_tests_run(page: Path) -> None:
 def test_every_target_is_in_the_table_and_exported_on_a_page() -> None:
     pages = {p.name: p.read_text(encoding="utf-8") for p in (ROOT / "docs" / "engines").glob("*.md")}
     rows = re.findall(r"^\| `([\w-]+)` \| .*\]\(([\w-]+\.md)", pages["index.md"], re.M)
-    assert sorted(name for name, _ in rows) == sorted(registry.targets())
+    assert sorted(name for name, _ in rows) == sorted(registry.list_targets())
     for name, page in rows:
         assert name == registry.DEFAULT or f"--target {name}" in pages[page], name
         (row,) = (line for line in pages["index.md"].splitlines() if line.startswith(f"| `{name}` |"))
-        if registry.target(name).untried:
+        if registry.get_target(name).untried:
             assert re.search(r"\bnot (at hand|run)\b", row), name
 
 

@@ -29,7 +29,7 @@ def run(options: Namespace) -> int:
     are.
     """
     from metagraph.engines.export import export_project as write_export
-    from metagraph.engines.export import stem_of
+    from metagraph.engines.export import make_export_stem
     from metagraph.formats.outputs import claim, wrote
 
     source: Path = getattr(options, "project", None) or SAMPLE
@@ -38,7 +38,7 @@ def run(options: Namespace) -> int:
     made = choose_plan(project, options)
     out: Path = options.out
     sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
-    own = out / f"{stem_of(project)}.json", out / f"{stem_of(project)}.glb"
+    own = out / f"{make_export_stem(project)}.json", out / f"{make_export_stem(project)}.glb"
     claim(sheet, video, *own)
     out.mkdir(parents=True, exist_ok=True)
     whole = count_machine_size(project)

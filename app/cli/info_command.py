@@ -55,10 +55,10 @@ def run(options: Namespace) -> int:
         say(options, "\n".join(lines), data)
         return 0
     if path.suffix == ".json":
-        from metagraph.engines.reading import glb_of, read_export
+        from metagraph.engines.reading import find_export_glb, read_export
 
         project = read_export(path, motions=False)
-        glb_of(path)  # raises where it is another's
+        find_export_glb(path)  # raises where it is another's
     else:
         project = open_for_command(path)
         warn_of_journals(path)

@@ -51,7 +51,7 @@ def name_files(idents: Mapping[str, str]) -> dict[str, str]:
     return {name: stems[ident] for name, ident in idents.items()}
 
 
-def number_apart(idents: Iterable[str]) -> dict[str, int]:
+def assign_numbers(idents: Iterable[str]) -> dict[str, int]:
     """Return for each id a number from 1 on that derives from it, all different."""
     out: dict[str, int] = {}
     taken = {0}

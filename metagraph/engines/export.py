@@ -125,7 +125,7 @@ def require_exportable(project: Project) -> tuple[str, ...]:
     )
 
 
-def stem_of(project: Project) -> str:
+def make_export_stem(project: Project) -> str:
     """Return the stem of a project's exported files."""
     return make_file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
 
@@ -146,7 +146,7 @@ def write_project_files(
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
     used = list_used_clips(project)
-    stem, target = stem_of(project), Path(folder)
+    stem, target = make_export_stem(project), Path(folder)
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")

@@ -57,7 +57,7 @@ def find_arm_rows(project: Project) -> dict[str, list[list[int]]]:
     }
 
 
-def feet_of(project: Project) -> dict[str, list[list[int]]]:
+def find_planted_feet(project: Project) -> dict[str, list[list[int]]]:
     """Return where the feet are in the clips of the layer that moves the legs; none where none is planted."""
     weight = rigs_of(project).weight
     if weight.feet_layer is None or not _plants(project):

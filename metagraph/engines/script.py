@@ -26,7 +26,7 @@ from metagraph.graph.expand import chain
 from metagraph.graph.model import LAYERS, Layer, Project
 
 
-def cases(project: Project) -> Iterator[ScriptCase]:
+def make_script_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield the cases that suit a project."""
     for part in (
         _alone,

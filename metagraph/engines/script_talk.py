@@ -39,11 +39,11 @@ def list_talks() -> list[dict[str, Any]]:
         times = [[0.25 * k, 0.25 * k + 0.125] for k in range(len(words))][:-1] if told else []
         row: dict[str, Any] = {"language": language, "text": text, "seconds": seconds, "told": times}
         row |= {"seed": 0xFFFFFFFF - 3 * n, "at": 0.5 * n, "arms": arms, "head": n % 3 != 2}
-        out.append({**row, **talk_of(row)})
+        out.append({**row, **analyse_talk(row)})
     return out
 
 
-def talk_of(row: Mapping[str, Any]) -> dict[str, Any]:
+def analyse_talk(row: Mapping[str, Any]) -> dict[str, Any]:
     """Return what comes of a text: "sentences", "words" (each its text, in small letters, start, end, the
     mark behind it) and "asks" (do, layer, tags, at, stroke, late).
     """

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.engines.export import stem_of
+from metagraph.engines.export import make_export_stem
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import Project
 from metagraph.graph.offered import tools
@@ -21,6 +21,6 @@ def write_tools(project: Project, folder: Path) -> Path:
     """Write `offered.tools` as JSON into a folder; return the file. Raises FileError if it cannot
     be written.
     """
-    path = folder / name_tools_file(stem_of(project))
+    path = folder / name_tools_file(make_export_stem(project))
     write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
     return path

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.engines.reading import read_export
-from metagraph.engines.script import cases
+from metagraph.engines.script import make_script_cases
 from metagraph.engines.script_boundaries import list_boundary_cases
 from metagraph.engines.script_parts import ScriptCase, ScriptStep
 from metagraph.engines.script_sounds import list_heard_marks, list_streams
-from metagraph.engines.script_talk import list_talks, talk_of
+from metagraph.engines.script_talk import analyse_talk, list_talks
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
@@ -76,7 +76,7 @@ def play_case(project: Project, case: ScriptCase) -> Plan:
 
 def list_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield all cases that suit a project."""
-    yield from cases(project)
+    yield from make_script_cases(project)
     yield from list_boundary_cases(project)
 
 
@@ -121,7 +121,7 @@ def _expected(project: Project, case: ScriptCase) -> dict[str, Any]:
         "stances": dict(case.stances),
         "steps": [{"now": s.now, "end": s.end, "asks": list(s.asks), "forget": s.forget} for s in case.steps],
         "plan": plan_data(plan),
-        "life": life_data(plan),
+        "life": make_life_data(plan),
         "poses": [
             pose for alive in case.alive for pose in _poses(evaluator, living if alive else times, alive)
         ],
@@ -167,7 +167,7 @@ def _layer(plan: LayerPlan) -> dict[str, Any]:
 LIFE_LANES = ("modes", "breaths", "aversions", "saccades", "blinks", "swells", "emphases")
 
 
-def life_data(plan: Plan) -> dict[str, Any]:
+def make_life_data(plan: Plan) -> dict[str, Any]:
     """Return what the life layers were drawn to do, as plain data."""
     life = plan.life
     targets = [
@@ -325,7 +325,7 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
         wrong = _unlike(list_heard_marks(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")
         out.failures += [("heard", what) for what in wrong]
     for n, row in enumerate(data.get("talked", ())):
-        found = talk_of(row)
+        found = analyse_talk(row)
         wrong = _unlike(found, {name: row[name] for name in found}, f"talked[{n}]")
         out.failures += [("talked", what) for what in wrong]
     for case in data["cases"]:
@@ -341,7 +341,10 @@ def find_case_differences(project: Project, case: Mapping[str, Any]) -> list[str
     plan = play_case(
         project, ScriptCase(case["name"], "", steps, case["seed"], case["idle"], case["stances"])
     )
-    out = [*_unlike(plan_data(plan), case["plan"], "plan"), *_unlike(life_data(plan), case["life"], "life")]
+    out = [
+        *_unlike(plan_data(plan), case["plan"], "plan"),
+        *_unlike(make_life_data(plan), case["life"], "life"),
+    ]
     if out:
         return out
     evaluator = Evaluator(plan, project)

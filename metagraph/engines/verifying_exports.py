@@ -15,7 +15,7 @@ from metagraph.common.network_paths import explain_refusal
 from metagraph.engines import contract as c
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets.placing import RECORD, ExportRecord, find_forsaken_staging, read_record
-from metagraph.engines.targets.registry import targets
+from metagraph.engines.targets.registry import list_targets
 from metagraph.errors import FileError, clean_text
 from metagraph.formats.clips import digest
 from metagraph.formats.gltf.file import open_gltf
@@ -169,7 +169,7 @@ def _record(record: ExportRecord, jsons: Sequence[Path]) -> VerifiedPart:
                 "Export it again: that replaces the old files and the new ones.",
             )
         )
-    if record.target not in targets():
+    if record.target not in list_targets():
         faults.append(
             VerificationFault(
                 RECORD, f"names a target that there is not: '{clean_text(record.target)}'.", AGAIN

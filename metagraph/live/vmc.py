@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.engines.targets.vrm import humanoid
+from metagraph.engines.targets.vrm import find_vrm_bones
 from metagraph.graph import anatomy
 from metagraph.graph.face.expression_presets import measure_presets, presets_of
 from metagraph.graph.face.rig import axes_of
@@ -73,7 +73,7 @@ class VmcBody:
         """
         skeleton = project.skeleton
         roles = anatomy.project_roles(project)
-        bones = humanoid(skeleton, roles) if skeleton is not None else {}
+        bones = find_vrm_bones(skeleton, roles) if skeleton is not None else {}
         if skeleton is None or "hips" not in bones or "head" not in bones:
             raise RequestError("VMC needs a humanoid character: assign its joints in 'Skeleton'")
         _, at = skeleton.globals(skeleton.rest)

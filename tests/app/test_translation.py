@@ -160,10 +160,10 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
 def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> None:
     translation.choose("de")
     words = catalogue_texts("de")
-    for target in registry.targets().values():
+    for target in registry.list_targets().values():
         for said in (target.files, target.group, target.untried, *(loss.words for loss in target.losses)):
             assert not said or (isinstance(said, Phrase) and said.template in words), f"{target.name}: {said}"
-    (counted,) = [loss for loss in registry.target("scxml").losses if "blend their seam" in loss.words]
+    (counted,) = [loss for loss in registry.get_target("scxml").losses if "blend their seam" in loss.words]
     loops = replace(counted, count=lambda project: 3).told(Project())
     assert loops == "3 loops blend their seam here but jump at the seam there"
     assert tr_phrase(loops) == "3 Schleifen blenden hier ihre Naht, springen dort aber an ihr"

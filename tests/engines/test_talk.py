@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from metagraph.engines.targets import registry
-from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
+from metagraph.engines.translation.gesture_word_lists import make_gesture_word_modules
 from metagraph.graph.model import Project
 from metagraph.speech.text_gestures import TextStream, propose_gestures, timed_words, words_for_gesture
 from tests.browsing import Browser
@@ -130,7 +130,7 @@ def test_text_that_comes_in_letter_by_letter_asks_for_what_python_asks_and_most_
 
 
 def test_the_lists_of_words_are_made_of_the_files() -> None:
-    for place, text in gesture_word_lists().items():
+    for place, text in make_gesture_word_modules().items():
         assert place.read_text(encoding="utf-8") == text, (
             "make them anew (docs/contributing/translating-the-runtimes.md)"
         )

@@ -9,7 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.engine_machine import animations, clip_as_played, count_unrepeated, machines
+from metagraph.engines.engine_machine import (
+    count_unrepeated,
+    list_machines,
+    make_animations,
+    make_clip_as_played,
+)
 from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
 from metagraph.formats.project.data import decode_action, encode_action
@@ -193,8 +198,8 @@ def test_an_export_says_that_it_repeats_and_nothing_of_what_plays_once(
 
 
 def test_engines_that_cannot_repeat_get_an_animation_of_the_usual_length(project: Project, wave: str) -> None:
-    built = machines(project)
-    made = {clip.name: clip for clip in animations(project, built)}
+    built = list_machines(project)
+    made = {clip.name: clip for clip in make_animations(project, built)}
     state = next(s for m in built for s in m.states if s.action.id == wave)
     clip = made[state.name]
     assert state.seconds == pytest.approx(2.0) == pytest.approx(clip.duration)
@@ -206,10 +211,10 @@ def test_a_clip_that_is_written_alone_shows_its_movement_as_often_as_it_plays(
     project: Project, wave: str
 ) -> None:
     entry = project.clips[project.action(wave).clip]  # type: ignore[union-attr]
-    shown = clip_as_played(project, entry)
+    shown = make_clip_as_played(project, entry)
     assert shown is not None and shown.duration == pytest.approx(2.0, abs=1 / shown.fps)
     other = next(e for e in project.clips.values() if e.id != entry.id)
-    assert other.motion is not None and clip_as_played(project, other) is other.motion.dense
+    assert other.motion is not None and make_clip_as_played(project, other) is other.motion.dense
 
 
 def test_a_clip_that_another_action_uses_too_is_written_whole_and_counted(
@@ -219,7 +224,7 @@ def test_a_clip_that_another_action_uses_too_is_written_whole_and_counted(
     assert action is not None and count_unrepeated(project) == 0
     twice = edits.place_clips(project, [action.clip], "arms", "gesture", toy.id(project, "up"))
     entry = twice.clips[action.clip]
-    assert entry.motion is not None and clip_as_played(twice, entry) is entry.motion.dense
+    assert entry.motion is not None and make_clip_as_played(twice, entry) is entry.motion.dense
     assert count_unrepeated(twice) == 1
 
 

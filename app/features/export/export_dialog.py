@@ -145,7 +145,7 @@ class ExportDialog(QDialog):
         out.setAccessibleName(tr("Target"))
         out.setFixedWidth(260)
         groups: dict[str, QTreeWidgetItem] = {}
-        for target in registry.targets().values():
+        for target in registry.list_targets().values():
             if target.group not in groups:
                 groups[target.group] = QTreeWidgetItem(out, [tr_phrase(target.group)])
                 groups[target.group].setFlags(Qt.ItemFlag.ItemIsEnabled)
@@ -219,7 +219,7 @@ class ExportDialog(QDialog):
             return replace(
                 known,
                 folders=folders,
-                target=known.target if known.target in registry.targets() else registry.DEFAULT,
+                target=known.target if known.target in registry.list_targets() else registry.DEFAULT,
             )
         except (ValueError, TypeError, AttributeError):
             return ExportChoice()
@@ -248,13 +248,15 @@ class ExportDialog(QDialog):
         """The target that is chosen."""
         item = self.targets.currentItem()
         name = item.data(0, NAME) if item is not None else None
-        return registry.target(name or registry.DEFAULT)
+        return registry.get_target(name or registry.DEFAULT)
 
     def _describe(self) -> None:
         target, project = self.target, self.project
         self.folder.setText(self.chosen.folders.get(target.name) or self._usual(target.name))
         whole = count_machine_size(project)
-        played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
+        played = (target.name == registry.DEFAULT) or target.group == registry.get_target(
+            registry.DEFAULT
+        ).group
         self.title.setText(tr_phrase(target.title))
         joints = len(project.skeleton) if project.skeleton else 0
         self.words.setText(
@@ -269,7 +271,9 @@ class ExportDialog(QDialog):
         for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
         self.compress.setVisible(target.unpacks)
-        rows = [f"<li>{escape(tr_phrase(words))}</li>" for words in registry.losses(project, target.name)]
+        rows = [
+            f"<li>{escape(tr_phrase(words))}</li>" for words in registry.describe_losses(project, target.name)
+        ]
         note = (
             tr("<p><b>Experimental</b>: {why}.</p>", why=escape(tr_phrase(target.untried)))
             if target.untried

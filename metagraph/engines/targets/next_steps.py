@@ -196,14 +196,14 @@ STEPS: Mapping[str, NextSteps] = {
 }
 
 
-def find_steps(target: str) -> NextSteps:
+def list_next_steps(target: str) -> NextSteps:
     """Return the steps of a target. One that names none has the manual's page of all targets."""
     return STEPS.get(target, NextSteps((), "engines/index"))
 
 
 def list_steps(target: str, stem: str) -> tuple[str, ...]:
     """Return what to do with an export of files called `stem`, in words."""
-    return tuple(phrase(str(step), stem=stem) for step in find_steps(target).steps)
+    return tuple(phrase(str(step), stem=stem) for step in list_next_steps(target).steps)
 
 
 def make_readme(
@@ -213,7 +213,7 @@ def make_readme(
 
     title, what: the target's title and what it writes, in words. files: names relative to the folder.
     """
-    found = find_steps(target)
+    found = list_next_steps(target)
     lines = [f"# {stem}: {title}", "", f"Made by Metagraph {__version__}: {what}."]
     steps = [f"{n}. {step}" for n, step in enumerate(list_steps(target, stem), 1)]
     lines += ["", "## Next", "", *steps] if steps else []

@@ -10,9 +10,9 @@ from importlib import import_module
 from pathlib import Path
 
 from metagraph.common.wording import phrase
-from metagraph.engines.export import require_exportable, stem_of
+from metagraph.engines.export import make_export_stem, require_exportable
 from metagraph.engines.export_error import ExportError
-from metagraph.engines.targets.next_steps import README, find_steps, list_steps, make_readme
+from metagraph.engines.targets.next_steps import README, list_next_steps, list_steps, make_readme
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place_files as move
 from metagraph.engines.targets.target import (
@@ -47,7 +47,7 @@ DEFAULT = "metagraph"
 
 
 @cache
-def targets() -> Mapping[str, ExportTarget]:
+def list_targets() -> Mapping[str, ExportTarget]:
     """Return all targets by name."""
     found: dict[str, ExportTarget] = {}
     for module in MODULES:
@@ -57,9 +57,9 @@ def targets() -> Mapping[str, ExportTarget]:
     return found
 
 
-def target(name: str) -> ExportTarget:
+def get_target(name: str) -> ExportTarget:
     """Return a target. Raises ExportError naming the existing ones."""
-    known = targets()
+    known = list_targets()
     if name in known:
         return known[name]
     near = get_close_matches(name, known, 1)
@@ -69,9 +69,9 @@ def target(name: str) -> ExportTarget:
     )
 
 
-def losses(project: Project, name: str) -> tuple[str, ...]:
+def describe_losses(project: Project, name: str) -> tuple[str, ...]:
     """Return in words what a target loses of a project."""
-    return tuple(words for loss in target(name).losses if (words := loss.told(project)) is not None)
+    return tuple(words for loss in get_target(name).losses if (words := loss.told(project)) is not None)
 
 
 def write_for_target(
@@ -89,9 +89,9 @@ def write_for_target(
     GLB is asked for and the target cannot unpack it; ForeignFilesError, an ExportError, if foreign files are
     in the way; FileError if a file cannot be written.
     """
-    chosen = target(name)
+    chosen = get_target(name)
     if contents.compress and not chosen.unpacks:
-        able = ", ".join(t.name for t in targets().values() if t.unpacks)
+        able = ", ".join(t.name for t in list_targets().values() if t.unpacks)
         raise ExportError(
             phrase(
                 "'{name}' cannot read a compressed GLB: export it without --compress, or for {able}",
@@ -103,10 +103,10 @@ def write_for_target(
     warnings = require_exportable(project)
     place = Path(folder)
     with Staging(place) as staged:
-        order = ExportOrder(project, staged.path, stem_of(project), contents)
+        order = ExportOrder(project, staged.path, make_export_stem(project), contents)
         if tell is not None:
             order = replace(order, tell=tell)
-        lost = losses(project, name)
+        lost = describe_losses(project, name)
         with sync_together():
             made = _with_readme(chosen.write(order), chosen, order, lost)
         names = tuple(path.relative_to(staged.path).as_posix() for path in made.files)
@@ -114,7 +114,7 @@ def write_for_target(
     clips = len(project.uses.keys() | {project.base.clip} - {None})
     files = tuple(place / n for n in names)
     return TargetReport(
-        name, files, clips, lost, (*made.notes, *warnings), list_steps(name, stem_of(project))
+        name, files, clips, lost, (*made.notes, *warnings), list_steps(name, make_export_stem(project))
     )
 
 
@@ -122,7 +122,7 @@ def _with_readme(
     made: ExportedFiles, chosen: ExportTarget, order: ExportOrder, lost: Sequence[str]
 ) -> ExportedFiles:
     """Write a README into an export's folder, unless the target writes a guide of its own."""
-    if find_steps(chosen.name).guide:
+    if list_next_steps(chosen.name).guide:
         return made
     path = order.folder / README
     names = [file.relative_to(order.folder).as_posix() for file in made.files]

@@ -17,9 +17,9 @@ import numpy as np
 
 from metagraph.common.files import read_file
 from metagraph.common.wording import phrase, plural_phrase
-from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
+from metagraph.engines.engine_machine import count_unrepeated, make_clip_as_played
 from metagraph.engines.export_error import ExportError
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import FileError
 from metagraph.formats.gltf.writer import ForEngine, write_glb
@@ -56,7 +56,7 @@ _USUAL = ("Proximal", "Intermediate", "Distal")
 _EYE_REACH = 30.0
 
 
-def humanoid(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
+def find_vrm_bones(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
     """Return VRM's bone -> joint. A bone without the one VRM wants above it is left out."""
     out: dict[str, int] = {}
     for role, joint in find_known_roles(skeleton, roles).items():
@@ -128,7 +128,7 @@ def _remedy() -> str:
     return f"Its fields are VRM 1.0's: {', '.join(fields)}."
 
 
-def extension(
+def make_vrm_extension(
     project: Project, bones: Mapping[str, int], targets: tuple[str, ...], mesh: int, meta: dict[str, Any]
 ) -> dict[str, Any]:
     """Return `VRMC_vrm`. targets: the mesh's; mesh: its node."""
@@ -190,17 +190,17 @@ def _write(order: ExportOrder) -> ExportedFiles:
     assert skeleton is not None
     roles = anatomy.project_roles(project)
     stand = find_vrm_pose(skeleton, roles)
-    body, notes = mesh_of(order)
+    body, notes = find_ordered_mesh(order)
     if body is None:
         raise ExportError(
             phrase("VRM needs a character: choose a mesh that fits the clips, then export again")
         )
     order.tell(0, 2, "clips")
-    bones = humanoid(skeleton, roles)
+    bones = find_vrm_bones(skeleton, roles)
     meta, said = meta_of(project, order.contents.base)
     mesh = len(skeleton) + (sum(int(p) < 0 for p in skeleton.parents) > 1)
     used = [project.clips[c] for c in project.uses if c in project.clips]
-    played = [clip_as_played(project, entry) for entry in used]
+    played = [make_clip_as_played(project, entry) for entry in used]
     clips = [fit_curves_to_face(project, motion) for motion in played if motion is not None]
     names = unique_names([clip.name for clip in clips])
     path = order.folder / f"{order.stem}.vrm"
@@ -210,7 +210,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
         replace(body, skeleton=skeleton),
         engine=ForEngine(
             stand=stand,
-            extensions={"VRMC_vrm": extension(project, bones, body.morphs, mesh, meta)},
+            extensions={"VRMC_vrm": make_vrm_extension(project, bones, body.morphs, mesh, meta)},
         ),
     )
     order.tell(2, 2, "done")

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from metagraph.common.file_names import make_file_stems
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
+from metagraph.engines.engine_machine import count_unrepeated, make_clip_as_played
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
-from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_pose, humanoid
+from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_bones, find_vrm_pose
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
@@ -45,7 +45,7 @@ def cut_action(project: Project, action: Action) -> Clip | None:
     if entry.motion is None:
         return None
     if action.timing.repeat > 0 and len(project.uses[entry.id]) == 1:
-        return clip_as_played(project, entry)
+        return make_clip_as_played(project, entry)
     motion = entry.motion.dense
     start, end = project.span(action)
     first, last = round(start * motion.fps), round(end * motion.fps)
@@ -137,7 +137,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
     assert skeleton is not None
     roles = anatomy.project_roles(project)
     stand = find_vrm_pose(skeleton, roles)
-    bones = humanoid(skeleton, roles)
+    bones = find_vrm_bones(skeleton, roles)
     stated = {bone: {"node": joint} for bone, joint in bones.items() if bone not in _EYES}
     actions = list(project.actions())
     made, listed = [], []

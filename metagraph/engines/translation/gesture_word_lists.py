@@ -20,7 +20,7 @@ _ABOUT = "Lexicons of gestures by language, as {} has them, with words that say 
 _MADE = "Made from metagraph/speech/gesture_words/*.json; change those, and translate anew."
 
 
-def gesture_word_lists() -> dict[Path, str]:
+def make_gesture_word_modules() -> dict[Path, str]:
     """Return the texts of the modules by their paths."""
     return {JAVASCRIPT: _javascript(), GODOT: _gdscript(), UNITY: _csharp(), CPP: _cpp()}
 

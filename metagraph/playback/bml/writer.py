@@ -22,8 +22,7 @@ def write_bml(asks: Iterable[a.AnyRequest]) -> str:
     not kept.
 
     Characters that XML cannot hold are replaced, see `clean_xml_text`. Raises RequestError for what no block
-    can
-    hold: ids that are not unique, a block within a block.
+    can hold: ids that are not unique, a block within a block.
     """
     rows, seen = [], set[str]()
     for ask in asks:

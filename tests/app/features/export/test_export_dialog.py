@@ -48,11 +48,11 @@ def put(dialog, folder: str) -> None:
 def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
     drive = toys
     dialog = opened(drive)
-    for name, target in registry.targets().items():
+    for name, target in registry.list_targets().items():
         pick(drive, dialog, name)
         assert dialog.target.name == name
         assert target.files[:20] in dialog.words.text()
-        for words in registry.losses(drive.document.project, name):
+        for words in registry.describe_losses(drive.document.project, name):
             assert words[:25] in dialog.losses.text().replace("&#x27;", "'")
         assert ("Experimental" in dialog.losses.text()) == bool(target.untried)
         assert dialog.vectors.isHidden() == (target.group != "Same playback as the preview")
@@ -175,7 +175,7 @@ def test_each_target_has_a_folder_of_its_own_and_its_own_result(toys, tmp_path, 
     drive.document.save(tmp_path / "toy.metagraph.yaml")
     dialog = opened(drive)
     folders = {}
-    for name in registry.targets():
+    for name in registry.list_targets():
         pick(drive, dialog, name)
         folders[name] = dialog.folder.text()
     assert len(set(folders.values())) == len(folders)
@@ -218,7 +218,7 @@ def test_every_target_is_written_by_a_click(toys, tmp_path):
     drive = toys
     dialog = opened(drive)
     refused = {}
-    for name in registry.targets():
+    for name in registry.list_targets():
         pick(drive, dialog, name)
         put(dialog, str(tmp_path / name))
         QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
