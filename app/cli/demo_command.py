@@ -30,7 +30,7 @@ def run(options: Namespace) -> int:
     """
     from metagraph.engines.export import export_project as write_export
     from metagraph.engines.export import make_export_stem
-    from metagraph.formats.outputs import claim, wrote
+    from metagraph.formats.outputs import claim, note_written
 
     source: Path = getattr(options, "project", None) or SAMPLE
     project = open_for_command(source)
@@ -58,7 +58,7 @@ def run(options: Namespace) -> int:
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write_export(project, out, character=folder / project.character if project.character else None)
-    wrote(*own)
+    note_written(*own)
     results = {"sheet": sheet, "video": video, "json": exported.json, "glb": exported.glb}
     if quiet:
         print(json.dumps({k: str(v.resolve()) for k, v in results.items()}))

@@ -142,9 +142,9 @@ def _state(path: Path) -> tuple[int, int] | None:
 def _once(options: Namespace) -> None:
     from metagraph.engines.targets import registry
     from metagraph.engines.targets.target import Contents
-    from metagraph.graph.manual.meta import exportable
+    from metagraph.graph.manual.meta import make_exportable
 
-    project, differences = exportable(open_for_command(options.project))
+    project, differences = make_exportable(open_for_command(options.project))
     character = (
         options.project.resolve().parent / project.character
         if project.character and not options.no_mesh

@@ -9,7 +9,7 @@ from typing import Any
 from app.cli.command_output import open_for_command, say
 from app.cli.journal_note import warn_of_journals
 from metagraph.errors import FileError
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.clips import read_clips
 from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import KINDS, LAYERS
@@ -29,7 +29,7 @@ def run(options: Namespace) -> int:
             "the path",
             "Give a project, an exported JSON or a clip file in it; 'metagraph verify' takes a folder.",
         )
-    if path.suffix.lower() in clip_suffixes():
+    if path.suffix.lower() in list_clip_suffixes():
         clips = read_clips(path)
         from metagraph.motion.roles import find_roles
 

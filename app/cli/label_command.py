@@ -83,7 +83,7 @@ def run(options: Namespace) -> int:
     from app.cli.command_output import LONGEST
     from app.cli.outputs import ProjectOutput, with_project_ending
     from metagraph.errors import FileError
-    from metagraph.formats.outputs import claim, wrote
+    from metagraph.formats.outputs import claim, note_written
     from metagraph.formats.store import SUFFIX
 
     if not 0 <= options.play <= LONGEST:
@@ -105,7 +105,7 @@ def run(options: Namespace) -> int:
     with ProjectOutput(path) as output:
         code = _labelled(options, output)
     if source.is_file() and not path.samefile(source):
-        wrote(path)
+        note_written(path)
     return code
 
 
@@ -116,7 +116,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from app.cli.showing_command import name_showing_command
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import count_alike
-    from metagraph.graph.check import check_project, grave
+    from metagraph.graph.check import check_project, list_grave_problems
     from metagraph.playback.rehearsal import rehearse
     from metagraph.suggest.flags import needs_look
     from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges, describe_unbridged
@@ -163,7 +163,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         )
         write_atomically(place, format_label_report(taken.project, found, taken, drawn, lists, path).encode())
     look = [p for p in found.doubtful if needs_look(p, taken.left)]
-    errors = [p.message for p in grave(check_project(taken.project))]
+    errors = [p.message for p in list_grave_problems(check_project(taken.project))]
     seconds = time.perf_counter() - began
     for note in count_alike(notes):
         print(f"note: {note}", file=sys.stderr)

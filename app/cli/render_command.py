@@ -280,12 +280,12 @@ def _direction(
 ) -> Direction:
     """Return the cuts and captions of a video, from the options or else from the timeline's notes."""
     from app.stage.cutting import list_captions
-    from metagraph.graph.timeline_edits import timeline_of
+    from metagraph.graph.timeline_edits import get_timeline
 
     some = project.performances if options.conversation is None else project.conversations
     name = options.performance if options.conversation is None else options.conversation
     key = next((i for i, of in some.items() if name in (i, of.name)), "")
-    noted = timeline_of(project, key)
+    noted = get_timeline(project, key)
     captions = noted.captions if options.captions is None else options.captions
     cuts = noted.cuts if options.cuts is not False and len(seen) > 1 else ()
     if options.cuts and not cuts and len(seen) > 1:

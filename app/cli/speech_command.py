@@ -165,9 +165,9 @@ def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
     """Return a conversation with only the given speakers (names, or numbers from 1), in that order. Raises
     ValueError.
     """
-    from metagraph.graph.conversation.model import side_name, with_sides
+    from metagraph.graph.conversation.model import get_side_name, with_sides
 
-    names = [side_name(conversation, n) for n in range(len(conversation.sides))]
+    names = [get_side_name(conversation, n) for n in range(len(conversation.sides))]
     known = {name.casefold(): n for n, name in reversed(list(enumerate(names)))}
     known |= {str(n + 1): n for n in range(len(names)) if str(n + 1) not in known}
     asked = [name.strip() for name in chosen.split(",") if name.strip()]

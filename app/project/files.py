@@ -36,7 +36,7 @@ from metagraph.formats.new_file import PRIVATE
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.versions import is_version
 from metagraph.formats.recovery import Left
-from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
+from metagraph.formats.store import SUFFIX, Opened, make_paths_absolute, read_project
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ class Files(QObject):
                 _release(lock, self.document)
                 return  # it was edited meanwhile
             if template:
-                copy = absolute(opened.project, path.parent)
+                copy = make_paths_absolute(opened.project, path.parent)
                 self.document.load(copy if name is None else replace(copy, name=name), None)
             else:
                 self.document.load(

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from app.stage.playback_source import ShownPlayback
-from metagraph.graph.conversation.model import Conversation, Word, side_name
+from metagraph.graph.conversation.model import Conversation, Word, get_side_name
 from metagraph.graph.timeline import Cut
 from metagraph.speech.automatic_cuts import cut_at
 from metagraph.speech.captions import (
@@ -118,7 +118,10 @@ def list_captions(
         named = len({side.name for side in conversation.sides}) == len(conversation.sides)
         return tuple(
             Caption(
-                c.start, c.end, f"{side_name(conversation, c.side)}: {c.text}" if named else c.text, c.side
+                c.start,
+                c.end,
+                f"{get_side_name(conversation, c.side)}: {c.text}" if named else c.text,
+                c.side,
             )
             for c in make_conversation_captions(conversation)
         )

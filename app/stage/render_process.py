@@ -14,7 +14,7 @@ from app.project.jobs import WindowJob
 from app.translation import make_lazy_texts, tr
 from metagraph.common.network_paths import is_allowed
 from metagraph.common.programs import make_python_command, start
-from metagraph.formats.store import absolute, save_project
+from metagraph.formats.store import make_paths_absolute, save_project
 from metagraph.graph.model import Mode, Project
 
 SUFFIXES = make_lazy_texts(
@@ -59,7 +59,7 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
     """
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch) / "project.metagraph.yaml"
-        save_project(absolute(project, folder), copy)
+        save_project(make_paths_absolute(project, folder), copy)
         words = [
             "render",
             str(copy),

@@ -61,7 +61,7 @@ class TimelineEdits(QObject):
 
     @property
     def now(self) -> Timeline:
-        return notes.timeline_of(self.document.project, self.key)
+        return notes.get_timeline(self.document.project, self.key)
 
     def _edited(self, before: Project, after: Project) -> None:
         if before.timelines is not after.timelines:

@@ -19,7 +19,7 @@ from app.translation import make_lazy_texts, tr
 from app.widgets.request_menu import STAGE, ask_kind, describe_request
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.graph.timeline_edits import lane_of
+from metagraph.graph.timeline_edits import find_lane
 from metagraph.playback.plan import Cue
 from metagraph.playback.planning.extend_performance import AskAnswer
 
@@ -226,7 +226,7 @@ def place_marks(
         key=lambda t: t[:2],
     )
     for at, _, ask in timed:
-        lane, words, left = lane_of(ask, project), describe_request(ask, project), scale.x(at)
+        lane, words, left = find_lane(ask, project), describe_request(ask, project), scale.x(at)
         area, count = areas[lane], counts[lane]
         tall = min(TALLEST, (area.height() + 1) / count - 1)
         ends = [out[lasts[lane, n]].rect.right() if (lane, n) in lasts else -1e9 for n in range(count)]

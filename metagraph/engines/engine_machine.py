@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from metagraph.engines.engine_names import assign_numbers, name_apart, write_word
 from metagraph.graph import anatomy
-from metagraph.graph.expand import chain, find_end_stance, list_connections
+from metagraph.graph.expand import find_chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, REACH, Action, ClipEntry, Layer, MetaGraph, Project
 from metagraph.graph.repeating import cycle_of, seconds_played
 from metagraph.motion.character_mesh import CharacterMesh
@@ -80,7 +80,7 @@ class Machine:
 
     def hop(self, here: str, goal: str) -> EngineState | None:
         """Return the first transition of the shortest way between two stances, None if there is none."""
-        way = chain(self.graph, here, goal)
+        way = find_chain(self.graph, here, goal)
         actions = (s for s in self.states if s.action.kind == "transition" and s.action.stance == here)
         return next((s for s in actions if s.action.end_stance == way[0]), None) if way else None
 
@@ -155,7 +155,7 @@ def _arrows(project: Project, machine: Machine, states: Mapping[str, EngineState
     goals: dict[tuple[str, str], list[int]] = {}  # (stance, next on the way) -> the goals it leads to
     for here in machine.stances:
         for goal, number in machine.stances.items():
-            way = chain(graph, here, goal)
+            way = find_chain(graph, here, goal)
             if way:
                 goals.setdefault((here, way[0]), []).append(number)
     for row in list_connections(project, graph):
@@ -200,7 +200,7 @@ def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
     seconds = seconds_played(playing.kind, playing.timing, start, end)
     frames = max(2, round(seconds * clip.fps) + 1)
     rotations, translations = _played(playing, clip, start, end, np.linspace(0.0, seconds, frames))
-    mask = anatomy.action_mask(project, state.action)
+    mask = anatomy.make_action_mask(project, state.action)
     if mask is not None and loop is not None:
         stance = loop.pose_at(project.span(rest)[0])
         shape = rotations.shape[:-1]
@@ -209,7 +209,9 @@ def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
             np.broadcast_to(stance.translations, (*shape, 3)),
         )
         keep_to((rotations, translations), rests, mask)
-    moved = np.flatnonzero(np.abs(translations - anatomy.base_pose(project).translations).max((0, 2)) > 1e-6)
+    moved = np.flatnonzero(
+        np.abs(translations - anatomy.get_base_pose(project).translations).max((0, 2)) > 1e-6
+    )
     translated = tuple(sorted({0, *moved.tolist()}))
     fps = (frames - 1) / max(seconds, 1e-3) if end > start else clip.fps
     return Clip(state.name, project.skeleton, fps, rotations, translations[:, list(translated)], translated)
@@ -268,5 +270,5 @@ def write_machine_glb(
     from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     assert project.skeleton is not None
-    engine = ForEngine(stand=anatomy.base_pose(project))
+    engine = ForEngine(stand=anatomy.get_base_pose(project))
     write_glb(path, make_animations(project, machines), character, engine=engine)

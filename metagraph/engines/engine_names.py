@@ -12,7 +12,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 
 from metagraph.common.file_names import fold_file_name, make_file_stem
-from metagraph.graph.ids import derived_id
+from metagraph.graph.ids import derive_id
 
 MOST = 1 << 24  # Unity compares numbers as single precision, which is exact below
 
@@ -59,7 +59,7 @@ def assign_numbers(idents: Iterable[str]) -> dict[str, int]:
         digits = re.fullmatch(r"[a-z]+(\d{1,7})", ident, re.ASCII)
         number, again = int(digits[1]) if digits else 0, 0
         while number in taken:
-            number, again = int(derived_id("n", ident, again)[1:]) % MOST, again + 1
+            number, again = int(derive_id("n", ident, again)[1:]) % MOST, again + 1
         taken.add(number)
         out[ident] = number
     return out

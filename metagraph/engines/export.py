@@ -21,10 +21,10 @@ from metagraph.engines.targets.placing import Staging
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
-from metagraph.formats.store import writable
+from metagraph.formats.store import make_writable
 from metagraph.graph.check import check_project
 from metagraph.graph.face.curves import fit_curves_to_face
-from metagraph.graph.face.expression_presets import presets_of
+from metagraph.graph.face.expression_presets import make_presets
 from metagraph.graph.model import (
     Project,
 )
@@ -142,7 +142,7 @@ def write_project_files(
     """Write a project that has clips without checking it for errors. The arguments are those of
     `export_project`. `voices` are copied into `lines/`, if they are given.
     """
-    project = writable(project)
+    project = make_writable(project)
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
     used = list_used_clips(project)
@@ -246,7 +246,7 @@ def _write_glb(
             phrase("Choose a folder that you can write to."),
         ) from None
     shown, notes = place_mesh_on(skeleton, character, project.hidden)
-    presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}
+    presets = make_presets(shown.morphs, project.face.channels) if shown is not None else {}
     write_glb(path, clips, shown, engine=ForEngine(expressions=presets), compress=compress)
     return notes
 

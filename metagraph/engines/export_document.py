@@ -37,7 +37,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
     parts, sides, scales = (
         anatomy.project_parts(project),
         anatomy.project_sides(project),
-        anatomy.scales(project),
+        anatomy.find_joint_scales(project),
     )
     joints = [
         c.Joint(
@@ -51,7 +51,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         )
         for i, name in enumerate(skeleton.names)
     ]
-    pose = anatomy.base_pose(project)
+    pose = anatomy.get_base_pose(project)
     steps = {e.id: _steps(e) for e in list_used_clips(project)}
     frame = project.base.frame * steps.get(project.base.clip or "", 1)
     base = c.Base(project.base.clip, frame, pose.rotations.tolist(), pose.translations.tolist())

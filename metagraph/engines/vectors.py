@@ -27,8 +27,8 @@ from metagraph.engines.script_talk import analyse_talk, list_talks
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.offered import offered_requests
-from metagraph.graph.requests import AnyRequest, RequestError, request_from
+from metagraph.graph.offered import list_offered_requests
+from metagraph.graph.requests import AnyRequest, RequestError, make_request
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
@@ -63,7 +63,7 @@ def play_case(project: Project, case: ScriptCase) -> Plan:
         refused: list[Report] = []
         for ask in step.asks:
             try:
-                asks.append(request_from(dict(ask)))
+                asks.append(make_request(dict(ask)))
             except RequestError as error:
                 at = step.now + project.settings.lookahead if step.now > 0 else 0.0
                 refused.append(Report(ask.get("id", ""), "not-understood", str(error), "arms", at))
@@ -93,7 +93,7 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> P
         "export": export.name,
         "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
-        "described": offered_requests(project),
+        "described": list_offered_requests(project),
         "heard": [
             {"rate": rate, "pieces": pieces, "marks": list_heard_marks(rate, pieces)}
             for rate, pieces in list_streams()
@@ -319,7 +319,9 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
     for seed, words, expected in data["hashes"]:
         if key32(seed, *words) != expected:
             out.failures.append(("hashes", f"{seed} {words}"))
-    wrong = _unlike(offered_requests(project), data["described"], "described") if "described" in data else []
+    wrong = (
+        _unlike(list_offered_requests(project), data["described"], "described") if "described" in data else []
+    )
     out.failures += [("described", what) for what in wrong]
     for n, sound in enumerate(data.get("heard", ())):
         wrong = _unlike(list_heard_marks(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")

@@ -52,7 +52,7 @@ def _place(field: str, lines: Mapping[str, int]) -> str:
     return f"line {lines[field]}, '{field}'" if field in lines else f"'{field}'"
 
 
-def packs_with(paths: Iterable[str | Path]) -> dict[str, LanguagePack]:
+def gather_packs(paths: Iterable[str | Path]) -> dict[str, LanguagePack]:
     """Return the packs that come with the program and those of files, which take the place of one of the same
     code. Raises FileError.
     """

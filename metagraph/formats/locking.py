@@ -47,7 +47,7 @@ class Owner(msgspec.Struct, frozen=True):
     since: float
 
 
-def new_owner() -> Owner:
+def make_owner() -> Owner:
     """Return a new sitting of this process."""
     pid = os.getpid()
     return Owner(platform.node(), _machine(), _user(), pid, _started(pid), uuid.uuid4().hex[:12], time.time())
@@ -217,7 +217,7 @@ def lock_path(saved: Path) -> Path:
     return saved.with_name(f".{saved.name}.lock")
 
 
-def holder(path: Path, look_only: bool = False) -> Holder | None:
+def find_holder(path: Path, look_only: bool = False) -> Holder | None:
     """Return who has the lock file at `path`, None if nobody. `look_only` is as in `is_gone`."""
     try:
         content = path.read_bytes()
@@ -258,7 +258,7 @@ class Lock:
             try:
                 handle = open_new(self.path, access_of(self.saved) or self.like)
             except FileExistsError:
-                found = holder(self.path)
+                found = find_holder(self.path)
                 if found is None:
                     continue  # released just now
                 if found.content == self._content:

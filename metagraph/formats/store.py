@@ -40,7 +40,7 @@ from metagraph.formats.new_file import Access
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.formats.project.text import TextError, as_text, read_text_data, to_text
-from metagraph.graph.clip_source import source_of, with_changed_file, with_source
+from metagraph.graph.clip_source import get_source_clip, with_changed_file, with_source
 from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.face.takes import FACE_TAKE, is_face_take, put_on_body
@@ -197,7 +197,7 @@ def _parsed(text: str, path: Path) -> Data:
     return data
 
 
-def writable(project: Project) -> Project:
+def make_writable(project: Project) -> Project:
     """Return the project with only texts that can be written to any file; usually the project itself."""
     try:
         data = to_data(project)
@@ -213,16 +213,16 @@ def writable(project: Project) -> Project:
     return replace(clean, clips=clips, skeleton=project.skeleton, voices=project.voices)
 
 
-def file_digest(path: Path | None) -> str | None:
+def compute_file_digest(path: Path | None) -> str | None:
     """Return the SHA-256 of a project file in hex, to detect changes; None if there is no file. Raises
     FileError.
     """
     if path is None or not is_file(path):
         return None
-    return content_digest(read_file(path, TEXT_FILE))
+    return compute_content_digest(read_file(path, TEXT_FILE))
 
 
-def content_digest(content: bytes) -> str:
+def compute_content_digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
@@ -241,7 +241,7 @@ def move_projects(projects: Sequence[Project], old: Path | None, new: Path) -> l
     @cache
     def renew(text: str) -> str:
         whole = Path(text) if source is None else source / text
-        return text if is_closed(text) else relative(whole, new.parent)
+        return text if is_closed(text) else make_path_relative(whole, new.parent)
 
     def once(part: Any, move: Callable[[Any], Any]) -> Any:
         if id(part) not in moved:
@@ -333,7 +333,7 @@ def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
     }
 
 
-def absolute(project: Project, folder: Path) -> Project:
+def make_paths_absolute(project: Project, folder: Path) -> Project:
     """Return the project with its paths, relative to `folder`, made absolute, for a project without
     a file.
     """
@@ -356,13 +356,13 @@ def make_path_for_project(path: Path, folder: Path | None) -> str:
     for a name that is not text, because it could not be written.
     """
     whole = path.parent.resolve() / path.name  # a linked file keeps its name
-    name = relative(path, folder) if folder is not None else whole.as_posix()
+    name = make_path_relative(path, folder) if folder is not None else whole.as_posix()
     if not is_text(name):
         raise FileError(path, phrase("has a name that is not text"), phrase("its name"), phrase("Rename it."))
     return name
 
 
-def relative(path: Path, folder: Path) -> str:
+def make_path_relative(path: Path, folder: Path) -> str:
     """Return `path` relative to `folder` with `/` between parts; absolute if that is impossible (another
     drive).
 
@@ -403,7 +403,7 @@ def read_with_digest(path: Path, notes: list[str] | None = None) -> tuple[Projec
     read. Raises FileError.
     """
     content = _content(path)
-    return _decoded(content, path, notes), content_digest(content)
+    return _decoded(content, path, notes), compute_content_digest(content)
 
 
 def open_project(path: str | Path, progress: Callable[[int, int], None] | None = None) -> Opened:
@@ -582,7 +582,7 @@ class _Loading:
             return name
         if self.folder is None or Path(name).is_absolute():
             return place.resolve().as_posix()
-        return relative(place, self.folder)
+        return make_path_relative(place, self.folder)
 
     def _fitted(self, entry: ClipEntry, motion: Clip) -> Clip:
         """Return motion on the project's skeleton. If the project has none, it takes that of the first clip
@@ -608,7 +608,7 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
     clips = dict(project.clips)
     for ident in strangers:
         entry = clips[ident]
-        motion: Clip = source_of(entry)  # type: ignore[assignment]
+        motion: Clip = get_source_clip(entry)  # type: ignore[assignment]
         joint_map = bringing.known(motion)
         if is_face_take(motion):
             try:

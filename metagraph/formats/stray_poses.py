@@ -231,7 +231,7 @@ def _bones(skeleton: Skeleton) -> tuple[Array, Array, Array]:
     return lengths, inner, skeleton.parents[inner]
 
 
-def stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[StrayPoses]:
+def find_stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[StrayPoses]:
     """Return the frames of each clip that do not belong to it. `bound` are other poses besides the rest pose
     that a tool may have left there.
     """

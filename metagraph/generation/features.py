@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import Standardisation
-from metagraph.graph.conversation.model import Conversation, others_of
+from metagraph.graph.conversation.model import Conversation, list_other_sides
 from metagraph.speech.activity import activity as spoken
 from metagraph.speech.pitch import pitch
 from metagraph.speech.sound import analyse_sound
@@ -229,7 +229,7 @@ def conversation_activity(conversation: Conversation, side: int, frames: int) ->
     """Return activity `[T, 4]` of a conversation as one side lives it: all of its segments are own speech."""
     found = [
         speaking([(s.start, s.end) for s in conversation.sides[n].segments], frames)
-        for n in (side, *others_of(conversation, side))
+        for n in (side, *list_other_sides(conversation, side))
     ]
     return one_hot(found[0], np.any(found[1:], axis=0))  # of several, whoever answers is the partner
 

@@ -72,7 +72,7 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
             skeleton = clip.skeleton
         there = known.get((path, take), [])
         if not there:
-            there = [ids.new_id(project, "c", path, take, more=clips)]
+            there = [ids.make_id(project, "c", path, take, more=clips)]
             clips[there[0]] = ClipEntry(there[0], clip.name, path, take)
         for entry in [clips[i] for i in there]:
             entry = replace(entry, brought_from=clip.brought_from)
@@ -116,7 +116,7 @@ def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] =
     """Make a stance with `clips` as its loops. Performances start in the first stance of a layer."""
     graph = project.graphs[layer]
     name = find_free_name(_clean(name), {s.name for s in graph.stances.values()})
-    stance = Stance(ids.new_id(project, "s", layer, name), layer, name)
+    stance = Stance(ids.make_id(project, "s", layer, name), layer, name)
     graph = graph.but(stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
     project = project.with_graph(graph)
     return place_clips(project, clips, layer, "stance", stance.id) if clips else project
@@ -211,7 +211,7 @@ def place_clips(
     changes: dict[str, Action | None] = {}
     for clip in clips:
         entry = project.clips[clip]
-        ident = ids.new_id(project, "a", layer, kind, stance, end_stance or "", clip, more=changes)
+        ident = ids.make_id(project, "a", layer, kind, stance, end_stance or "", clip, more=changes)
         changes[ident] = Action(
             id=ident,
             clip=clip,

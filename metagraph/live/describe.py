@@ -9,7 +9,7 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.offered import offered_requests
+from metagraph.graph.offered import list_offered_requests
 from metagraph.live import limits, messages
 from metagraph.live.generating import Generating
 from metagraph.live.ledger import Ledger
@@ -100,7 +100,7 @@ def describe(project: Project, models: Sequence[str] = (), graphs: Sequence[str]
     """
     out = {
         "state": "done",
-        **offered_requests(project, messages.WORDS),
+        **list_offered_requests(project, messages.WORDS),
         "models": list(models),
         "graphs": list(graphs),
     }

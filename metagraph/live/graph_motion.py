@@ -17,7 +17,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation.model import Segment, segments_heard_by
+from metagraph.graph.conversation.model import Segment, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.live.heard_voice import RATE as SAMPLES
 from metagraph.live.heard_voice import SIZE, HeardVoice
@@ -139,7 +139,7 @@ def list_recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segmen
             clip = None if entry is None else entry.motion
             if clip is None or clip.skeleton != project.skeleton or clip.frames < 2:
                 continue
-            said = [s for s in segments_heard_by(conversation, number) if s.start < clip.duration]
+            said = [s for s in list_segments_heard_by(conversation, number) if s.start < clip.duration]
             if said:
                 clips.append(clip)
                 speech.append(tuple(said))

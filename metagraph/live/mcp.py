@@ -16,7 +16,7 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.graph.model import Project
-from metagraph.graph.offered import ENGINES, tools
+from metagraph.graph.offered import ENGINES, list_tools
 from metagraph.live.stdio import StdioLine
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.text_gestures import (
@@ -39,7 +39,7 @@ def mcp_tools(project: Project) -> list[dict[str, Any]]:
     """Return the tools as `tools/list` tells them."""
     made = [
         {"name": tool["name"], "description": tool["description"], "inputSchema": tool["input_schema"]}
-        for tool in tools(project, ENGINES)
+        for tool in list_tools(project, ENGINES)
     ]
     for name, words in _LOOKS.items():
         schema = {"type": "object", "properties": {}, "additionalProperties": False}

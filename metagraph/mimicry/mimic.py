@@ -73,7 +73,7 @@ class Mimic:
         }
         self.sightings: list[Sighting] = []
         self.heading = 0.0  # how far the person is turned to the picture's right, radians
-        self._gaze = HeadFollower(body.points(anatomy.base_pose(project))) if gaze else None
+        self._gaze = HeadFollower(body.points(anatomy.get_base_pose(project))) if gaze else None
         self._asked: dict[
             Layer, tuple[float, float]
         ] = {}  # when each layer's stance was asked for, and how long until it may be again

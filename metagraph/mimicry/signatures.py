@@ -86,7 +86,7 @@ class BodySignature:
                 *(n for n, name in enumerate(POINTS) if name == "nose" or name.endswith(("_eye", "_ear"))),
             ]
         ] = 1.0
-        self._face = self._in_the_head(anatomy.base_pose(project), roles)
+        self._face = self._in_the_head(anatomy.get_base_pose(project), roles)
 
     def _in_the_head(self, base: Pose, roles: Mapping[str, int]) -> dict[int, Array]:
         """Return where the points of the face are in the space of the head's joint, from a pose that looks
@@ -140,7 +140,7 @@ def signatures(
     """Return what the stances of each layer look like, and the shoulders' width in torso lengths. Stances
     whose clips are missing are not among them, nor layers without any.
     """
-    width = _width(body, anatomy.base_pose(project))
+    width = _width(body, anatomy.get_base_pose(project))
     out = {}
     for layer in LAYERS:
         if layer not in layers:

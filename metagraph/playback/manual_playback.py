@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.manual.machine import Link, Manual, State
-from metagraph.graph.manual.timing import exit_moment
+from metagraph.graph.manual.timing import find_exit_moment
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -219,7 +219,7 @@ def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
     """Return when a link is taken, `ready` at the earliest; in a loop the next time round."""
     start, end = project.span(here.action)
     state = project.manual[here.action.layer].states[here.action.id]
-    leave = exit_moment(project, state, link)
+    leave = find_exit_moment(project, state, link)
     if leave is None:
         return ready
     moment = here.start + leave - here.entry
@@ -284,7 +284,7 @@ def link_alone(project: Project, ident: str) -> ManualPlan:
     )
     first = _turn(project, source, 0.0, None)
     start, end = project.span(first.action)
-    leave = exit_moment(project, source, link)
+    leave = find_exit_moment(project, source, link)
     leave = min(start + AROUND, end) if leave is None else leave
     lead = min(AROUND, leave - start)
     first = replace(first, entry=leave - lead)
@@ -386,7 +386,7 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     if motion is None:
         return make_zero_offsets(len(times), len(reach.joints))
     shown = sample_offsets(ground, reach, motion, clip_seconds(project, turn, times))
-    mask = anatomy.action_mask(project, turn.action)
+    mask = anatomy.make_action_mask(project, turn.action)
     if mask is not None:
         none = rotation.identity_rotations(shown[0].shape[:-1], np.float32), np.zeros_like(shown[1])
         keep_to(shown, none, mask[reach.joints])

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Literal
 
-from metagraph.graph.conversation.model import EVERYBODY, Conversation, Segment, others_of
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, Segment, list_other_sides
 from metagraph.graph.vocabulary import split_tokens
 
 TURN = 0.6  # seconds of silence that part two turns of one speaker
@@ -105,7 +105,7 @@ def _inferred(
 def _turns(conversation: Conversation, side: int) -> Iterable[AddressedTurn]:
     """Yield a side's turns: parted where it says that it speaks to somebody else."""
     segments = conversation.sides[side].segments
-    names = {n: split_tokens(conversation.sides[n].name) for n in others_of(conversation, side)}
+    names = {n: split_tokens(conversation.sides[n].name) for n in list_other_sides(conversation, side)}
     ends = iter([end for _, end in find_speaking_spans(segments)])
     end = next(ends, 0.0)
     some: list[Segment] = []

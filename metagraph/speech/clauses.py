@@ -26,7 +26,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import SHORTEST, Segment, Spoken, Word
-from metagraph.graph.vocabulary import Vocabulary, join_tokens, kinds_of_words, split_tokens
+from metagraph.graph.vocabulary import Vocabulary, join_tokens, make_word_vocabularies, split_tokens
 from metagraph.speech.activity import PAUSE, SpokenStretch, activity
 from metagraph.speech.language_packs import LanguagePack, read_english_pack
 from metagraph.speech.pitch import Pitch, peaks, smooth
@@ -76,7 +76,7 @@ def segments(
         tuple(own if some is None else some)
         for own, some in ((spoken.responses, responses), (spoken.hesitations, hesitations))
     ]
-    answers, pauses, _, both = kinds_of_words(lists[0], lists[1])
+    answers, pauses, _, both = make_word_vocabularies(lists[0], lists[1])
     tones = smooth(pitch)
     said = [split_tokens(w.text) for w in words]
     found = _parts(words, said, answers, pauses, both, spoken.lexical)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from metagraph.common.wording import phrase
-from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, segments_heard_by
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.timing.phases import phases
@@ -76,7 +76,7 @@ def count_delivered(
     """Return what a side's plan does with each kind of segments, of those its rates are about. project: whose
     graph moves it.
     """
-    every = key_segments(segments_heard_by(conversation, side))
+    every = key_segments(list_segments_heard_by(conversation, side))
     drawn = draw_segments(conversation, side)
     told = [_told(cue, project) for cue in plan.layers["arms"].cues if cue.action.kind == "gesture"]
     nods = [cue for cue in plan.layers["head"].cues if cue.action.kind == "gesture"]

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from metagraph.graph.conversation.model import Conversation, Segment, others_of, segments_heard_by
+from metagraph.graph.conversation.model import Conversation, Segment, list_other_sides, list_segments_heard_by
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import (
     AnyRequest,
@@ -78,7 +78,7 @@ def drive_side(
         out += [Blink(id=f"blink {n}", at=at) for n, at in enumerate(found)]
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
-    heard, said = segments_heard_by(conversation, side), _meanings(project)
+    heard, said = list_segments_heard_by(conversation, side), _meanings(project)
     busy = [(s.start, s.end) for s in conversation.sides[side].segments]
     drawn = draw_segments(conversation, side)
     tags = {
@@ -123,7 +123,7 @@ def drive_side(
 
 def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Iterator[AnyRequest]:
     """Yield where the others' heads are, and who is looked at when."""
-    others = others_of(conversation, side)
+    others = list_other_sides(conversation, side)
     if len(others) == 1:
         yield Place(id=PARTNER, at=0.0, name=PARTNER, point=heads[0])
         yield Look(id="look", at=0.0, to=PARTNER)
@@ -147,7 +147,7 @@ def draw_segments(conversation: Conversation, side: int) -> frozenset[str]:
     rates = conversation.sides[side].rates
     return frozenset(
         key
-        for key, s in key_segments(segments_heard_by(conversation, side))
+        for key, s in key_segments(list_segments_heard_by(conversation, side))
         if s.kind != "idle" and uniform(conversation.seed, str(side), key) < getattr(rates, s.kind)
     )
 
@@ -171,7 +171,9 @@ def _chosen(
     stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
     every = [a for a in graph.of(stance, "gesture") if a.likelihood > 0]
     every = [a for a in every if a.cooldown <= 0] or every
-    said = [(key, s) for key, s in key_segments(segments_heard_by(conversation, side)) if s.kind == "clause"]
+    said = [
+        (key, s) for key, s in key_segments(list_segments_heard_by(conversation, side)) if s.kind == "clause"
+    ]
     clauses = [
         GestureClause(key, find_clause_peak(s), key in drawn, _fitting(every, tags[key])) for key, s in said
     ]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.graph import anatomy
-from metagraph.graph.conversation.model import Conversation, Side, others_of
+from metagraph.graph.conversation.model import Conversation, Side, list_other_sides
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Line, Performance, Point
 from metagraph.motion import rotation
@@ -155,7 +155,7 @@ def duet(
             (0.0, round(_head(projects[m]), 3), conversation.distance)
             if ahead
             else places[n].own(places[m].world(_eyes(projects[m])))
-            for m in others_of(conversation, n)
+            for m in list_other_sides(conversation, n)
         )
         performance, plan = drive(conversation, n, *known, heads)
         driven.append((known, heads, performance))

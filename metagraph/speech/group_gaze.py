@@ -18,7 +18,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from metagraph.graph.conversation.model import EVERYBODY, Conversation, others_of
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, list_other_sides
 from metagraph.playback.planning.choice import uniform
 from metagraph.speech.addressing import ANSWER, OVERLAP, AddressedTurn, Role, roles_of, turns_of
 
@@ -44,7 +44,7 @@ class LookAtFace:
 
 def looks_of(conversation: Conversation, side: int) -> tuple[LookAtFace, ...]:
     """Return whose face a side looks at from when on, by time; the first at 0."""
-    others = others_of(conversation, side)
+    others = list_other_sides(conversation, side)
     if len(others) == 1:
         return (LookAtFace(0.0, others[0]),)
     roles, turns = roles_of(conversation, side), turns_of(conversation)

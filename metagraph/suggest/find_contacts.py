@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy, edits
-from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.checks.end_gaps import get_action_motion
 from metagraph.graph.model import Action, Project
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh
@@ -57,7 +57,7 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
     """Return the contacts of the hands that an action moves, in order; none if its clip is missing or the
     character has no arms.
     """
-    motion = motion_of(project, action)
+    motion = get_action_motion(project, action)
     rig = rigs_of(project).contacts if motion is not None else None
     if motion is None or rig is None:
         return ()
@@ -76,7 +76,7 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
         + np.linalg.norm(at[0, joints[one.hand]] - at[0, joints[one.lower]])
     )
     seen = _Seen(rig, times, turned[:, joints], at[:, joints], a, b, arm)
-    mask = anatomy.action_mask(project, action)
+    mask = anatomy.make_action_mask(project, action)
     found: list[ContactSpan] = []
     for side in (1, 0):
         if mask is None or mask[joints[rig.arms[side].hand]] > 0:

@@ -34,8 +34,8 @@ UNKNOWN = 1.0  # spreads that what nobody knows is held to be off; two of one sp
 @dataclass(frozen=True, eq=False)
 class SpokenTake:
     """What is known of the speech a take was recorded with, or new motion is for. segments: as
-    `segments_heard_by` has them. words: its own, with times. prosody: of the segments, None if it was not
-    looked for.
+    `list_segments_heard_by` has them. words: its own, with times. prosody: of the segments, None if it was
+    not looked for.
     """
 
     segments: tuple[Segment, ...]

@@ -20,7 +20,7 @@ import numpy as np
 
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph.model import Project
-from metagraph.graph.requests import request_from
+from metagraph.graph.requests import make_request
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.planning.mood import MOODS
 from metagraph.playback.planning.running_plan import plan_performance
@@ -44,7 +44,7 @@ def feeling_rows(offscreen: Offscreen, figure: MeshFigure, project: Project, moo
     face = msgspec.structs.replace(project.face, morphs=tuple(figure.morphs))
     project = replace(project, life=life, face=face)
     times = FROM + EACH * np.arange(COLUMNS)
-    talking = request_from({"do": "mode", "mode": "talking", "id": "m", "at": 0.0})
+    talking = make_request({"do": "mode", "mode": "talking", "id": "m", "at": 0.0})
     plan = plan_performance(project, [talking], float(times[-1]) + 1.0, PLAN_SEED, idle=True)
     evaluator = Evaluator(plan, project)
     pose = evaluator.at(times)

@@ -27,7 +27,7 @@ from metagraph.common.wording import Phrase, phrase, plural_phrase
 from metagraph.engines.targets import registry
 from metagraph.errors import FileError
 from metagraph.formats import import_words
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.conversations.files import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
@@ -151,7 +151,7 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
     lines = [tr_phrase(line) for line in import_words.count_alike(result.failures)]
     assert lines[0] == (
         "bad.bvh, ihre ersten Bytes: sie ist eine Datei anderer Art, nicht eine BVH-Datei. "
-        f"Clips werden aus {', '.join(clip_suffixes())} gelesen."
+        f"Clips werden aus {', '.join(list_clip_suffixes())} gelesen."
     )
     assert lines[1].startswith("worse.glb, ihre ersten Bytes: sie ist ")
     assert import_words.describe_import(result) == "Imported 0 clips. Skipped: 2 unusable files"

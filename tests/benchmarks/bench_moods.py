@@ -74,7 +74,7 @@ def measured(project: Project, seed: int) -> list[float]:
     )
     away = np.linalg.norm(at[:, hands] - under[:, hands], axis=-1).max(-1)
     head = roles["head"]
-    rest = skeleton.globals(anatomy.base_pose(project))[0][head]
+    rest = skeleton.globals(anatomy.get_base_pose(project))[0][head]
     up = _rotated(turned[:, head], _rotated(_back(rest), np.array([0.0, 1.0, 0.0])))
     return [
         *steps,

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
-from metagraph.formats.stray_poses import stray_poses
+from metagraph.formats.stray_poses import find_stray_poses
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -277,7 +277,7 @@ def seen(case: Case) -> bool:
 
 
 def found(clip: Clip) -> tuple[int, int, tuple[int, ...]]:
-    [poses] = stray_poses([clip])
+    [poses] = find_stray_poses([clip])
     return poses.first, poses.last, poses.lone
 
 

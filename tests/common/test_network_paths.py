@@ -21,8 +21,8 @@ from metagraph.common.network_paths import (
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import (
-    absolute,
     list_closed_paths,
+    make_paths_absolute,
     move_project,
     open_project,
     read_project,
@@ -105,7 +105,7 @@ def test_a_project_touches_none_of_them_and_saves_them_as_they_were(
     assert reopen_paths(read_project(path)).clips["c1"].path == name
     for project in (
         move_project(found.project, path, tmp_path / "b" / "q.metagraph.yaml"),
-        absolute(found.project, tmp_path),
+        make_paths_absolute(found.project, tmp_path),
     ):
         save_project(project, tmp_path / "q.metagraph.yaml")
         assert list_closed_paths(read_project(tmp_path / "q.metagraph.yaml")) == (name,)

@@ -17,7 +17,7 @@ import pytest
 
 from metagraph.engines.reading import read_export
 from metagraph.graph.model import LAYERS
-from metagraph.graph.requests import request_from
+from metagraph.graph.requests import make_request
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import hear_asks, since
@@ -262,7 +262,7 @@ def test_a_character_plans_what_the_library_hears(probe: Path, tmp_path: Path) -
         far = plan.end >= now + 18
         if asks or not far:
             plan = hear_asks(
-                project, plan, now, [request_from(ask) for ask in asks], plan.end if far else now + 20
+                project, plan, now, [make_request(ask) for ask in asks], plan.end if far else now + 20
             )
         if now - cut >= 15:
             cut, plan = now, since(plan, now - 30)

@@ -29,8 +29,8 @@ from metagraph.engines.targets.godot_tree import (
 from metagraph.engines.targets.target import Contents, ExportOrder
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
-from metagraph.graph.anatomy import base_pose
-from metagraph.graph.expand import chain, find_end_stance
+from metagraph.graph.anatomy import get_base_pose
+from metagraph.graph.expand import find_chain, find_end_stance
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -91,7 +91,7 @@ def layer_of(sample: Project, name: str) -> Machine:
 def resting(sample: Project, seconds: float) -> Pose:
     """Return the pose of the start loops where each joint has one layer's alone."""
     assert sample.skeleton is not None
-    base = base_pose(sample)
+    base = get_base_pose(sample)
     turns, shifts = np.array(base.rotations, float), np.array(base.translations, float)
     built = list_machines(sample)
     for machine in built:
@@ -160,7 +160,7 @@ def test_travel_goes_from_every_state_to_every_stance_by_as_few_transitions_as_t
         for machine in list_machines(sample)
         for state in machine.states
         for goal in machine.stances
-        if (stances := chain(machine.graph, str(find_end_stance(state.action)), goal)) is not None
+        if (stances := find_chain(machine.graph, str(find_end_stance(state.action)), goal)) is not None
         and state is not machine.rest(goal)
     ]
     rows = [[machine.layer, state.name, goal.name] for machine, state, goal, _ in asked]
@@ -306,7 +306,7 @@ def test_godot_4_composes_as_the_contract_does(sample: Project) -> None:
     lets pass.
     """
     assert sample.skeleton is not None
-    base = base_pose(sample)
+    base = get_base_pose(sample)
     turns, shifts = np.array(base.rotations, float), np.array(base.translations, float)
     for machine in list_machines(sample):
         clip = sample.clips[machine.start.action.clip].motion

@@ -25,8 +25,8 @@ from metagraph.engines.targets.target import Contents, TargetReport
 from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
-from metagraph.graph.anatomy import base_pose, project_roles
-from metagraph.graph.expand import chain, find_end_stance, list_connections
+from metagraph.graph.anatomy import get_base_pose, project_roles
+from metagraph.graph.expand import find_chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Nod, Performance, Say
 from metagraph.motion import rotation
@@ -216,7 +216,7 @@ def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose
         assert clip.duration == pytest.approx(state.seconds, abs=1e-6) or state.seconds == 0
     path = named(written("playcanvas"), ".glb")
     nodes = {n["name"]: n for n in gltf(path)["nodes"]}
-    base = base_pose(sample)
+    base = get_base_pose(sample)
     assert sample.skeleton is not None
     for place, joint in enumerate(sample.skeleton.names):
         assert np.allclose(nodes[joint]["rotation"], base.rotations[place], atol=1e-6)
@@ -356,8 +356,8 @@ def test_babylon_goes_to_a_stance_by_as_many_transitions_as_it_takes(
     events = json.loads(named(report, "events.json").read_bytes())
     (machine,) = (m for m in list_machines(sample) if m.layer == "arms")
     pairs = [(a, b) for a in machine.stances for b in machine.stances if a != b]
-    here, goal = max(pairs, key=lambda pair: len(chain(machine.graph, *pair) or ()))
-    assert len(chain(machine.graph, here, goal) or ()) == 2
+    here, goal = max(pairs, key=lambda pair: len(find_chain(machine.graph, *pair) or ()))
+    assert len(find_chain(machine.graph, here, goal) or ()) == 2
     wave = next(e for e in events if "wave_hello" in e)
     to_here, to_goal = (f"arms.stance.{machine.stance_words[x]}" for x in (here, goal))
     assert {to_here, to_goal} <= set(events)

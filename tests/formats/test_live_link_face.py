@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
-from metagraph.formats.gltf.reader import morph_targets
+from metagraph.formats.gltf.reader import read_morph_targets
 from metagraph.formats.imports import import_files
 from metagraph.formats.live_link_face import TURNS, read_live_link
 from metagraph.formats.store import open_project, save_project
@@ -140,7 +140,7 @@ def test_other_tables_are_no_clips(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def sample() -> Project:
     project = open_project(SAMPLES / "sample.metagraph.yaml").project
-    return with_morphs(project, morph_targets(SAMPLES / "ada.glb"))
+    return with_morphs(project, read_morph_targets(SAMPLES / "ada.glb"))
 
 
 def test_on_a_character_the_face_moves_and_nothing_else(sample: Project, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from metagraph.formats.stray_poses import stray_poses
+from metagraph.formats.stray_poses import find_stray_poses
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME, drop_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -136,8 +136,8 @@ def test_a_pose_that_the_nodes_hold_counts_as_a_bind_pose_where_the_reader_knows
     clip = quick(takes)
     odd = odd_pose(clip)
     take = made.joined(clip, [made.row(clip, odd, False, 0), made.whole(clip)])
-    assert stray_poses([take])[0].first == 0
-    assert stray_poses([take], [odd])[0].first == 1
+    assert find_stray_poses([take])[0].first == 0
+    assert find_stray_poses([take], [odd])[0].first == 1
 
 
 def odd_pose(clip: Clip) -> Pose:
@@ -168,5 +168,5 @@ def test_any_pose_that_a_step_far_above_all_others_leaves_is_stray(
     clip = next(c for c in takes if c.frames > 60)
     rows = [made.row(clip, odd_pose(clip), False, 0), made.whole(clip)]
     take = made.joined(clip, rows[::-1] if backwards else rows)
-    found = stray_poses([take])[0]
+    found = find_stray_poses([take])[0]
     assert (found.first, found.last) == ((0, 1) if backwards else (1, 0))

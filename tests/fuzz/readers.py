@@ -262,7 +262,12 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.formats.clips import read_clips
     from metagraph.formats.elan import read_elan
     from metagraph.formats.fbx.reader import read_fbx_clips
-    from metagraph.formats.gltf.reader import has_skinned_mesh, morph_targets, read_character, read_vrm_roles
+    from metagraph.formats.gltf.reader import (
+        has_skinned_mesh,
+        read_character,
+        read_morph_targets,
+        read_vrm_roles,
+    )
     from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.formats.language_files import read_pack
     from metagraph.formats.live_link_face import read_live_link
@@ -281,7 +286,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.speech.mouth_files.registry import read_mouth_file
 
     def drawn(path: Path) -> None:
-        for read in (read_character, read_vrm_roles, morph_targets, has_skinned_mesh):
+        for read in (read_character, read_vrm_roles, read_morph_targets, has_skinned_mesh):
             survives(read, path)
 
     def acclaim(path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from pythonosc.osc_bundle import OscBundle
 
 from metagraph.graph import anatomy
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.live_session import LiveSession
@@ -70,7 +70,7 @@ def heard(body: VmcBody, pose: Pose, weights=None) -> Receiver:
 def t_pose_of(project: Project) -> Pose:
     roles = anatomy.project_roles(project)
     _, at = project.skeleton.globals(project.skeleton.rest)
-    return t_pose(project.skeleton, roles, axes_of(project.skeleton, roles, at)[0])
+    return t_pose(project.skeleton, roles, find_body_axes(project.skeleton, roles, at)[0])
 
 
 def test_in_a_t_pose_no_bone_is_turned_and_the_left_hand_is_at_unitys_left(sample):

@@ -35,7 +35,7 @@ def test_what_is_no_human_is_told_what_it_lacks(somebody: Project) -> None:
 
 def test_points_are_where_the_joints_are(somebody: Project) -> None:
     body = BodySignature(somebody)
-    base = anatomy.base_pose(somebody)
+    base = anatomy.get_base_pose(somebody)
     _, at = somebody.skeleton.globals(base)  # type: ignore[union-attr]
     points = body.points(base)
     assert (points[PLACE["left_wrist"]] == at[somebody.skeleton.index("LeftHand")]).all()  # type: ignore[union-attr]

@@ -8,7 +8,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.graph.requests import Gesture, Go, Play, request_from
+from metagraph.graph.requests import Gesture, Go, Play, make_request
 from metagraph.playback.plan import Cue, MetaRequest, Plan, Report
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
@@ -213,7 +213,7 @@ def test_plans_without_the_field_stay_as_they_were(sample: Project) -> None:
 @pytest.mark.parametrize("late", [-1, 601, "soon"])
 def test_a_lateness_that_is_none_is_refused_by_name(late: object) -> None:
     with pytest.raises(ValueError, match="late"):
-        request_from({"do": "gesture", "late": late})
+        make_request({"do": "gesture", "late": late})
 
 
 def test_cooling_down_refuses_what_may_be_late_too(sample: Project) -> None:

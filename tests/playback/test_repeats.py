@@ -20,7 +20,7 @@ from metagraph.engines.reading import read_export
 from metagraph.formats.project.data import decode_action, encode_action
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
-from metagraph.graph.requests import Play, request_from
+from metagraph.graph.requests import Play, make_request
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Cue, MetaRequest, Plan
@@ -85,7 +85,7 @@ def test_a_hold_makes_it_go_on_where_no_duration_is_asked_for(
 
 
 def test_a_request_for_an_action_says_how_long(project: Project, wave: str) -> None:
-    ask = request_from({"do": "action", "action": wave, "at": 1.0, "duration": 4.0})
+    ask = make_request({"do": "action", "action": wave, "at": 1.0, "duration": 4.0})
     cue = played(plan_performance(project, [ask], 9.0, idle=False))
     assert cue.end - cue.start == pytest.approx(10 * CYCLE)
 

@@ -11,7 +11,7 @@ import pytest
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
-from metagraph.graph.seats import seat_of
+from metagraph.graph.seats import find_seat
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.plan import MetaRequest
@@ -136,12 +136,12 @@ def test_one_sits_until_asked_to_stand() -> None:
 
 
 def test_a_seat_is_beneath_who_sits_and_none_where_nobody_does() -> None:
-    seat = seat_of(project())
+    seat = find_seat(project())
     assert seat is not None
     assert seat.at[1] == pytest.approx(0.45, abs=0.01)
     assert seat.at[2] == pytest.approx(SEAT[2], abs=0.06)
-    assert seat_of(open_project(SAMPLES / "sample.metagraph.yaml").project) is None
-    assert seat_of(Project()) is None
+    assert find_seat(open_project(SAMPLES / "sample.metagraph.yaml").project) is None
+    assert find_seat(Project()) is None
 
 
 @pytest.mark.parametrize("name", NAMES[::9])

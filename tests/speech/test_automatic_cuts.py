@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.graph.timeline import Cut, with_cut
-from metagraph.graph.timeline_edits import timeline_of
+from metagraph.graph.timeline_edits import get_timeline
 from metagraph.speech import automatic_cuts as c
 
 
@@ -80,9 +80,9 @@ def test_a_last_answer_is_seen():
 def test_a_new_conversation_is_filmed_and_one_voice_alone_is_not():
     some = talk([("clause", 3.0, 7.0)], [("clause", 8.0, 12.0)], length=13.0)
     project, ident = c.keep_filmed_conversation(Project(name="x"), some)
-    assert timeline_of(project, ident).cuts == c.automatic_cuts(some)
+    assert get_timeline(project, ident).cuts == c.automatic_cuts(some)
     project, alone = c.keep_filmed_conversation(Project(name="x"), talk([("clause", 3.0, 7.0)], length=9.0))
-    assert timeline_of(project, alone).cuts == ()
+    assert get_timeline(project, alone).cuts == ()
 
 
 def test_who_speaks_long_is_seen_closer_and_a_long_silence_shows_all():

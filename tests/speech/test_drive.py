@@ -17,7 +17,7 @@ from metagraph.graph.conversation.model import (
     Segment,
     Side,
     Spoken,
-    segments_heard_by,
+    list_segments_heard_by,
 )
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Behave, Change, Fidget, Gesture, Nod, Play
@@ -92,7 +92,7 @@ def test_responses_of_ones_own_and_hesitations_of_the_partner_ask_for_nods_but_o
 
 def test_the_partner_who_hesitates_while_one_speaks_oneself_is_not_nodded_at(sample: Project) -> None:
     talk = said(clause(4, 7), partner=(Segment("hesitation", 5, 5.4),), hesitation=1.0)
-    assert [s.kind for s in segments_heard_by(talk, 0)] == ["clause"]
+    assert [s.kind for s in list_segments_heard_by(talk, 0)] == ["clause"]
     assert not ids(drive_side(talk, 0, sample), Nod)
 
 

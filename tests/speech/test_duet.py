@@ -8,7 +8,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word, segments_heard_by
+from metagraph.graph.conversation.model import (
+    Conversation,
+    Rates,
+    Segment,
+    Side,
+    Word,
+    list_segments_heard_by,
+)
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.drive import drive, find_partner_points
@@ -209,7 +216,7 @@ def test_each_of_three_answers_the_hesitations_of_all_others_once(sample: Projec
     sides = list(three().sides)
     sides[1] = msgspec.structs.replace(sides[1], segments=(um,))
     sides[2] = msgspec.structs.replace(sides[2], segments=(msgspec.structs.replace(um, start=3.2, end=3.8),))
-    heard = segments_heard_by(three(sides=tuple(sides)), 0)
+    heard = list_segments_heard_by(three(sides=tuple(sides)), 0)
     assert [(s.kind, s.start, s.end) for s in heard] == [
         ("clause", 1, 2),
         ("hesitation", 3.0, 3.4),

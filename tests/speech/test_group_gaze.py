@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.anatomy import base_pose
+from metagraph.graph.anatomy import get_base_pose
 from metagraph.graph.conversation.model import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
@@ -132,7 +132,7 @@ def test_eyes_are_on_the_eyes_of_whom_they_look_at(sample: Project) -> None:
     made = duet(talk, "v1", (sample,) * 3, (None,) * 3)
     assert sample.skeleton is not None
     eye = list(sample.skeleton.names).index("LeftEye")
-    rest = sample.skeleton.globals(base_pose(sample))[0][eye]
+    rest = sample.skeleton.globals(get_base_pose(sample))[0][eye]
     ahead = rotation.rotate_vectors(rotation.conjugate(rest), np.array([0.0, 0.0, 1.0]))
     times = np.arange(1.0, 39.0, 0.2)
     placed = [p.stand.placed(*sample.skeleton.globals(pose_at(p.plan, sample, times))) for p in made.parts]

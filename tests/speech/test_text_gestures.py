@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.requests import Say, request_from
+from metagraph.graph.requests import Say, make_request
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
 from metagraph.speech.text_gestures import (
@@ -111,7 +111,7 @@ def test_whatever_the_text_none_is_in_anothers_way_and_nothing_depends_on_when_i
         times = [one.at for one in made if one.layer == layer]
         assert all(b - a >= APART[layer] for a, b in pairwise(times))
     for request in make_gesture_requests(made, 1.0, "x"):
-        request_from(json.loads(json.dumps(request)))
+        make_request(json.loads(json.dumps(request)))
 
 
 def _letters(text: str) -> str:
@@ -142,7 +142,7 @@ def test_most_of_what_words_propose_is_performed_on_its_word(sample: Project) ->
     wanted = played = 0
     for number, text in enumerate(TEXTS):
         stream = TextStream(tags_of(sample), seed=number)
-        asks = [request_from(x) for x in stream.take(text, 0.0, over=True)]
+        asks = [make_request(x) for x in stream.take(text, 0.0, over=True)]
         plan = hear_asks(sample, Plan(number, 0.0), 0.0, asks, stream.free + 4, idle=False)
         gestures = [ask.id for ask in asks if not isinstance(ask, Say)]
         became = answer_asks(plan, gestures)

@@ -159,7 +159,7 @@ def mask_marks(performance: StagePerformance, session: StageSession) -> dict[int
     actions = session.selection.selected_actions()
     if len(actions) != 1 or project.skeleton is None or not (actions[0].joints or actions[0].joint_weights):
         return {}
-    moved = anatomy.action_mask(project, actions[0])
+    moved = anatomy.make_action_mask(project, actions[0])
     color = get_theme(session.look.name).fill(actions[0].kind)
     rgb = np.array([color.redF(), color.greenF(), color.blueF()])
     if moved is None:

@@ -43,8 +43,8 @@ from metagraph.graph.conversation.model import (
     MOST_SPEAKERS,
     Conversation,
     Side,
-    lists_of,
-    side_name,
+    get_side_name,
+    get_word_lists,
     with_sides,
 )
 from metagraph.graph.model import Project
@@ -306,24 +306,26 @@ class ImportDialog(QDialog):
     def _show_lists(self) -> None:
         """Show whose words are what, as far as they were not typed."""
         read = self.read.conversation if self.read is not None else None
-        apart = read is not None and any(lists_of(read, n) != lists_of(read, 0) for n in self.order)
+        apart = read is not None and any(
+            get_word_lists(read, n) != get_word_lists(read, 0) for n in self.order
+        )
         several = len(self.order) > 2
         for label, lists, side in zip(self.whose, (self.lists, self.others), self.order, strict=False):
             if read is None:
                 lists.show_lists(lists.usual)
             elif not self.typed or self.typed[side] is None:
                 code = read.sides[side].language
-                lists.show_lists(lists_of(read, side), code)
+                lists.show_lists(get_word_lists(read, side), code)
             if apart and read is not None:
                 of = read.sides[side]
-                label.setText(f"{side_name(read, side)}: {name_language(of.language) or tr('no words')}")
+                label.setText(f"{get_side_name(read, side)}: {name_language(of.language) or tr('no words')}")
             label.setVisible(apart and not several)
             lists.set_low(apart or several)
         self.lists.setVisible(not (apart and several))
         self.others.setVisible(apart and not several)
         if apart and several and read is not None:
             each = [
-                f"{side_name(read, n)} {name_language(read.sides[n].language) or tr('without words')}"
+                f"{get_side_name(read, n)} {name_language(read.sides[n].language) or tr('without words')}"
                 for n in self.order
             ]
             self.whose[0].setText(

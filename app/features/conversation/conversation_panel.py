@@ -22,7 +22,7 @@ from app.widgets.mime import read_sound_paths
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
-from metagraph.graph.conversation.model import SPOKEN, side_name
+from metagraph.graph.conversation.model import SPOKEN, get_side_name
 
 NONE = tr_noop("None on stage")
 BELOW_WORDS = 150  # pixels from the top of these words to the button below them
@@ -157,7 +157,8 @@ class ConversationPanel(QWidget):
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
         if len(chosen) == 1 and found is not None and self.editing.last is not None:
             self.title.say(
-                f"{side_name(of, self.editing.last[0])}: {describe_segment(found)}".replace("\n", ", "), True
+                f"{get_side_name(of, self.editing.last[0])}: {describe_segment(found)}".replace("\n", ", "),
+                True,
             )
         elif chosen:
             self.title.say(
@@ -169,7 +170,7 @@ class ConversationPanel(QWidget):
             )
         else:
             minutes, seconds = divmod(round(of.length), 60)
-            who = list_in_words([side_name(of, side) for side in range(len(of.sides))])
+            who = list_in_words([get_side_name(of, side) for side in range(len(of.sides))])
             self.title.say(f"{who}, {minutes}:{seconds:02d}{self._delivered()}")
 
     def _delivered(self) -> str:

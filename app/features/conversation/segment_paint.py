@@ -25,7 +25,7 @@ from app.translation import tr
 from app.widgets.act_strip import STEPS, format_clock
 from app.widgets.lane_geometry import LEFT, RULER, LaneScale, elide_text, measure_text_width
 from app.widgets.waveforms import Envelope, join_columns, paint_columns
-from metagraph.graph.conversation.model import Conversation, Segment, side_name
+from metagraph.graph.conversation.model import Conversation, Segment, get_side_name
 
 INK = "#17181b"  # on the fills
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
@@ -95,7 +95,7 @@ def _titles(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, l
     own, small, bold = painter.font(), QFont(painter.font()), QFont(painter.font())
     small.setPixelSize(SMALL)
     bold.setWeight(QFont.Weight.DemiBold)
-    over, name = scene.over == SegmentHit("title", side), side_name(scene.conversation, side)
+    over, name = scene.over == SegmentHit("title", side), get_side_name(scene.conversation, side)
     if over:
         painter.fillRect(QRectF(0, lane.whole.top(), LEFT - 1, lane.whole.height()), QColor(t.hover))
     if side == scene.side:

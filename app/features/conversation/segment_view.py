@@ -45,7 +45,7 @@ from app.widgets.gesture import PointerHand
 from app.widgets.lane_geometry import LEFT, LaneScale
 from app.widgets.lane_paint import paint_badge, paint_playhead
 from app.widgets.memo import Once
-from metagraph.graph.conversation.model import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, get_side_name
 from metagraph.graph.edit_error import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
@@ -472,5 +472,5 @@ class SegmentView(QWidget):
                 else tr("Click to see this speaker's plan in the Performance panel")
             )
             other = tr("Click the arrow to change the character, body language or voice")
-            return "\n".join((side_name(of, hit.side), *sound, *mover, shown, other))
+            return "\n".join((get_side_name(of, hit.side), *sound, *mover, shown, other))
         return tr("Drag to add a segment") if hit.part == "gap" else ""

@@ -47,7 +47,7 @@ from metagraph.engines.tools_file import write_tools
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check_project
 from metagraph.graph.expand import count_machine_size
-from metagraph.graph.manual.meta import exportable
+from metagraph.graph.manual.meta import make_exportable
 
 NAME = Qt.ItemDataRole.UserRole
 
@@ -90,7 +90,7 @@ class ExportDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
-        self.project, self.differences = exportable(document.project, manual)
+        self.project, self.differences = make_exportable(document.project, manual)
         self.setAttribute(
             Qt.WidgetAttribute.WA_DeleteOnClose
         )  # a running export goes on; the status bar shows it

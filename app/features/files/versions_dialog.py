@@ -30,7 +30,7 @@ from app.project.version_count import count_kept_versions, set_version_count
 from app.translation import tr, tr_phrase, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.errors import FileError, describe_error
-from metagraph.formats.project.versions import MOST, Version, earlier_versions
+from metagraph.formats.project.versions import MOST, Version, list_earlier_versions
 from metagraph.formats.store import read_project
 from metagraph.graph.editing.differences import describe_differences
 from metagraph.graph.model import Project
@@ -57,7 +57,7 @@ def find_versions(path: Path, now: Project) -> tuple[Found, ...]:
     thread.
     """
     out = []
-    for version in earlier_versions(path):
+    for version in list_earlier_versions(path):
         try:
             project = read_project(version.path, [])
         except FileError as error:

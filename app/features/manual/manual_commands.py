@@ -303,8 +303,8 @@ def describe_canvas_hit(canvas: ManualHost, hit: ManualHit) -> str:
         )
     if hit.area == "link" and hit.ident in manual.links:
         link = manual.links[hit.ident]
-        begins = tr("Any state") if link.source == ANY else manual_edits.manual_name(manual, link.source)
-        ends = f"{begins} → {manual_edits.manual_name(manual, link.target)}"
+        begins = tr("Any state") if link.source == ANY else manual_edits.get_manual_name(manual, link.source)
+        ends = f"{begins} → {manual_edits.get_manual_name(manual, link.target)}"
         when = (
             tr("on request: ")
             if link.condition.when == "request"

@@ -16,7 +16,7 @@ import msgspec
 
 from app.features.motion_graph.soft_wishes import read_side_prosody
 from app.translation import tr, tr_phrase, tr_plural
-from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, segments_heard_by
+from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
@@ -103,7 +103,9 @@ def choose_takes(project: Project, ids: Collection[str]) -> ChosenTakes:
     for ident in found:
         recorded = find_recorded_side(project, ident)
         heard = (
-            segments_heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
+            list_segments_heard_by(project.conversations[recorded[0]], recorded[1])
+            if recorded is not None
+            else ()
         )
         speech.append(cut_to_take(heard, project.clips[ident].duration))
         sides.append(project.conversations[recorded[0]].sides[recorded[1]] if recorded is not None else None)

@@ -23,7 +23,7 @@ from app.project.jobs import Jobs, WindowJob
 from app.translation import make_lazy_texts, tr, tr_error, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.tree_items import list_items_below, list_top_items
-from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
+from metagraph.formats.repairs import Repaired, Reread, list_repairs, reread
 from metagraph.formats.takes import BIND_POSE, FRAME_TIME, FROM_OFFSET, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph.edit_error import EditError
 
@@ -92,7 +92,7 @@ class RepairsDialog(QDialog):
 
     def _fill(self, *_: object) -> None:
         project = self.document.project
-        found = repairs_of(project, self.clips)
+        found = list_repairs(project, self.clips)
         if found == self.found and self.tree.topLevelItemCount():
             return
         self.found = found

@@ -34,7 +34,7 @@ from app.widgets.request_menu import MOOD_WORDS, make_request_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_conversation
-from metagraph.graph.conversation.model import side_name
+from metagraph.graph.conversation.model import get_side_name
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
@@ -220,7 +220,7 @@ class TimelinePanel(QWidget):
         wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
         talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
         if talk is not None:  # then it is one of those who talk whose plan is seen
-            wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in range(len(talk.sides))]
+            wanted += [(f"{talk.name}: {get_side_name(talk, side)}", side) for side in range(len(talk.sides))]
         onstage = self.session.onstage
         shown = (onstage.performance or onstage.improvised) if talk is None else onstage.side
         if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:

@@ -16,7 +16,7 @@ from app.features.timing_editor.paint import MIDDLE, TimingLook
 from app.features.timing_editor.rows import TrackRows
 from app.features.timing_editor.track import Facts, KeptHand
 from app.translation import format_number, tr
-from metagraph.graph.clip_source import course_of
+from metagraph.graph.clip_source import get_clip_course
 from metagraph.graph.editing.retiming import set_kept
 
 REACH = 5.0  # pixels from an end at which it is taken
@@ -138,7 +138,7 @@ def describe_kept_hit(facts: Facts, hit: Hit) -> str:
 
 def change(host: Host, facts: Facts, kept: KeptHand) -> None:
     """Keep a hand from and until other seconds of the clip as it plays, in one step. Raises EditError."""
-    course = course_of(facts.entry)
+    course = get_clip_course(facts.entry)
     if course is None:
         return
     first, last = (round(s, 3) for s in course.moments(np.array([kept.first, kept.last])).tolist())

@@ -16,7 +16,7 @@ from app.widgets.memo import Once
 from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
-from metagraph.graph.clip_source import course_of
+from metagraph.graph.clip_source import get_clip_course
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
 from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, find_blocks, list_handles
@@ -140,7 +140,7 @@ class TimingTrack:
         loops = tuple(a for s in (action.stance, action.end_stance) if s for a in graph.of(s, "stance")[:1])
         both = self._far.of(
             (timeless, loops, tuple(graph.weights.items())),
-            (entry.motion, *(end_gaps.motion_of(project, a) for a in loops)),
+            (entry.motion, *(end_gaps.get_action_motion(project, a) for a in loops)),
             lambda: measure_stance_distance(project, action),
         )
         seen = SeenJumps(action, known) if known is not None else None
@@ -167,7 +167,7 @@ class TimingTrack:
 
 def list_kept_hands(project: Project, entry: ClipEntry) -> tuple[KeptHand, ...]:
     """Return where hands are kept on the body."""
-    course = course_of(entry) if entry.retime.contacts else None
+    course = get_clip_course(entry) if entry.retime.contacts else None
     if course is None:
         return ()
     roles, names = (
@@ -184,7 +184,7 @@ def list_kept_hands(project: Project, entry: ClipEntry) -> tuple[KeptHand, ...]:
 
 def list_stays(entry: ClipEntry) -> tuple[Stay, ...]:
     """Return where a clip is held."""
-    course = course_of(entry) if entry.retime.holds else None
+    course = get_clip_course(entry) if entry.retime.holds else None
     if course is None:
         return ()
     return tuple(Stay(hold, *ends) for hold, ends in zip(entry.retime.holds, course.stays, strict=True))

@@ -238,7 +238,7 @@ def write(order: ExportOrder) -> ExportedFiles:
         glb,
         clips,
         body,
-        engine=ForEngine(anatomy.base_pose(project), moved, {"KHR_interactivity": chart}),
+        engine=ForEngine(anatomy.get_base_pose(project), moved, {"KHR_interactivity": chart}),
     )
     events = order.folder / f"{order.stem}.events.json"
     names = {f"{m.layer}.action.{s.name}": s.action.name for m in built for s in m.states if not s.loop}

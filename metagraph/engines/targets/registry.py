@@ -25,7 +25,7 @@ from metagraph.engines.targets.target import (
     Tell,
 )
 from metagraph.formats.atomic import sync_together, write_atomically
-from metagraph.formats.store import writable
+from metagraph.formats.store import make_writable
 from metagraph.graph.model import Project
 
 # Modules of this package that have TARGETS, in the order of the lists shown to the user.
@@ -99,7 +99,7 @@ def write_for_target(
                 able=able,
             )
         )
-    project = writable(project)
+    project = make_writable(project)
     warnings = require_exportable(project)
     place = Path(folder)
     with Staging(place) as staged:

@@ -303,7 +303,7 @@ def write(order: ExportOrder) -> ExportedFiles:
     clips = {clip.name: clip for clip in make_animations(project, built)}
     # Not all file systems tell "Wave" from "wave".
     names = {name: file.lower() for name, file in name_files({s.name: s.action.id for s in states}).items()}
-    base = anatomy.base_pose(project)
+    base = anatomy.get_base_pose(project)
     off = np.abs(base.translations - skeleton.rest_translations).max(1) > 1e-6
     shifted = {*np.flatnonzero(off).tolist()}.union(*(clip.translated for clip in clips.values()))
     still = Clip(BASE, skeleton, 30, np.stack([base.rotations] * 2), np.stack([base.translations[:1]] * 2))

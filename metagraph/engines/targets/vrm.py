@@ -25,8 +25,8 @@ from metagraph.errors import FileError
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
 from metagraph.graph.face.curves import fit_curves_to_face
-from metagraph.graph.face.expression_presets import presets_of
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.face.expression_presets import make_presets
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.roles import REQUIRED
@@ -133,7 +133,7 @@ def make_vrm_extension(
 ) -> dict[str, Any]:
     """Return `VRMC_vrm`. targets: the mesh's; mesh: its node."""
     presets: dict[str, Any] = {}
-    for name, mix in presets_of(targets, project.face.channels).items():
+    for name, mix in make_presets(targets, project.face.channels).items():
         binds = [{"node": mesh, "index": targets.index(t), "weight": w} for t, w in mix.items()]
         presets[name] = {"morphTargetBinds": binds, "isBinary": False}
         presets[name] |= dict.fromkeys(("overrideBlink", "overrideLookAt", "overrideMouth"), "none")
@@ -179,7 +179,7 @@ def find_vrm_pose(skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
             )
         )
     _, at = skeleton.globals(skeleton.rest)
-    axes = axes_of(skeleton, roles, at)
+    axes = find_body_axes(skeleton, roles, at)
     if axes[2] @ [0, 0, 1] < 0.95:
         raise ExportError(phrase("a VRM character must face +Z in its rest pose, and this one does not"))
     return _grounded(t_pose(skeleton, roles, axes[0]), skeleton, roles)

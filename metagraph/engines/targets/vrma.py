@@ -24,7 +24,7 @@ from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_bones, find_vrm_p
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
-from metagraph.graph.face.expression_presets import measure_presets, presets_of
+from metagraph.graph.face.expression_presets import make_presets, measure_presets
 from metagraph.graph.model import Action, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -64,7 +64,7 @@ def add_face(clip: Clip, bones: Mapping[str, int], stand: Pose) -> tuple[Clip, P
     if clip.morphs and clip.weights is not None:
         weights = {name: clip.weights[:, n] for n, name in enumerate(clip.morphs)}
         presets: dict[str, Any] = {}
-        for preset, values in measure_presets(presets_of(clip.morphs), weights).items():
+        for preset, values in measure_presets(make_presets(clip.morphs), weights).items():
             if float(np.max(values)) >= _SEEN:
                 presets[preset] = {"node": len(clip.skeleton) + len(names)}
                 names.append(f"expression {preset}")

@@ -26,7 +26,7 @@ from metagraph.common.files import read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.bvh.decimal_text import decimals
+from metagraph.formats.bvh.decimal_text import read_decimals
 from metagraph.formats.bvh.space import USUAL, find_relative_joints, find_unit, is_z_up, stand_up
 from metagraph.formats.takes import FRAME_TIME, FROM_OFFSET, UNIT, UP, drop_stray_poses, note_repair
 from metagraph.motion import rotation
@@ -359,7 +359,7 @@ def _fps(text: str, step: float) -> float:
 def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     """Return every number after `start` as float64."""
     try:
-        numbers = decimals(data, start)
+        numbers = read_decimals(data, start)
         if (np.abs(numbers) <= 1e9).all():
             return numbers
     except ValueError:

@@ -42,7 +42,7 @@ class ConversationReading:
             raise CancelledError
 
 
-def length_of(voice: SideVoice) -> float:
+def measure_sound_length(voice: SideVoice) -> float:
     """Return how long a sound is in whole milliseconds: nothing that is written down ends after it."""
     return math.floor(voice.heard.duration * 1000 + 1e-6) / 1000
 

@@ -56,7 +56,7 @@ class TranscribedSide:
     names: tuple[str, ...] = ()
 
 
-def sides_of(
+def match_sides(
     notes: list[str], voices: Sequence[SideVoice], said: list[tuple[Path, Transcript]], most: int
 ) -> tuple[tuple[SideVoice, TranscribedSide], ...]:
     """Return the sides: the sound of each, and what the transcripts say of it. voices: one a channel or file,

@@ -19,14 +19,14 @@ from metagraph.formats.project.verified import (
     VerifiedPart,
     count_in_words,
     describe_whole,
-    fault_of,
+    make_fault,
 )
 from metagraph.formats.store import (
     find_clip_place,
     find_moved_files,
     list_missing_clips,
+    make_path_relative,
     read_project,
-    relative,
 )
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.model import ClipEntry, Project
@@ -74,7 +74,7 @@ def _clip_faults(
     if now_at is not None:
         yield VerificationFault(
             name,
-            f"is not there, but its content is at {relative(now_at, folder)}.",
+            f"is not there, but its content is at {make_path_relative(now_at, folder)}.",
             "Open the project and save it: it then names that place.",
         )
         place = now_at
@@ -94,7 +94,7 @@ def _clip_faults(
                 if entry.as_is == as_is:
                     yield from _take_faults(name, entry, takes, same)
     except Exception as error:  # one bad file never hides the others
-        yield fault_of(make_unforeseen_error(place, error), name)
+        yield make_fault(make_unforeseen_error(place, error), name)
 
 
 def _take_faults(
@@ -178,5 +178,5 @@ def _read_each(part: str, whole: str, readers: _Readers, folder: Path) -> Verifi
             for read in ways.values():
                 read(folder / name)
         except Exception as error:  # one bad file never hides the others
-            faults.append(fault_of(make_unforeseen_error(folder / name, error), clean_text(name)))
+            faults.append(make_fault(make_unforeseen_error(folder / name, error), clean_text(name)))
     return VerifiedPart(part, describe_whole(len(readers), faults, whole), tuple(faults))

@@ -126,7 +126,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
             )
         twin = replace(
             action,
-            id=ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip),
+            id=ids.make_id(project, "a", action.layer, action.kind, stance, end or "", clip),
             clip=clip,
             name=name_twin(action.name),
             stance=stance,

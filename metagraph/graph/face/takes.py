@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -44,9 +44,9 @@ def put_on_body(project: Project, clip: Clip) -> Clip:
     roles = anatomy.project_roles(project)
     if skeleton is None or "head" not in roles:
         raise RetargetError("a face alone needs a character with a head: import a clip of its body first")
-    base = anatomy.base_pose(project)
+    base = anatomy.get_base_pose(project)
     turned, at = skeleton.globals(base)
-    axes = axes_of(skeleton, roles, at)
+    axes = find_body_axes(skeleton, roles, at)
     frame = rotation.from_matrix(axes.T)  # from a character that looks along +Z to this one
     rotations = np.repeat(np.asarray(base.rotations, np.float64)[None], clip.frames, 0)
     morphs, weights = clip.morphs, clip.weights

@@ -203,7 +203,7 @@ class BlockTiming:
                 else:
                     self.note(b.element, "prepares as its clip does")
             try:
-                yield a.request_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
+                yield a.make_request(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
             except a.RequestError as error:
                 raise a.RequestError(f"{b.element.place}: {error}") from None
 

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.anatomy import base_pose
+from metagraph.graph.anatomy import get_base_pose
 from metagraph.graph.face.names import MOOD_FACE
 from metagraph.graph.face.rig import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
 from metagraph.graph.life import Life
@@ -131,7 +131,7 @@ class LifeStage:
         life, schedule = self._project.life, self._schedule
         if not life.on or not self.body.face.morphs:
             return {}
-        whole = base_pose(self._project) if pose is None else pose
+        whole = get_base_pose(self._project) if pose is None else pose
         one = Pose(whole.rotations[None], whole.translations[None])
         found = self._find(one, np.array([float(seconds)]))
         look, face = found.faces[0], FaceShown()

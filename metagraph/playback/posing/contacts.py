@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.checks.end_gaps import motion_of
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.checks.end_gaps import get_action_motion
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion import rotation
 from metagraph.motion.body_capsules import SIDES, BodyPart, body_capsules
@@ -48,9 +48,9 @@ def find_body_parts(project: Project, character: CharacterMesh | None = None) ->
     """
     if project.touch.parts or project.skeleton is None:
         return project.touch.parts
-    roles, base = anatomy.project_roles(project), anatomy.base_pose(project)
+    roles, base = anatomy.project_roles(project), anatomy.get_base_pose(project)
     _, at = project.skeleton.globals(base)
-    axes = axes_of(project.skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
+    axes = find_body_axes(project.skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
     return body_capsules(project.skeleton, roles, base, axes, character)
 
 
@@ -128,7 +128,7 @@ def goals_at(plan: Plan, project: Project, rig: ContactRig, time: float) -> list
         if strength <= 0:
             continue
         cue = of.cue_at(time)
-        if cue is not None and motion_of(project, cue.action) is None:
+        if cue is not None and get_action_motion(project, cue.action) is None:
             cue = None
         place = max(int(of.fade_starts.searchsorted(time, "right")) - 1, 0) if of.rests else -1
         if not any(of.rests[n].action.contacts for n in (place, place - 1) if n >= 0) and not (

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.checks.end_gaps import get_action_motion
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -95,7 +95,7 @@ class FeetOfPlan:
         if not layer.rests:
             return []
         cue = layer.cue_at(time)
-        if cue is not None and motion_of(project, cue.action) is None:
+        if cue is not None and get_action_motion(project, cue.action) is None:
             cue = None
         place = max(int(layer.fade_starts.searchsorted(time, "right")) - 1, 0)
         nearby = range(max(0, place - 4), min(len(layer.rests), place + 5))

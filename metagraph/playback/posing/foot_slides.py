@@ -221,7 +221,7 @@ class FeetWatch:
             if motion is not None:
                 poses = motion.pose_at(np.linspace(0.0, motion.duration, STILL))
             else:
-                poses = anatomy.base_pose(self.project)
+                poses = anatomy.get_base_pose(self.project)
             heights = self.project.skeleton.globals(poses)[1][..., self._joints, 1]
             self._floor = np.asarray(np.percentile(heights.reshape(-1, len(self._joints)), 5, axis=0))
         return self._floor

@@ -53,7 +53,7 @@ class _LayerStage:
 
     def __init__(self, plan: LayerPlan, project: Project, ground: Ground, reach: Reach) -> None:
         self._plan, self._project, self._ground, self._reach = plan, project, ground, reach
-        self._scales = anatomy.scales(project)[:, reach.joints]
+        self._scales = anatomy.find_joint_scales(project)[:, reach.joints]
         self._lately: tuple[float, float, Met] = (
             inf,
             inf,
@@ -103,7 +103,7 @@ class _LayerStage:
         if cue is None or motion is None:
             return self._stance(times, current, fading)
         shown = sample_cue(cue, times, lambda seconds: self._sample(motion, seconds))
-        mask = anatomy.action_mask(project, cue.action)
+        mask = anatomy.make_action_mask(project, cue.action)
         moved = None if mask is None or (mask[reach.joints] == 1).all() else mask[reach.joints]
         if phase == _FULL and moved is None and cue.extent == 1:
             return shown
@@ -218,7 +218,9 @@ def keep_to(shown: Sample, rest: Sample, moved: Array) -> None:
 
 
 def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sample:
-    """Play a sample larger or smaller around its stance. `scales [2, n]` is as in `anatomy.scales`."""
+    """Play a sample larger or smaller around its stance. `scales [2, n]` is as in
+    `anatomy.find_joint_scales`.
+    """
     share = (extent - 1) * scales[0 if extent > 1 else 1]
     apart = rotation.multiply(rotation.conjugate(stance[0]), shown[0])
     factor = 1 + share * ease_blend((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent

@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from metagraph.formats.corpora import Recorded
-from metagraph.graph.conversation.model import Conversation, Rates, Segment, segments_heard_by, side_name
+from metagraph.graph.conversation.model import (
+    Conversation,
+    Rates,
+    Segment,
+    get_side_name,
+    list_segments_heard_by,
+)
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
@@ -35,7 +41,7 @@ SEED = 20_200  # of what is said: no model was trained on it
 @dataclass(frozen=True, eq=False)
 class ExhibitActor:
     """One of two in all conversations. clips: its takes; speech: what it moves with in each,
-    `segments_heard_by`.
+    `list_segments_heard_by`.
     """
 
     name: str
@@ -90,11 +96,11 @@ class ExhibitMaterial:
                 self.notes.append(
                     f"{len(some) - len(kept)} takes of side {side + 1} have another skeleton: left out"
                 )
-            names = {side_name(t, side) for _, t in kept}
+            names = {get_side_name(t, side) for _, t in kept}
             name = names.pop() if len(names) == 1 else f"side {side + 1}"
             out.append(
                 ExhibitActor(
-                    name, tuple(c for c, _ in kept), tuple(segments_heard_by(t, side) for _, t in kept)
+                    name, tuple(c for c, _ in kept), tuple(list_segments_heard_by(t, side) for _, t in kept)
                 )
             )
         if not out:

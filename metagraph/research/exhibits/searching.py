@@ -9,7 +9,7 @@ from statistics import fmean, median
 
 import msgspec
 
-from metagraph.graph.conversation.model import Conversation, Segment, Side, segments_heard_by
+from metagraph.graph.conversation.model import Conversation, Segment, Side, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.planning.choice import key32
 from metagraph.research.exhibits import drawings
@@ -289,7 +289,7 @@ def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEE
         talk = with_rates(_scarcer(spoken.conversation, scarcity), (rates[0], rates[0]))
         for side in range(sides):
             clips.append(find_side_motion(project, talk, side))
-            speech.append(segments_heard_by(talk, side))
+            speech.append(list_segments_heard_by(talk, side))
     return ExhibitActor(scarcity.name, tuple(clips), tuple(speech))
 
 

@@ -267,9 +267,9 @@ def evaluate_search(
     """Hold out one take after another, build the graph of the rest as `build` does, and search it for what
     was said in the one held out.
 
-    speech: what each take goes with, `segments_heard_by`. A take without which there is no graph makes cases
-    that find nothing. Cancelled, it returns what there is. Raises SynthesisError when there are fewer than
-    two takes, not as many speeches, or no case at all.
+    speech: what each take goes with, `list_segments_heard_by`. A take without which there is no graph makes
+    cases that find nothing. Cancelled, it returns what there is. Raises SynthesisError when there are fewer
+    than two takes, not as many speeches, or no case at all.
     """
     searches = trials.searches
     known = [SpokenTake(tuple(s)) for s in speech] if beside.spoken is None else beside.spoken

@@ -131,7 +131,7 @@ class Measured:
         frames = self.frames.get(stance or "")
         if motion is None or frames is None or not len(frames[0]) or motion.skeleton != project.skeleton:
             return None
-        moved = anatomy.action_mask(project, action)
+        moved = anatomy.make_action_mask(project, action)
         key = id(motion), stance, None if moved is None else moved.tobytes()
         if key not in self._costs:
             self._costs[key] = c.measure_transition_costs(
@@ -305,7 +305,7 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     )
     if into is None or left is None:
         return None
-    stats = c.mask_statistics(measured.stats, motion, anatomy.action_mask(project, action), roles)
+    stats = c.mask_statistics(measured.stats, motion, anatomy.make_action_mask(project, action), roles)
     stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
     times = _times(motion, into)
     gaps = end_gaps.measure_distances_to_stance(project, action, times)
@@ -333,20 +333,22 @@ def _hidden(
     An end that is goes to the nearest moment that is near the stance, else its blend becomes as long as it
     takes. Where neither will do, and those the action has do, these stay.
     """
-    motion = end_gaps.motion_of(project, action)
+    motion = end_gaps.get_action_motion(project, action)
     if motion is None:
         return proposed
     height, t = motion.skeleton.height, action.timing
 
     def shows(edge: int, at: float, blend: float) -> bool:
         metres = float(np.interp(at, times, gaps[edge]))
-        return np.isfinite(metres) and metres > end_gaps.hidden(height, blend) + 1e-4
+        return np.isfinite(metres) and metres > end_gaps.measure_hidden_gap(height, blend) + 1e-4
 
     room = max(0.0, proposed.end - proposed.start) / 2
     ends = []
     for edge, at, blend in (0, proposed.start, proposed.blend_in), (1, proposed.end, proposed.blend_out):
         if shows(edge, at, blend):
-            near = times[(gaps[edge] <= end_gaps.hidden(height, blend)) & (np.abs(times - at) <= room / 2)]
+            near = times[
+                (gaps[edge] <= end_gaps.measure_hidden_gap(height, blend)) & (np.abs(times - at) <= room / 2)
+            ]
             if len(near):
                 at = float(near[np.argmin(np.abs(near - at))])
             else:

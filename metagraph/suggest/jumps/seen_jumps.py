@@ -33,10 +33,12 @@ class SeenJumps:
             for cost, gap, blend in zip(
                 (self.enter, self.leave), curves.gaps, (t.blend_in, t.blend_out), strict=True
             ):
-                covered = end_gaps.slow(gap, curves.height, blend)
+                covered = end_gaps.find_slow_distances(gap, curves.height, blend)
                 cost[covered] = np.minimum(cost[covered], 1.0)
-                far = np.isfinite(gap) & (gap > end_gaps.hidden(curves.height, blend))
-                cost[far] = np.maximum(cost[far], gap[far] / end_gaps.hidden(curves.height, blend))
+                far = np.isfinite(gap) & (gap > end_gaps.measure_hidden_gap(curves.height, blend))
+                cost[far] = np.maximum(
+                    cost[far], gap[far] / end_gaps.measure_hidden_gap(curves.height, blend)
+                )
         if self.loops:
             self.pivot = 0
         elif action.kind == "transition":

@@ -93,10 +93,14 @@ def _edge(seen: SeenJumps | None, handle: str) -> Iterator[Snap]:
 def _blend(project: Project, action: Action, handle: str) -> Iterator[Snap]:
     """The shortest blend that covers the way from or to the stance, and the phases it may reach to."""
     start, end = project.span(action)
-    graph, motion = project.graphs[action.layer], end_gaps.motion_of(project, action)
+    graph, motion = project.graphs[action.layer], end_gaps.get_action_motion(project, action)
     edge = "begins" if handle == "in" else "ends"
     for gap in end_gaps.find_end_gaps(project, graph, action):
-        if gap.edge != edge or motion is None or gap.metres <= end_gaps.hidden(motion.skeleton.height, 0.0):
+        if (
+            gap.edge != edge
+            or motion is None
+            or gap.metres <= end_gaps.measure_hidden_gap(motion.skeleton.height, 0.0)
+        ):
             continue
         needed = end_gaps.blend_for(motion.skeleton.height, gap.metres) + SLACK
         if needed <= end - start:

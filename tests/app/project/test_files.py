@@ -19,7 +19,7 @@ from app.project.importing import Importing
 from app.project.jobs import Jobs
 from app.project.leftovers import list_untitled_journals
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.locking import lock_path, new_owner
+from metagraph.formats.locking import lock_path, make_owner
 from metagraph.formats.project.journal_records import read_records
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import open_project, read_project, save_project
@@ -230,7 +230,7 @@ def crash(desk) -> None:
     document.autosave.journal.close()
     kill_sittings(place.parent)
     document.autosave.journal = document.lock = None
-    document.owner = new_owner()
+    document.owner = make_owner()
     document.undo_stack.setClean()
 
 

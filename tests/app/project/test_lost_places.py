@@ -15,7 +15,7 @@ from app.project.document import Document
 from app.project.files import Files
 from app.project.jobs import Jobs
 from app.project.leftovers import list_known_journals, look_beside
-from metagraph.formats.locking import lock_path, new_owner
+from metagraph.formats.locking import lock_path, make_owner
 from metagraph.formats.recovery import DAMAGED
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits
@@ -75,7 +75,7 @@ def crash(desk):
         if folder.is_dir():
             kill_sittings(folder)
     document.autosave.journal = document.lock = None
-    document.owner = new_owner()
+    document.owner = make_owner()
     document.undo_stack.setClean()
 
 
@@ -150,7 +150,7 @@ def test_a_copy_of_a_project_is_not_offered_the_edits_of_the_other(desk, saved, 
     copy = tmp_path / "copy" / saved.name
     copy.parent.mkdir()
     shutil.copy(saved, copy)
-    found = look_beside(copy, new_owner())
+    found = look_beside(copy, make_owner())
     assert not found.left
     found.lock.release()
 

@@ -63,15 +63,15 @@ def test_the_characters_own_morph_targets_are_known_when_it_is_opened(
 ) -> None:
     """A face is recognised from what the character has, not only from what clips move."""
     from app.project.opening import open_whole
-    from metagraph.formats.gltf.reader import morph_targets
+    from metagraph.formats.gltf.reader import read_morph_targets
     from metagraph.formats.store import save_project
     from metagraph.graph.life import Face
 
     robot = shared_data / "robot-expressive"
     file = next(robot.rglob("*.glb"))
-    assert morph_targets(file) == read_character(file).morphs != ()
+    assert read_morph_targets(file) == read_character(file).morphs != ()
     imported = import_files(Project(), tmp_path, [file])
     project = imported.into(Project())
-    assert project.face.morphs == morph_targets(file)
+    assert project.face.morphs == read_morph_targets(file)
     save_project(replace(project, face=Face()), tmp_path / "robot.metagraph.yaml")
-    assert open_whole(tmp_path / "robot.metagraph.yaml").project.face.morphs == morph_targets(file)
+    assert open_whole(tmp_path / "robot.metagraph.yaml").project.face.morphs == read_morph_targets(file)

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from metagraph.formats.gltf.reader import morph_targets
+from metagraph.formats.gltf.reader import read_morph_targets
 from metagraph.formats.store import open_project
 from metagraph.graph.conversation.model import Conversation, Rates, Side, Word
 from metagraph.graph.face.rig import with_morphs
@@ -30,7 +30,7 @@ HAPPY, ANGRY, SAD = (Mood(*MOODS[name]) for name in ("happy", "angry", "sad"))
 @pytest.fixture(scope="module")
 def sample() -> Project:
     project = open_project(SAMPLES / "sample.metagraph.yaml").project
-    return with_morphs(project, morph_targets(SAMPLES / "ada.glb"))
+    return with_morphs(project, read_morph_targets(SAMPLES / "ada.glb"))
 
 
 def in_mood(project: Project, name: str) -> Project:

@@ -59,7 +59,7 @@ def free(project: Project) -> Project:
 
 
 def performed(project: Project, *asks: dict[str, Any], end: float = 20.0, idle: bool = False) -> Plan:
-    return plan_performance(project, [a.request_from(ask) for ask in asks], end, 1, idle=idle)
+    return plan_performance(project, [a.make_request(ask) for ask in asks], end, 1, idle=idle)
 
 
 def stroke_of(project: Project, cue: Cue) -> float:

@@ -28,7 +28,7 @@ def plan(sample: Project):
 @pytest.fixture(scope="module")
 def clip(sample: Project) -> Clip:
     """Four seconds of the base pose with the right arm out."""
-    base = anatomy.base_pose(sample)
+    base = anatomy.get_base_pose(sample)
     rotations = np.repeat(base.rotations[None], 101, 0)
     arm = anatomy.project_roles(sample)["right_upper_arm"]
     turn = rotation.exp(np.array([0.0, 0.0, 0.8]))

@@ -173,7 +173,7 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
     arms = project.graphs["arms"]
     clip = project.clips[arms.of(arms.start or "", "gesture")[0].clip].motion
     assert clip is not None
-    base = anatomy.base_pose(project).rotations
+    base = anatomy.get_base_pose(project).rotations
     rotations = np.array(clip.rotations)
     upper, collar = roles["left_upper_arm"], roles["left_shoulder"]
     raised = rotation.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(120))

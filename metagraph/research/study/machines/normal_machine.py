@@ -17,7 +17,7 @@ from metagraph.graph.expand import find_end_stance
 from metagraph.graph.expand import list_connections as expanded
 from metagraph.graph.manual.machine import Link, Manual, State
 from metagraph.graph.manual.meta import as_meta
-from metagraph.graph.manual.timing import exit_moment, find_state_span
+from metagraph.graph.manual.timing import find_exit_moment, find_state_span
 from metagraph.graph.model import LAYERS, ClipEntry, Kind, Layer, Limb, MetaGraph, Project
 
 AT_ITS_END = 1e-3  # seconds: as near to its end a state is left at its end
@@ -189,7 +189,7 @@ def _leave(project: Project, state: State, link: Link) -> float | None:
     """Return when a link leaves its source, as a meta-graph counts: where its blend would end with the
     source, at the source's end.
     """
-    at, end = exit_moment(project, state, link), find_state_span(project, state)[1]
+    at, end = find_exit_moment(project, state, link), find_state_span(project, state)[1]
     return end if at is not None and at + link.blend >= end - AT_ITS_END else at
 
 

@@ -132,7 +132,7 @@ class _Judge:
                 joints=state.joints,
                 joint_weights=state.joint_weights,
             )
-            moved = anatomy.action_mask(self.project, action)
+            moved = anatomy.make_action_mask(self.project, action)
             rig = track_rig(next(iter(self.motions.values())), self.measured.roles)
             ones = np.ones(len(rig.joints))
             self._weights[key] = ones if moved is None else moved[rig.keep[rig.joints]] * ones

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from app.features.files.versions_dialog import VersionsDialog, find_versions
 from app.project.version_count import count_kept_versions
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.project.versions import earlier_versions, make_version_path
+from metagraph.formats.project.versions import list_earlier_versions, make_version_path
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -73,7 +73,7 @@ def test_return_opens_the_chosen_one_as_a_copy_that_replaces_nothing(
     assert project.name.startswith("other ") and [e.motion is not None for e in project.clips.values()] == [
         True
     ]
-    assert path.read_bytes() == before and len(earlier_versions(path)) == 2
+    assert path.read_bytes() == before and len(list_earlier_versions(path)) == 2
     assert not path.with_name(f".{path.name}.lock").exists()
 
 

@@ -19,7 +19,7 @@ from app.stage.remedies import fix_clips
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
 from metagraph.graph.editing.retiming import keep_clips_in_place
-from metagraph.graph.expand import reachable
+from metagraph.graph.expand import find_reachable
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
 
@@ -255,7 +255,7 @@ def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toy
     QTest.mouseClick(tree.viewport(), Qt.MouseButton.LeftButton, pos=spot)
     stack, graph = drive.document.undo_stack, drive.document.project.graphs["arms"]
     assert stack.count() == 1 and stack.text(0) == "Bridge by blending"
-    assert up in reachable(graph, graph.start) and graph.start in reachable(graph, up)
+    assert up in find_reachable(graph, graph.start) and graph.start in find_reachable(graph, up)
     drive.wait(lambda: len(panel.fixable()) == 2)
     assert {p.stance for p in drive.problems.problems if p.code in ("unreachable", "dead-end")} == {
         toy.id(parted, "far")
@@ -268,7 +268,7 @@ def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toy
     assert stack.count() == 1 and stack.text(0) == "Fix 5 problems"
     drive.wait(lambda: not panel.fixable())
     graph = drive.document.project.graphs["arms"]
-    assert reachable(graph, graph.start) == set(graph.stances)
+    assert find_reachable(graph, graph.start) == set(graph.stances)
     drive.document.undo()
     assert drive.document.project.graphs == parted.graphs
 
