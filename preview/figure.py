@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, followers
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, find_followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.levels import Level, make_levels
@@ -214,7 +214,7 @@ class SkinnedFigure(MeshFigure):
         skeleton = own if skeleton is None else skeleton
         rest_r, rest_p = own.globals(own.rest)
         self.matched = sum(name in skeleton for name in own.names)
-        follow, sources = followers(own, skeleton)  # the character's joint whose matrix each joint uses
+        follow, sources = find_followers(own, skeleton)  # the character's joint whose matrix each joint uses
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
         bound_r, bound_p = (x.copy() for x in skeleton.globals(skeleton.rest))
@@ -271,7 +271,7 @@ class StickFigure(MeshFigure):
         now = positions - positions[..., above, :]
         carried = rotation.rotate_vectors(turn[..., above, :], before)
         aim = rotation.multiply(
-            rotation.rotation_between(carried, now).astype(np.float32), turn[..., above, :]
+            rotation.find_rotation_between(carried, now).astype(np.float32), turn[..., above, :]
         )
         length = np.maximum(np.linalg.norm(before, axis=-1), 1e-6)
         axis = before / length[..., None]
@@ -305,7 +305,7 @@ class StickFigure(MeshFigure):
                 max(radius[parent], thick if not finger[child] else 0),
             )
             sides, rings = (6, 2) if small else (12, 3)
-            turn = rotation.rotation_between(np.array([0.0, 1, 0]), offset)
+            turn = rotation.find_rotation_between(np.array([0.0, 1, 0]), offset)
             self._add(
                 make_capsule(length, thick, thin, sides, rings),
                 len(skeleton) + int(child),

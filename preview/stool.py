@@ -39,7 +39,7 @@ class Stool(MeshFigure):
             top, foot = way * 0.62 * radius - [0, thick, 0], way * 0.95 * radius - [0, height, 0]
             length, width = float(np.linalg.norm(top - foot)), 0.035 * height
             positions, normals, triangles = make_capsule(length - width, width, width, 10, 3)
-            turn = rotation.rotation_between(np.array([0.0, 1, 0]), top - foot)
+            turn = rotation.find_rotation_between(np.array([0.0, 1, 0]), top - foot)
             shape = (
                 rotation.rotate_vectors(turn, positions) + foot + [0, width, 0],
                 rotation.rotate_vectors(turn, normals),

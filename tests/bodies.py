@@ -19,7 +19,7 @@ def column(joints: int = 6) -> Skeleton:
     return Skeleton(
         tuple(f"j{n}" for n in range(joints)),
         np.arange(-1, joints - 1),
-        rotation.identity_rotations((joints,)),
+        rotation.make_identity_rotations((joints,)),
         offsets,
     )
 

@@ -33,7 +33,7 @@ from metagraph.playback.learning.annotation import (
     label_of,
 )
 from metagraph.playback.learning.compare import compare_model
-from metagraph.playback.learning.learn import Act, describe_state, learn_model, model_states
+from metagraph.playback.learning.learn import Act, describe_state, learn_model, list_model_states
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -183,7 +183,7 @@ def _layer(layer: Layer, acts: tuple[Act, ...], options: Namespace) -> dict[str,
     return {
         "actions": len(acts),
         "per_minute": round(found.observed.rate, 2),
-        "states": [describe_state(state, layer) for state in model_states(model)],
+        "states": [describe_state(state, layer) for state in list_model_states(model)],
         "matrix": [[round(p, 4) for p in row] for row in model.matrix],
         "lengths": [list(pair) for pair in model.lengths],
         "gap": model.gap,

@@ -510,11 +510,11 @@ def _write(path: Path, clip: Clip) -> None:
 def _again(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
     """Write the last motion of a live session once more."""
     from app.cli.command_output import say
-    from metagraph.live.graph_motion import live_graph
+    from metagraph.live.graph_motion import make_live_graph
     from metagraph.live.kept_motion import read_kept, remake_motion
 
     kept = read_kept(options.again)[-1]
-    graph = live_graph(clips, speech, options.k, options.level, options.keys, options.most)
+    graph = make_live_graph(clips, speech, options.k, options.level, options.keys, options.most)
     clip = remake_motion(graph, kept, options.out.stem)
     _write(options.out, clip)
     data = {"out": str(options.out), "seconds": clip.duration, "frames": clip.frames, "begun": kept.begun}

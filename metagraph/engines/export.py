@@ -30,7 +30,7 @@ from metagraph.graph.model import (
 )
 from metagraph.motion.character_mesh import CharacterMesh, bind_character, explain_no_character
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.motion.skeleton import Skeleton, make_names_unique
 from metagraph.speech.sound import guess_sound_ending
 
 # Endings that engines import: of each, the containers that libsndfile names, and codings.
@@ -148,7 +148,7 @@ def write_project_files(
     used = list_used_clips(project)
     stem, target = make_export_stem(project), Path(folder)
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
-    names = unique_names([entry.name for entry in used])
+    names = make_names_unique([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = [clip.dense for clip in list_exported_clips(project)]
     notes = _write_glb(glb, clips, project, character, compress)
@@ -286,7 +286,7 @@ def list_exported_clips(project: Project) -> list[Clip]:
     project's face.
     """
     used = [e for e in list_used_clips(project) if e.motion is not None]
-    names = unique_names([entry.name for entry in list_used_clips(project)])
+    names = make_names_unique([entry.name for entry in list_used_clips(project)])
     assert project.skeleton is not None
     return [
         replace(fit_curves_to_face(project, e.motion).renamed(name), skeleton=project.skeleton)

@@ -35,8 +35,8 @@ from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.plan import LayerPlan, Plan, Report
 from metagraph.playback.planning.choice import key32
-from metagraph.playback.planning.extend_performance import hear_asks, since
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.planning.extend_performance import drop_ended, hear_asks
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import has_weight
 
 Array = NDArray[Any]
@@ -70,7 +70,7 @@ def play_case(project: Project, case: ScriptCase) -> Plan:
         plan = hear_asks(project, plan, step.now, asks, step.end, case.stances, case.idle)
         plan = replace(plan, reports=(*plan.reports, *refused))
         if step.forget is not None:
-            plan = since(plan, step.forget)
+            plan = drop_ended(plan, step.forget)
     return plan
 
 
@@ -110,7 +110,7 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> P
 def _expected(project: Project, case: ScriptCase) -> dict[str, Any]:
     plan = play_case(project, case)
     times = case.times or _telling(plan)
-    answers = has_weight(project) and rigs_of(project).weight.rig is not None
+    answers = has_weight(project) and get_rigs(project).weight.rig is not None
     evaluator = Evaluator(plan, project)
     living = (*times, *_living(plan, answers)) if len(case.steps) + case.idle > 1 else times
     return {
@@ -374,7 +374,9 @@ def _unlike(ours: Any, theirs: Any, where: str) -> list[str]:
 def _apart(ours: Mapping[str, Any], expected: Mapping[str, Any]) -> list[str]:
     far = float(np.linalg.norm(np.array(ours["positions"]) - np.array(expected["positions"]), axis=-1).max())
     turn = float(
-        degrees(rotation.angle_between(np.array(ours["rotations"]), np.array(expected["rotations"])).max())
+        degrees(
+            rotation.measure_angle_between(np.array(ours["rotations"]), np.array(expected["rotations"])).max()
+        )
     )
     names = ours["morphs"].keys() | expected["morphs"].keys()
     weight = max(

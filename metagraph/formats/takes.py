@@ -162,7 +162,9 @@ def _mended(clip: Clip, frames: Sequence[int]) -> Clip:
     weights = None if clip.weights is None else clip.weights.copy()
     if weights is not None:
         weights[at] = (weights[at - 1] + weights[at + 1]) / 2
-    return replace(clip, rotations=rotation.continuous(rotations), translations=translations, weights=weights)
+    return replace(
+        clip, rotations=rotation.make_continuous(rotations), translations=translations, weights=weights
+    )
 
 
 def make_takes_unique(clips: Sequence[Clip]) -> list[Clip]:

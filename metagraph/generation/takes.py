@@ -36,7 +36,7 @@ from metagraph.generation.poses import (
 )
 from metagraph.graph.conversation.model import Conversation, list_segments_heard_by
 from metagraph.motion.clip import Clip
-from metagraph.motion.mirror import mirror, pairs_of
+from metagraph.motion.mirror import find_joint_twins, mirror
 
 Array = NDArray[Any]
 
@@ -254,7 +254,7 @@ def mirror_take(rig: PoseRig, clip: Clip, take: Take) -> Take:
     if the skeleton is not the same on both sides.
     """
     try:
-        poses = encode_clip(rig, mirror(clip, pairs_of(clip.skeleton)), FPS)
+        poses = encode_clip(rig, mirror(clip, find_joint_twins(clip.skeleton)), FPS)
     except ValueError as error:
         raise TakeError(str(error)) from None
     first = round(take.source.start * FPS)

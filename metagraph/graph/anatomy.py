@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.manual.machine import State
 from metagraph.graph.model import Action, Part, Project
-from metagraph.motion.roles import body_parts, find_roles, joint_sides
+from metagraph.motion.roles import assign_body_parts, find_joint_sides, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
@@ -34,7 +34,7 @@ def _roles(skeleton: Skeleton, corrections: tuple[tuple[str, str], ...]) -> Mapp
 def _parts(
     skeleton: Skeleton, roles: tuple[tuple[str, str], ...], corrections: tuple[tuple[str, Part], ...]
 ) -> tuple[Part, ...]:
-    found = list(body_parts(skeleton, dict(_roles(skeleton, roles))))
+    found = list(assign_body_parts(skeleton, dict(_roles(skeleton, roles))))
     for joint, part in corrections:
         if joint in skeleton:
             found[skeleton.index(joint)] = part
@@ -43,7 +43,7 @@ def _parts(
 
 @lru_cache(maxsize=32)
 def _sides(skeleton: Skeleton, roles: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
-    return tuple(joint_sides(skeleton, dict(_roles(skeleton, roles))))
+    return tuple(find_joint_sides(skeleton, dict(_roles(skeleton, roles))))
 
 
 def project_roles(project: Project) -> Mapping[str, int]:

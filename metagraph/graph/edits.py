@@ -32,7 +32,7 @@ from metagraph.graph.model import (
     Timing,
 )
 from metagraph.motion.clip import Clip
-from metagraph.motion.features import loop_error
+from metagraph.motion.features import measure_loop_error
 
 SEAM = 0.01  # metres a loop may be open before its seam is blended
 _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
@@ -244,7 +244,7 @@ def make_default_timing(entry: ClipEntry, kind: Kind) -> Timing:
     """
     quarter = round(entry.duration / 4, 3)
     if kind == "stance":
-        open_by = loop_error(entry.motion) if entry.motion is not None and entry.frames > 1 else 0.0
+        open_by = measure_loop_error(entry.motion) if entry.motion is not None and entry.frames > 1 else 0.0
         return Timing(blend_in=min(0.4, quarter) if open_by > SEAM else 0.0, blend_out=0.0, loop=True)
     return Timing(blend_in=min(0.2, quarter), blend_out=min(0.25, quarter))
 

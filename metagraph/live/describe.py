@@ -40,7 +40,7 @@ def with_id(data: bytes, ident: str) -> bytes:
     return b'{"id":' + messages.encode(ident) + b"," + data[1:] if ident else data
 
 
-def greeting(session: DescribedSession, stream: Stream | None, ident: str) -> bytes:
+def make_greeting(session: DescribedSession, stream: Stream | None, ident: str) -> bytes:
     """Return the reply to hello: what is spoken here, and in which order a stream's numbers come."""
     out: dict[str, Any] = {
         "state": "done",
@@ -64,7 +64,7 @@ def greeting(session: DescribedSession, stream: Stream | None, ident: str) -> by
     return with_id(messages.encode(out), ident)
 
 
-def status(session: DescribedSession) -> bytes:
+def describe_status(session: DescribedSession) -> bytes:
     """Return what plays at this moment."""
     now, plan = session.now, session.plan
     playing: dict[str, dict[str, Any]] = {}

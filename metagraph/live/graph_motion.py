@@ -26,7 +26,7 @@ from metagraph.live.messages import Comes, Generate, Hear
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.voice import voice_for_speech
+from metagraph.playback.life.voice import choose_voice
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import Reach, find_composer
 from metagraph.playback.posing.layers import sample_offsets
@@ -103,7 +103,7 @@ class LiveGraph:
         return known[2]
 
 
-def live_graph(
+def make_live_graph(
     takes: Sequence[Clip],
     speech: Sequence[Sequence[Segment]],
     k: int | None = None,
@@ -320,7 +320,7 @@ class GraphMotion(LaidMotion):
 
 def as_clauses(speech: Speech, project: Project, begun: float) -> list[SpeechNews]:
     """Return a speech of the character as clauses that come, one round each of its accents."""
-    accents = [speech.start + float(x) for x in voice_for_speech(project.voices, speech).accents]
+    accents = [speech.start + float(x) for x in choose_voice(project.voices, speech).accents]
     accents = [x for x in accents if speech.start < x < speech.end]
     edges = [speech.start, *((a + b) / 2 for a, b in pairwise(accents)), speech.end]
     peaks: list[float | None] = [*accents] or [None]

@@ -35,7 +35,7 @@ _LOOKS = {
 }
 
 
-def mcp_tools(project: Project) -> list[dict[str, Any]]:
+def list_mcp_tools(project: Project) -> list[dict[str, Any]]:
     """Return the tools as `tools/list` tells them."""
     made = [
         {"name": tool["name"], "description": tool["description"], "inputSchema": tool["input_schema"]}
@@ -152,7 +152,7 @@ class McpLine(StdioLine):
         elif method == "ping":
             self._answer(ident, {})
         elif method == "tools/list":
-            self._answer(ident, {"tools": mcp_tools(self._project)})
+            self._answer(ident, {"tools": list_mcp_tools(self._project)})
         elif method == "tools/call":
             return self._tool(ident, parameters.get("name"), parameters.get("arguments") or {})
         else:

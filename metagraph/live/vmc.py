@@ -25,7 +25,7 @@ from metagraph.graph.requests import RequestError
 from metagraph.live.osc_bytes import pad_osc
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.t_pose import t_pose
+from metagraph.motion.t_pose import make_t_pose
 
 Array = NDArray[Any]
 
@@ -78,7 +78,7 @@ class VmcBody:
             raise RequestError("VMC needs a humanoid character: assign its joints in 'Skeleton'")
         _, at = skeleton.globals(skeleton.rest)
         axes = find_body_axes(skeleton, roles, at)
-        stand, _ = skeleton.globals(t_pose(skeleton, roles, axes[0]))
+        stand, _ = skeleton.globals(make_t_pose(skeleton, roles, axes[0]))
         order = sorted(bones.items(), key=lambda item: item[1])  # parents come before what hangs on them
         places = {joint: n for n, (_, joint) in enumerate(order)}
 
@@ -94,7 +94,7 @@ class VmcBody:
             np.array([joint for _, joint in order]),
             tuple(nearest(joint) for _, joint in order),
             stand,
-            rotation.rotation_between(axes[2], np.array([0.0, 0.0, 1.0])),
+            rotation.find_rotation_between(axes[2], np.array([0.0, 0.0, 1.0])),
             make_presets(morphs, project.face.channels),
         )
 

@@ -9,7 +9,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Plan
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.drive import TOLERANCE, draw_segments, find_clause_peak, key_segments
 
 NAMES = {
@@ -92,7 +92,7 @@ def count_delivered(
 
 def _told(cue: Cue, project: Project) -> tuple[float, float]:
     """Return when a gesture's stroke is, and when its hold ends."""
-    found = phases(project, cue.action)
+    found = find_phases(project, cue.action)
     stroke = cue.start + (found.stroke - cue.entry) / cue.tempo
     if cue.repeats:
         return stroke, cue.end - cue.blend_out

@@ -31,7 +31,7 @@ from metagraph.graph.requests import (
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.running_plan import plan_performance
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.addressing import TURN, find_speaking_spans
 from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import looks_of
@@ -255,7 +255,7 @@ def strokes(project: Project, plan: Plan) -> dict[str, float]:
     for cue in plan.layers["arms"].cues:
         if cue.action.kind == "gesture":
             out[cue.meta.partition("+")[0]] = (
-                cue.start + (phases(project, cue.action).stroke - cue.entry) / cue.tempo
+                cue.start + (find_phases(project, cue.action).stroke - cue.entry) / cue.tempo
             )
     return out
 

@@ -23,7 +23,7 @@ from metagraph.motion import rotation
 from metagraph.playback.life.body import LIFELESS
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.speech.delivered import Delivered, count_delivered
 from metagraph.speech.drive import drive
 from metagraph.speech.gaze_shares import GazeShare, gaze_shares
@@ -209,7 +209,7 @@ def _head(project: Project) -> float:
 
 def _eyes(project: Project) -> Point:
     """Return where a character's eyes are, metres, in its own space."""
-    body = rigs_of(project).body if project.skeleton is not None else LIFELESS
+    body = get_rigs(project).body if project.skeleton is not None else LIFELESS
     if body.empty:
         return 0.0, round(_head(project), 3), 0.0
     x, y, z = (round(v, 3) for v in body.eyes_at_rest)

@@ -15,7 +15,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Point
 from metagraph.playback.life.gaze import BodyGaze
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.speech.addressing import roles_of
 from metagraph.speech.drive import find_partner_points
 
@@ -75,7 +75,7 @@ def gaze_shares(conversation: Conversation, side: int, project: Project, plan: P
     points = find_partner_points(plan)
     if len(conversation.sides) < 3 or not points or not project.life.on:
         return ()
-    gaze = BodyGaze(plan.life, project.life, rigs_of(project).body, project.points)
+    gaze = BodyGaze(plan.life, project.life, get_rigs(project).body, project.points)
     found: dict[Doing, list[int]] = {doing: [0, 0, 0] for doing in NAMES}
     roles, place = roles_of(conversation, side), 0
     step = max(STEP, conversation.length / MOST)

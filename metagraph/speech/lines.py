@@ -18,7 +18,7 @@ from metagraph.graph.conversation.model import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.playback.life.voice import Voice, make_voice, silent
+from metagraph.playback.life.voice import Voice, make_silent_voice, make_voice
 from metagraph.speech.mouth_files.model import MouthShapes
 from metagraph.speech.mouth_files.registry import read_mouth_file
 from metagraph.speech.phones import pieces_of
@@ -93,7 +93,7 @@ def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
             for p, x in zip(pieces, loud, strict=True)
         ]
     if not pieces:
-        return silent(heard.duration)
+        return make_silent_voice(heard.duration)
     return make_voice(pieces, heard.duration, peaks, strengths)
 
 
@@ -114,7 +114,7 @@ def make_voice_from_phones(phones: str | Path) -> Voice:
     if told.weights is not None:
         return Voice(max(duration, 0.0), *_track(told, duration, np.zeros(0), np.zeros(0)))
     if not pieces:
-        return silent(max(duration, 0.0))
+        return make_silent_voice(max(duration, 0.0))
     vowels = [
         p
         for n, p in enumerate(pieces)

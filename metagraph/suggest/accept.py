@@ -12,7 +12,7 @@ from metagraph.errors import describe_error
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.flags import is_unlikely
 from metagraph.suggest.jumps.soft_blends import soften_blends
 from metagraph.suggest.proposal import Proposal, Proposals, RestMoment, StancePlace, plain_stance_name
@@ -182,6 +182,6 @@ def _place(
     project = edits.update_actions(project, [action.id], **changes)
     if kind == "gesture" and "stroke" not in timing and (after := project.action(action.id)) is not None:
         project = edits.update_actions(
-            project, [action.id], timing={"stroke": round(phases(project, after).stroke, 3)}
+            project, [action.id], timing={"stroke": round(find_phases(project, after).stroke, 3)}
         )
     return project

@@ -18,7 +18,7 @@ from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.graph.repeating import usual_repeat
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.phase_times import LEAST_BLEND
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.jumps import compatibility
 from metagraph.suggest.motion_guess import MotionGuess
@@ -182,7 +182,7 @@ def with_stroke(project: Project, p: Proposal, motion: MotionGuess | None) -> Pr
     if _repeats(p):  # of the first cycle late, when it has mostly come in
         timing = replace(timing, start=LATE * project.clips[p.clip].duration)
     action = Action("", p.clip, "gesture", p.layer.value, "", "", timing=timing, limb=p.limb.value)
-    found = phases(project, action)
+    found = find_phases(project, action)
     near = motion.stroke is not None and abs(motion.stroke.value - found.stroke) < 0.1
     reason = _fastest(p.layer.value, found.stroke)
     if near:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.motion.rig_controls import rig_controls
-from metagraph.motion.roles import body_parts, find_roles
+from metagraph.motion.rig_controls import find_rig_controls
+from metagraph.motion.roles import assign_body_parts, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.suggest.body_points import measure_facing, view_from
 
@@ -39,10 +39,10 @@ class TrackRig:
 @lru_cache(maxsize=32)
 def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> TrackRig:
     roles = dict(named)
-    parts = body_parts(skeleton, roles)
+    parts = assign_body_parts(skeleton, roles)
     hands = [roles[r] for r in ("left_hand", "right_hand") if r in roles]
     fingers = {j for hand in hands for j in skeleton.descendants(hand)} - set(hands)
-    unseen = fingers | rig_controls(skeleton)
+    unseen = fingers | find_rig_controls(skeleton)
     used = [j for j in range(len(skeleton)) if j not in unseen and parts[j] != "face"] or [0]
     keep = np.array(sorted({k for j in used for k in skeleton.chain(j)}))
     place = {int(j): i for i, j in enumerate(keep)}

@@ -36,7 +36,7 @@ from metagraph.graph.requests import Say
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import spelled
-from metagraph.playback.life.lips import mouth
+from metagraph.playback.life.lips import compute_mouth_shapes
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, make_voice
@@ -97,7 +97,7 @@ def lip_gap(body: CharacterMesh, weights: dict[str, float]) -> float:
 def shown(voice: Voice, times: Array) -> Array:
     """Return how much of each mouth shape but silence shows, `[N, 14]`."""
     track = Track(speeches=(Speech("s", 0.0, voice.duration, line="l"),))
-    out = mouth(track, {"l": voice}, Life().lip_smoothing, times)
+    out = compute_mouth_shapes(track, {"l": voice}, Life().lip_smoothing, times)
     assert out is not None
     return out
 

@@ -43,7 +43,7 @@ def still(ada: CharacterMesh) -> Clip:
         clip,
         skeleton=ada.skeleton,
         fps=24.0,
-        rotations=rotation.continuous(rotation.multiply(clip.rotations, bend)),
+        rotations=rotation.make_continuous(rotation.multiply(clip.rotations, bend)),
         morphs=("jawOpen", "nobody's"),
         weights=np.stack([t, 1 - t], 1),
     )

@@ -33,7 +33,7 @@ from metagraph.motion import rotation
 from metagraph.playback.bml.reader import read_bml
 from metagraph.playback.planner import make_plan
 from tests.engines.test_export import gltf, khronos
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 from tests.recipes import code_of
 
 HERE = Path(__file__).parent
@@ -241,7 +241,7 @@ def test_an_animation_of_an_action_that_moves_a_joint_in_part_has_it_as_far_from
     motion = sample.clips[loop.clip].motion
     assert motion is not None
     rest = motion.pose_at(sample.span(loop)[0]).rotations[joint]
-    far, gone = rotation.angle_between(rest, whole), rotation.angle_between(rest, half)
+    far, gone = rotation.measure_angle_between(rest, whole), rotation.measure_angle_between(rest, half)
     assert far.max() > 0.1 and np.allclose(gone, far / 2, atol=1e-3)
     told = registry.describe_losses(soft, "unity-controller")
     assert any(words.startswith("1 action has partial joint weights") for words in told)
@@ -270,7 +270,7 @@ def test_playcanvas_rests_as_the_preview_does_changes_stance_and_adds_a_gesture(
     )
     assert sample.skeleton is not None
     _, positions = sample.skeleton.globals(
-        pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+        compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
     )
     for place, joint in enumerate(sample.skeleton.names):
         assert np.linalg.norm(np.array(rest["joints"][joint]["position"]) - positions[place]) < 0.003, joint

@@ -22,7 +22,7 @@ SKELETON = mannequin_skeleton()
 
 
 def clip(name: str = "wave", frames: int = 8) -> Clip:
-    rotations = rotation.identity_rotations((frames, len(SKELETON)))
+    rotations = rotation.make_identity_rotations((frames, len(SKELETON)))
     rotations[:, 3] = rotation.from_axis_angle(np.tile([0, 1.0, 0], (frames, 1)), 0.1 * np.arange(frames))
     return Clip(name, SKELETON, 30, rotations, np.tile(SKELETON.rest_translations[:1], (frames, 1, 1)))
 

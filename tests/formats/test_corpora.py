@@ -243,7 +243,7 @@ def test_what_is_read_is_counted_as_the_paper_counts(tmp_path: Path) -> None:
 
 def still(frames: int, fps: float) -> Clip:
     places = np.zeros((frames, 1, 3))
-    return Clip("a", FACE_SKELETON, fps, rotation.identity_rotations((frames, 3)), places, (0,))
+    return Clip("a", FACE_SKELETON, fps, rotation.make_identity_rotations((frames, 3)), places, (0,))
 
 
 @pytest.mark.parametrize(

@@ -122,7 +122,7 @@ def test_a_lone_frame_is_made_anew_between_its_neighbours_and_can_be_left(takes:
     [mended] = drop_stray_poses([broken])
     assert mended.frames == broken.frames and [r.name for r in mended.repairs] == [LONE_FRAME]
     assert f"frame {middle + 1} " in mended.repairs[0].words
-    near = rotation.angle_between(
+    near = rotation.measure_angle_between(
         mended.rotations[middle].astype(float), clip.rotations[middle].astype(float)
     )
     assert near.max() < np.radians(10)
@@ -153,7 +153,7 @@ def quick(takes: list[Clip]) -> Clip:
     """Return the take that turns most, at six times its speed."""
 
     def turned(clip: Clip) -> float:
-        return float(rotation.angle_between(clip.rotations[1:], clip.rotations[:-1]).sum(1).max())
+        return float(rotation.measure_angle_between(clip.rotations[1:], clip.rotations[:-1]).sum(1).max())
 
     clip = max(takes, key=turned)
     return replace(

@@ -276,7 +276,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.formats.transcripts.reader import read_transcript
     from metagraph.generation.stored import read_card, read_model
     from metagraph.graph.requests import RequestError
-    from metagraph.live.osc_bytes import OscError, messages_of, pad_osc
+    from metagraph.live.osc_bytes import OscError, pad_osc, read_osc_messages
     from metagraph.playback.bml.reader import read_bml
     from metagraph.research.study.logs.log import read_log as read_log
     from metagraph.research.study.perceive.answers import read_answers
@@ -302,7 +302,7 @@ def every_reader() -> dict[str, Fuzzed]:
 
     def osc(path: Path) -> None:
         try:
-            list(messages_of(path.read_bytes()))
+            list(read_osc_messages(path.read_bytes()))
         except OscError as error:
             assert str(error).isascii() and str(error).isprintable()
 

@@ -27,7 +27,7 @@ from metagraph.playback.plan import Cue, MetaRequest, Plan
 from metagraph.playback.planner import extend_plan, make_plan
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.posing.cue_times import cue_seconds
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 RATE = 120.0
 CYCLE = 0.4  # seconds of the toy's clip that repeat here: from 0.3 on, amid its swing
@@ -104,7 +104,7 @@ def test_its_first_stroke_lands_as_asked(project: Project, wave: str) -> None:
     action = project.action(wave)
     assert action is not None
     cue = played(planned(project, asked(wave, stroke=5.0)))
-    stroke = phases(project, action).stroke
+    stroke = find_phases(project, action).stroke
     assert cue.start + stroke - cue.entry == pytest.approx(5.0)
     assert cue.clip_seconds(5.0) == pytest.approx(stroke)
 

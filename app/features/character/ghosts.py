@@ -20,7 +20,7 @@ from app.translation import format_number
 from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.composer import find_playable_motion
 from preview.figure import MeshFigure
 from preview.scene import Actor
 
@@ -170,7 +170,7 @@ def _loop_begins(project: Project, clip: str) -> Pose | None:
     """Return the first pose of the loop of the stance that a clip is used on."""
     for action in project.uses.get(clip, ()):
         for loop in project.graphs[action.layer].of(action.stance, "stance"):
-            motion = playable(project, loop)
+            motion = find_playable_motion(project, loop)
             if motion is not None:
                 return motion.pose_at(project.span(loop)[0])
     return None

@@ -38,7 +38,7 @@ from app.widgets.restyling import set_sheet
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual.machine import Link, State
 from metagraph.graph.model import LIMBS, Project
-from metagraph.playback.manual_playback import action_of
+from metagraph.playback.manual_playback import make_state_action
 
 WHEN = make_lazy_texts(
     lambda: ((tr("when the source has finished"), "finished"), (tr("on request"), "request"))
@@ -305,7 +305,7 @@ class Inspector(QScrollArea):
         loop = find_common_value([s.loop for s in states])
         self.loop.setTristate(loop is Mixed)
         self.loop.setCheckState(_check(loop))
-        spans = [project.span(action_of(s)) for s in states]
+        spans = [project.span(make_state_action(s)) for s in states]
         self.first.show_value(find_common_value([round(a, 4) for a, _ in spans]))
         self.last.show_value(find_common_value([round(b, 4) for _, b in spans]))
         self.limb.show_limb(find_common_value([s.limb for s in states]))
@@ -374,7 +374,7 @@ class Inspector(QScrollArea):
                 entry = project.clips.get(state.clip) if state is not None else None
                 if state is None or entry is None:
                     continue
-                start, end = project.span(action_of(state))
+                start, end = project.span(make_state_action(state))
                 shortest = 1 / entry.fps
                 if field == "start":
                     at: float | None = round(min(max(0.0, value), max(0.0, end - shortest)), 3)
@@ -415,7 +415,7 @@ class Inspector(QScrollArea):
                 if link is None or link.exit_time is not None:
                     continue
                 source = project.state(link.source)
-                span = project.span(action_of(source)) if source is not None else (0.0, 1.0)
+                span = project.span(make_state_action(source)) if source is not None else (0.0, 1.0)
                 at = round(max(span[0], span[1] - link.blend), 3)
                 project = manual_edits.update_links(project, [ident], exit_time=at, exit_part=None)
             return project

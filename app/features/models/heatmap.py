@@ -24,7 +24,7 @@ from app.features.models.state_names import describe_tag, name_state_in_sentence
 from app.look.theme import KIND_MARKS, WindowTheme, get_theme
 from app.translation import tr
 from metagraph.graph.model import Layer, Markov
-from metagraph.playback.learning.learn import State, model_states
+from metagraph.playback.learning.learn import State, list_model_states
 
 HEAD = 38.0  # pixels above the columns
 SIDE = 104.0  # left of the rows
@@ -114,7 +114,7 @@ def format_percent(probability: float) -> str:
 
 def describe_matrix_cell(model: Markov, layer: Layer, row: int, column: int) -> str:
     """Say a cell: "After a left gesture, a right fidget follows in 13 % of cases."."""
-    states = model_states(model)
+    states = list_model_states(model)
     p = model.matrix[row][column]
     before = name_state_in_sentence(states[row], layer)
     what = tr("the same") if row == column else name_state_in_sentence(states[column], layer)
@@ -200,7 +200,7 @@ class HeatMap(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         if self.model is None:
             return
-        t, cells, states = get_theme(self.look), self.grid(), model_states(self.model)
+        t, cells, states = get_theme(self.look), self.grid(), list_model_states(self.model)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         lit = self.hovered or (self.current if self.hasFocus() else (-2, -2))
@@ -501,7 +501,7 @@ class HeatMap(QWidget):
 
     def _state_sentence(self, n: int) -> str:
         assert self.model is not None
-        words = name_state_in_sentence(model_states(self.model)[n], self.layer)
+        words = name_state_in_sentence(list_model_states(self.model)[n], self.layer)
         out = words[:1].upper() + words[1:]
         if self.model.lengths:
             mean, deviation = self.model.lengths[n]

@@ -31,7 +31,7 @@ from app.widgets.still_plot import make_number_axes
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, handle_times, move_handle
-from metagraph.playback.timing.speed_curves import speed_of
+from metagraph.playback.timing.speed_curves import measure_action_speed
 
 WORDS = make_lazy_texts(
     lambda: {
@@ -203,7 +203,7 @@ class TimingPlot(QWidget):
             return
         color = t.kind(action.kind)
         if fresh:
-            speeds, words = speed_of(project, action)
+            speeds, words = measure_action_speed(project, action)
             self.curve.setData(np.arange(len(speeds)) / entry.fps, speeds)
             # In one go: each change of a range lets all lines and words find their places again.
             across = -0.02 * entry.duration, max(entry.duration, 0.1) * 1.02

@@ -18,8 +18,8 @@ from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
 from metagraph.playback.planning.director import repeat_interval
-from metagraph.playback.planning.prominence import prominence
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.planning.prominence import measure_prominence
+from metagraph.playback.timing.phases import find_phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
 PHASE_WORDS = make_lazy_texts(
@@ -100,7 +100,7 @@ class ActionRows(QWidget):
         if acts:
             self._show_prominence(project, actions)
         if gestures:
-            found = [phases(project, a) for a in actions]
+            found = [find_phases(project, a) for a in actions]
             self.ready.show_value(find_common_value([p.ready for p in found]))
             self.stroke_end.show_value(find_common_value([p.stroke_end for p in found]))
             self.relax.show_value(find_common_value([p.relax for p in found]))
@@ -120,7 +120,7 @@ class ActionRows(QWidget):
         self.spacing.blockSignals(False)
 
     def _show_prominence(self, project: Project, actions: Sequence[Action]) -> None:
-        shares = [prominence(project, a) for a in actions]
+        shares = [measure_prominence(project, a) for a in actions]
         self.prominence.show_value(find_common_value([100 * share for share in shares]))
         variety = project.settings.variety
         soonest = min(repeat_interval(a.kind, x) for a, x in zip(actions, shares, strict=True)) * variety

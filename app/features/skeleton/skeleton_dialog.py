@@ -27,7 +27,7 @@ from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import PARTS, Part, Project
-from metagraph.motion.roles import ROLES, missing_roles
+from metagraph.motion.roles import ROLES, find_missing_roles
 
 ROW = 36  # pixels of a row, with a choice in it
 
@@ -101,7 +101,7 @@ class SkeletonDialog(QDialog):
             font = self.items[name].font(0)
             font.setBold(name in project.parts or name in project.roles.values())
             self.items[name].setFont(0, font)
-        missing = missing_roles(found)
+        missing = find_missing_roles(found)
         words = tr(
             "{found} roles detected from the joint names and the hierarchy. Your corrections are bold.",
             found=len(found),

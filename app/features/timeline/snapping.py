@@ -13,7 +13,7 @@ from app.look.names import make_readable_name
 from app.stage.performance import StagePerformance
 from app.translation import format_number, make_lazy_texts, tr
 from app.widgets.lane_geometry import LaneScale, RequestMark
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 WORDS = make_lazy_texts(lambda: {"in": tr("start of the loop range"), "out": tr("end of the loop range")})
 REACH = 8.0  # pixels from which something is drawn to a line; ours
@@ -66,7 +66,7 @@ def snap_lines(
                 SnapLine(cue.end, tr("end of {name}", name=name)),
             ]
             if cue.action.kind == "gesture" and (cue.end - cue.start) * scale.each >= WIDE:
-                stroke = phases(shown.project, cue.action).stroke
+                stroke = find_phases(shown.project, cue.action).stroke
                 if cue.entry <= stroke <= cue.once.last:
                     out.append(
                         SnapLine(

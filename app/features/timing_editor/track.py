@@ -20,7 +20,7 @@ from metagraph.graph.clip_source import get_clip_course
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
 from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, find_blocks, list_handles
-from metagraph.playback.timing.speed_curves import SpeedCurve, find_curves, speed_of
+from metagraph.playback.timing.speed_curves import SpeedCurve, find_curves, measure_action_speed
 from metagraph.suggest.jumps.found import Curves
 from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, find_far_ends
 from metagraph.suggest.stances.stance_distance import (
@@ -134,7 +134,7 @@ class TimingTrack:
         curves, speeds = self._curves.of(
             (action.clip, action.layer, action.limb, joint, tuple(project.roles.items())),
             (entry.motion, project.skeleton),
-            lambda: (find_curves(project, action, joint), speed_of(project, action)[0]),
+            lambda: (find_curves(project, action, joint), measure_action_speed(project, action)[0]),
         )
         graph = project.graphs[action.layer]
         loops = tuple(a for s in (action.stance, action.end_stance) if s for a in graph.of(s, "stance")[:1])

@@ -33,7 +33,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.graph.requests import RequestError
 from metagraph.playback.bml.writer import write_bml
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 # --- BML
 
@@ -182,7 +182,7 @@ FPS = 30.0  # frames a second that "from" and "to" count
 
 def _held(project: Project, state: EngineState) -> tuple[float, float, float]:
     """Return from when to when a gesture's animation may be held, and how long it is, seconds."""
-    action, found = state.action, phases(project, state.action)
+    action, found = state.action, find_phases(project, state.action)
     cycle = cycle_of(action.kind, action.timing, found.start, found.end)
     if cycle > 0:
         return cycle, max(cycle, state.seconds - cycle), state.seconds

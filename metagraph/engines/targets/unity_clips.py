@@ -68,7 +68,12 @@ def format_clip_asset(
     the pose that is subtracted in an additive layer, None for other layers.
     """
     skeleton, last = clip.skeleton, clip.frames - 1
-    turns = rotation.continuous(clip.rotations[:, list(moving.joints)].astype(np.float64)) * [1, -1, -1, 1]
+    turns = rotation.make_continuous(clip.rotations[:, list(moving.joints)].astype(np.float64)) * [
+        1,
+        -1,
+        -1,
+        1,
+    ]
     curves: dict[int, list[str]] = {1: [], 2: []}  # 1: position, 2: rotation
     bound: list[str] = []
 

@@ -30,8 +30,8 @@ from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.roles import REQUIRED
-from metagraph.motion.skeleton import Pose, Skeleton, unique_names
-from metagraph.motion.t_pose import t_pose
+from metagraph.motion.skeleton import Pose, Skeleton, make_names_unique
+from metagraph.motion.t_pose import make_t_pose
 
 META = "vrm_meta.json"
 LICENCE = "https://vrm.dev/licenses/1.0/"
@@ -182,7 +182,7 @@ def find_vrm_pose(skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
     axes = find_body_axes(skeleton, roles, at)
     if axes[2] @ [0, 0, 1] < 0.95:
         raise ExportError(phrase("a VRM character must face +Z in its rest pose, and this one does not"))
-    return _grounded(t_pose(skeleton, roles, axes[0]), skeleton, roles)
+    return _grounded(make_t_pose(skeleton, roles, axes[0]), skeleton, roles)
 
 
 def _write(order: ExportOrder) -> ExportedFiles:
@@ -202,7 +202,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
     used = [project.clips[c] for c in project.uses if c in project.clips]
     played = [make_clip_as_played(project, entry) for entry in used]
     clips = [fit_curves_to_face(project, motion) for motion in played if motion is not None]
-    names = unique_names([clip.name for clip in clips])
+    names = make_names_unique([clip.name for clip in clips])
     path = order.folder / f"{order.stem}.vrm"
     write_glb(
         path,

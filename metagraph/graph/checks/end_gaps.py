@@ -18,8 +18,8 @@ from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import PARTS, Action, MetaGraph, Part, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.motion.clip import Clip
-from metagraph.motion.features import pose_distance
-from metagraph.motion.rig_controls import rig_controls
+from metagraph.motion.features import measure_pose_distance
+from metagraph.motion.rig_controls import find_rig_controls
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -96,7 +96,7 @@ def measure_distances_to_stance(project: Project, action: Action, times: Array) 
             continue
         there = target.pose_at(np.full(len(times), project.span(loop)[0]))
         joints = find_reached_joints(project, graph, action)
-        out.append(pose_distance(motion.skeleton, motion.pose_at(times), there, joints))
+        out.append(measure_pose_distance(motion.skeleton, motion.pose_at(times), there, joints))
     return out[0], out[1]
 
 
@@ -186,7 +186,7 @@ def _reached_by(
     skeleton: Skeleton | None, parts: tuple[Part, ...], weighty: tuple[Part, ...]
 ) -> tuple[int, ...]:
     """Return the joints of the body parts that a layer moves, without those that only control others."""
-    controls = rig_controls(skeleton) if skeleton is not None else ()
+    controls = find_rig_controls(skeleton) if skeleton is not None else ()
     return tuple(j for j, part in enumerate(parts) if part in weighty and j not in controls)
 
 
@@ -196,5 +196,7 @@ def _gap(one: Clip, seconds: float, other: Clip, there: float, joints: tuple[int
     """
     return one.measured(
         ("gap", seconds, ref(other), there, joints),
-        lambda: float(pose_distance(one.skeleton, one.pose_at(seconds), other.pose_at(there), joints)),
+        lambda: float(
+            measure_pose_distance(one.skeleton, one.pose_at(seconds), other.pose_at(there), joints)
+        ),
     )

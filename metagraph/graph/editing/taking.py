@@ -21,7 +21,7 @@ from metagraph.graph.face.takes import is_face_take
 from metagraph.graph.model import LAYERS, Action, ClipEntry, Kind, Layer, MetaGraph, Project, Stance
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
+from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint
 
 Becomes = Literal["new", "joined", "there", "renamed", "left out"]
 _NEW: dict[Kind, str] = {
@@ -313,7 +313,7 @@ class _Clips:
         if joint_map.missing:
             raise RetargetError(joint_map.missing[0])
         motion = self.bringing.bring(source, joint_map)
-        self.joint_maps[fingerprint(source.skeleton)] = joint_map
+        self.joint_maps[make_fingerprint(source.skeleton)] = joint_map
         return with_source(replace(entry, brought_from=motion.brought_from), motion)
 
 

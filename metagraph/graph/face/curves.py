@@ -179,7 +179,7 @@ def _turned(clip: Clip, turns: Mapping[int, Array], shifts: Mapping[int, Array])
     for joint, away in shifts.items():
         translations[:, places.index(joint)] += away
     return replace(
-        clip, rotations=rotation.continuous(rotations), translations=translations, translated=places
+        clip, rotations=rotation.make_continuous(rotations), translations=translations, translated=places
     )
 
 

@@ -15,7 +15,7 @@ from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import RetargetError, fingerprint
+from metagraph.motion.joint_map import RetargetError, make_fingerprint
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -26,7 +26,7 @@ FACE_SKELETON = Skeleton(
     np.tile([0.0, 0.0, 0.0, 1.0], (3, 1)),
     np.array([[0.0, 0.0, 0.0], [0.032, 0.07, 0.08], [-0.032, 0.07, 0.08]]),
 )
-FACE_TAKE = fingerprint(FACE_SKELETON)
+FACE_TAKE = make_fingerprint(FACE_SKELETON)
 _LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")
 
 
@@ -70,7 +70,7 @@ def put_on_body(project: Project, clip: Clip) -> Clip:
     return replace(
         clip,
         skeleton=skeleton,
-        rotations=rotation.continuous(rotation.normalize(rotations)),
+        rotations=rotation.make_continuous(rotation.normalize(rotations)),
         translations=np.repeat(np.asarray(base.translations)[None, list(places)], clip.frames, 0),
         translated=places,
         morphs=morphs,

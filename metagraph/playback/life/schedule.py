@@ -17,7 +17,7 @@ from metagraph.graph.words import MODES
 from metagraph.playback.life.expressions import emphases_on, swells_on
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Track
-from metagraph.playback.life.voice import Voice, same_voices, stressed
+from metagraph.playback.life.voice import Voice, are_same_voices, stressed
 from metagraph.playback.life.wanted import (
     GazeTarget,
     modes_between,
@@ -169,7 +169,7 @@ def _change(before: Schedule, life: Life, track: Track, voices: Mapping[str, Voi
     """
     if before.track is None or before.seed != seed or not is_same_life(before.life, life):
         return "all"
-    if not same_voices(before.voices, voices):
+    if not are_same_voices(before.voices, voices):
         return "all"
     if before.track is track or before.track.like(track):
         return ""

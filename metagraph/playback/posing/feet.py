@@ -55,7 +55,7 @@ def _leads(rig: WeightRig, place: int) -> bool:
     return False
 
 
-def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
+def make_foot_rows(project: Project, motion: Clip, rig: WeightRig) -> Rows:
     """Return the rows of a clip's `FootTrack`."""
     skeleton, roles = motion.skeleton, anatomy.project_roles(project)
     count = int(np.ceil(motion.duration * FOOT_RATE - 1e-6)) + 1
@@ -75,7 +75,7 @@ def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
         n = FOOT_NUMBERS * side
         out[:, n] = still
         out[:, n + 1 : n + 4] = at[:, foot]
-        out[:, n + 4 : n + 8] = rotation.continuous(turned[:, foot].astype(float))
+        out[:, n + 4 : n + 8] = rotation.make_continuous(turned[:, foot].astype(float))
     found = np.round(out / FOOT_UNIT)
     if (np.ptp(found, axis=0) <= SAME).all():
         found = found[:1]

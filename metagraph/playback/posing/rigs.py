@@ -46,7 +46,7 @@ class ResolvedProject(Project):
 _known: Remembered[Rigs] = Remembered(gather_face_parts)
 
 
-def rigs_of(project: Project) -> Rigs:
+def get_rigs(project: Project) -> Rigs:
     """Return the rigs of a project; the same object until something they depend on changes. Raises ValueError
     without a skeleton.
     """

@@ -27,7 +27,7 @@ from metagraph.motion.feet_solve import FootGoal, plant_feet
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig, answer_arms, moves_body
 from metagraph.playback.plan import LayerPlan, Plan
-from metagraph.playback.posing.feet import FeetOfPlan, Rows, find_feet_layer, rows_of_feet
+from metagraph.playback.posing.feet import FeetOfPlan, Rows, find_feet_layer, make_foot_rows
 from metagraph.playback.posing.follow_through import (
     KNOTS,
     NUMBERS,
@@ -183,7 +183,7 @@ def find_foot_rows(weight: Weight, project: Project, clip: str) -> Rows:
         motion = entry.motion if entry is not None else None
         fits = motion is not None and motion.skeleton == project.skeleton
         if fits and motion is not None and weight.rig is not None and weight.feet_layer is not None:
-            found = rows_of_feet(project, motion, weight.rig)
+            found = make_foot_rows(project, motion, weight.rig)
         else:
             found = ()
         weight.feet[clip] = found

@@ -39,7 +39,7 @@ class SpeedCurve:
         return f"{self.name}, {UNIT}" + (f", seen from {self.seen_from}" if self.seen_from else "")
 
 
-def speed_of(project: Project, action: Action) -> tuple[Array, str]:
+def measure_action_speed(project: Project, action: Action) -> tuple[Array, str]:
     """Return the speed over an action's clip `[F]`, metres a second, of the fastest of what it moves, and in
     words what of; nothing and "" if there is no motion on the project's skeleton.
     """
@@ -48,7 +48,7 @@ def speed_of(project: Project, action: Action) -> tuple[Array, str]:
         return np.zeros(0), ""
     joints, ground = _movers(project, motion, action.layer, action.limb)
     part = {"arms": "hand", "head": "head"}.get(action.layer, "body")
-    return features.speed(motion, joints, ground), f"{part} speed"
+    return features.measure_speed(motion, joints, ground), f"{part} speed"
 
 
 def find_curves(project: Project, action: Action, joint: str = "") -> tuple[SpeedCurve, ...]:
@@ -89,7 +89,7 @@ def _curve(
     motion: Clip, name: str, joints: Sequence[int], ground: int | None, names: Sequence[str]
 ) -> SpeedCurve:
     return SpeedCurve(
-        name, names[ground] if ground is not None else "", features.speed(motion, joints, ground)
+        name, names[ground] if ground is not None else "", features.measure_speed(motion, joints, ground)
     )
 
 

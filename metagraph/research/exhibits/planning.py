@@ -12,7 +12,7 @@ from math import sqrt
 
 from metagraph.graph.edits import set_settings
 from metagraph.graph.model import Layer, Project, Settings
-from metagraph.playback.learning.compare import stationary
+from metagraph.playback.learning.compare import compute_stationary_shares
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest
 from metagraph.playback.planner import extend_plan, make_plan
 from metagraph.playback.planning.choice import key32
@@ -288,7 +288,7 @@ def exhibit_matrix(material: ExhibitMaterial) -> MadeExhibit:
         rows.append((STATES[n], *cells))
     forbidden = sum(moves[i][j] for i in range(count) for j in range(count) if not FIGURE_11[i][j])
     least = [fewest(row) for row in FIGURE_11]
-    long_run = stationary(ARMS.matrix)
+    long_run = compute_stationary_shares(ARMS.matrix)
     says = [
         f"{len(sequence):,} actions written by the model that ships: no share is off the published one by "
         f"more than {worst:.1f} standard deviations (81 are looked at), and what has 0 % never came "

@@ -23,7 +23,7 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.checks.end_gaps import TALL, find_reached_joints, get_action_motion
 from metagraph.graph.expand import find_reachable
 from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
-from metagraph.playback.posing.composer import find_composer, playable
+from metagraph.playback.posing.composer import find_composer, find_playable_motion
 from metagraph.playback.posing.layers import sample_offsets
 
 Array = NDArray[Any]
@@ -256,7 +256,7 @@ class _Pace:
         size, speeds = _size(self.project), []
         moves = False
         for action in self.project.actions():
-            clip = playable(self.project, action)
+            clip = find_playable_motion(self.project, action)
             start, end = self.project.span(action)
             if clip is None or end - start < 2 * MOMENT:
                 continue

@@ -18,7 +18,7 @@ from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import REACH, Action, Layer, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.motion.clip import Clip
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.jumps import compatibility as c
 from metagraph.suggest.tracks import RATE
 
@@ -177,7 +177,7 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
     middle = (
         t.stroke
         if t.stroke is not None
-        else phases(project, action).stroke
+        else find_phases(project, action).stroke
         if action.kind == "gesture"
         else None
     )
@@ -306,7 +306,7 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     if into is None or left is None:
         return None
     stats = c.mask_statistics(measured.stats, motion, anatomy.make_action_mask(project, action), roles)
-    stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
+    stroke = find_phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
     times = _times(motion, into)
     gaps = end_gaps.measure_distances_to_stance(project, action, times)
     if cycle_of(action.kind, action.timing, *project.span(action)) > 0:

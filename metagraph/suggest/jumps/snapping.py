@@ -13,7 +13,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.model import Action, Project
 from metagraph.playback.timing.handles import EDGES, handle_times
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.jumps.seen_jumps import SeenJumps
 
 Array = NDArray[Any]
@@ -119,7 +119,7 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
     start, end = project.span(action)
     if action.kind == "gesture" and (handle in EDGES or handle == "stroke"):
         bare = replace(action.timing, ready=None, stroke_end=None, relax=None, stroke=None)
-        found = phases(project, replace(action, timing=bare))
+        found = find_phases(project, replace(action, timing=bare))
         by = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
         yield Snap(round(by[handle], 3), phrase("as detected from the motion"))
     if handle == "exit":

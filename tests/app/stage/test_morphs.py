@@ -16,7 +16,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback.planner import make_plan
 from preview.figure import SkinnedFigure, StickFigure
-from tests.posing import morphs_at
+from tests.posing import compute_morphs_at
 
 
 def test_a_figure_without_morphs_takes_no_weights(toy):
@@ -47,7 +47,7 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
 
     project = edits.add_stance(project, "head", "face", [entry.id])
     loop = project.graphs["head"].of(next(iter(project.graphs["head"].stances)), "stance")[0]
-    assert morphs_at(
+    assert compute_morphs_at(
         make_plan(project, 5.0), project, frame / entry.fps - project.span(loop)[0]
     ) == pytest.approx({name: min(1.0, max(0.0, value)) for name, value in wanted.items()}, abs=1e-3)
     times = np.array([frame / entry.fps])

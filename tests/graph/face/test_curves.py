@@ -134,7 +134,9 @@ def test_arkits_curves_move_a_face_that_has_only_vrms() -> None:
 
 def angle(made: Clip, joint: str, frame: int = 0) -> float:
     j = SKELETON.index(joint)
-    return float(np.degrees(rotation.angle_between(made.rotations[frame, j], SKELETON.rest_rotations[j])))
+    return float(
+        np.degrees(rotation.measure_angle_between(made.rotations[frame, j], SKELETON.rest_rotations[j]))
+    )
 
 
 @pytest.mark.parametrize("targets", [(), ADA], ids=["mannequin", "Ada"])

@@ -154,7 +154,7 @@ def test_lids_hung_elsewhere_go_round_the_eye() -> None:
     )
     turn = rotation.from_axis_angle(axes[0], np.radians(40.0))
     assert np.allclose(moved[joint], eye + rotation.rotate_vectors(turn, at_rest[joint] - eye), atol=1e-9)
-    assert rotation.angle_between(after[joint], rotation.multiply(turn, before[joint])) < 1e-7
+    assert rotation.measure_angle_between(after[joint], rotation.multiply(turn, before[joint])) < 1e-7
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.0, -2.5])

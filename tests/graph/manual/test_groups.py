@@ -13,7 +13,7 @@ from metagraph.graph.manual.check import check_manual
 from metagraph.graph.manual.machine import ANY, Condition, Link, expand_links, remove_from_machine
 from metagraph.graph.manual.timing import find_exit_moment
 from metagraph.graph.model import Project
-from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan
+from metagraph.playback.manual_playback import Fire, make_manual_plan, plan_link_alone
 from tests.graph.manual.test_machine import linked, project
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
@@ -70,7 +70,7 @@ def test_a_link_to_a_group_leads_to_its_entry_and_one_without_takes_none() -> No
     assert not expand_links(lost.manual["arms"])
     assert "no-entry" in [x.code for x in check_manual(lost)]
     with pytest.raises(KeyError):
-        link_alone(lost, next(iter(lost.manual["arms"].links)))
+        plan_link_alone(lost, next(iter(lost.manual["arms"].links)))
 
 
 def test_a_states_own_link_stands_before_its_aliases_and_theirs_before_any_states() -> None:

@@ -21,7 +21,7 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planning.mood import MOODS, Mood, MoodFrom, Moods, mood_at
 from metagraph.speech.duet import duet
 from metagraph.speech.sympathies import laughs_of
-from tests.posing import morphs_at
+from tests.posing import compute_morphs_at
 
 SAMPLES = Path(__file__).parents[3] / "sample_clips"
 HAPPY, ANGRY, SAD = (Mood(*MOODS[name]) for name in ("happy", "angry", "sad"))
@@ -81,7 +81,7 @@ def talk(words: tuple[str, ...] = (), **rates: float) -> Conversation:
 
 
 def smile(project: Project, plan: Plan, seconds: float) -> float:
-    return morphs_at(plan, project, seconds).get("mouthSmileLeft", 0.0)
+    return compute_morphs_at(plan, project, seconds).get("mouthSmileLeft", 0.0)
 
 
 def test_a_listener_smiles_with_a_happy_partner_and_less_with_a_smaller_dial(sample: Project) -> None:

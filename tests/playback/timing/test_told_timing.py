@@ -15,8 +15,8 @@ from metagraph.graph import requests as a
 from metagraph.graph.face.names import VISEMES
 from metagraph.graph.model import Project
 from metagraph.playback.life.line_timing import ARKIT, AZURE, OCULUS, POLLY, SETS
-from metagraph.playback.life.lips import mouth
-from metagraph.playback.life.voice import voice_for_speech
+from metagraph.playback.life.lips import compute_mouth_shapes
+from metagraph.playback.life.voice import choose_voice
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import RunningPlan, plan_performance
 from metagraph.playback.timing.told_timing import read_given_timing
@@ -27,7 +27,7 @@ WORDS = [["Hello", 0.1, 0.5], ["there", 1.5, 1.9]]
 
 def shown(plan: Plan, times: Any) -> Any:
     """Return how much of each shape but silence the mouth shows, `[N, 14]`."""
-    found = mouth(plan.track, {}, 0.03, np.asarray(times, float))
+    found = compute_mouth_shapes(plan.track, {}, 0.03, np.asarray(times, float))
     return np.zeros((len(times), len(VISEMES) - 1)) if found is None else found
 
 
@@ -65,7 +65,7 @@ def test_words_alone_are_what_is_said(sample: Project) -> None:
     (speech,) = said(sample, words=WORDS).track.speeches
     assert speech.text == "Hello there"
     assert speech.end == pytest.approx(1.0 + 1.9 + 0.065, abs=0.02), "the mouth needs a little to shut"
-    accents = voice_for_speech({}, speech).accents
+    accents = choose_voice({}, speech).accents
     assert 0.1 < accents[0] < 0.5
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
-from metagraph.playback.timing.speed_curves import speed_of
+from metagraph.playback.timing.speed_curves import measure_action_speed
 from metagraph.suggest.jumps.found import Measured, stance_curves
 from metagraph.suggest.jumps.seen_jumps import SeenJumps
 from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap, snaps_of, turning
@@ -47,7 +47,7 @@ def test_a_blend_rests_where_it_is_long_enough_for_its_way(wide, action):
 
 
 def test_a_stroke_rests_where_the_hand_is_fastest(wide, action):
-    speeds, _ = speed_of(wide, action)
+    speeds, _ = measure_action_speed(wide, action)
     found = snaps_of(wide, action, "stroke", speeds=speeds)
     assert found[0].why == "as detected from the motion"
     fastest = [s for s in found if s.why.startswith("fastest here, ")]

@@ -26,7 +26,7 @@ from metagraph.formats.elan import read_elan
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Markov
 from metagraph.playback.learning.compare import compare_model
-from metagraph.playback.learning.learn import learn_model, model_states
+from metagraph.playback.learning.learn import learn_model, list_model_states
 from metagraph.playback.planning.markov import ARMS, DEFAULTS
 from tests.app.painted_text import faults, seen_in
 
@@ -222,7 +222,7 @@ def test_both_themes_are_drawn(panel, qtbot):
 
 
 def test_states_are_told_apart_by_short_marks():
-    marks = [shorten_state(state, "arms") for state in model_states(ARMS)]
+    marks = [shorten_state(state, "arms") for state in list_model_states(ARMS)]
     assert marks[:3] == ["▲L", "◆L", "➜L"] and len(set(marks)) == 9
     assert [
         shorten_state(("both", "gesture", tags), "head") for tags in ("", "positive", "negative", "calm")
