@@ -289,9 +289,9 @@ def _direction(
     captions = noted.captions if options.captions is None else options.captions
     cuts = noted.cuts if options.cuts is not False and len(seen) > 1 else ()
     if options.cuts and not cuts and len(seen) > 1:
-        from metagraph.speech.automatic_cuts import automatic_cuts
+        from metagraph.speech.automatic_cuts import make_automatic_cuts
 
-        cuts = automatic_cuts(project.conversations[key])
+        cuts = make_automatic_cuts(project.conversations[key])
     talk = project.conversations.get(key) if options.conversation is not None else None
     return cuts, list_captions(shown, talk, folder) if captions else ()
 

@@ -181,12 +181,12 @@ def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
 def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
     """Return what all sides do, with the project's graph moving all of them."""
     from app.cli.command_output import open_for_command
-    from metagraph.speech.duet import duet
+    from metagraph.speech.duet import plan_duet
 
     project = open_for_command(path)
     conversation = project.conversations[ident]
     count = len(conversation.sides)
-    return duet(conversation, ident, (project,) * count, (None,) * count).parts
+    return plan_duet(conversation, ident, (project,) * count, (None,) * count).parts
 
 
 def _write(out: Path, read: Read, folder: Path | None) -> None:

@@ -128,7 +128,7 @@ def read_side_speech(
     them, of its own. transcript: where its words are, None if they are in the file itself. Raises FileError.
     """
     from metagraph.graph.conversation.model import list_segments_heard_by
-    from metagraph.speech.prosody import prosody
+    from metagraph.speech.prosody import measure_prosody
     from metagraph.speech.sound import read_head, read_sound
     from metagraph.synthesis.prosody_costs import SpokenTake
 
@@ -139,7 +139,7 @@ def read_side_speech(
     if sound is not None:
         channel = of.channel if of.channel is not None else number if read_head(sound)[1] >= 2 else None
         samples, rate = read_sound(sound, channel, LONGEST, KEPT)
-    return SpokenTake(segments, words, prosody(segments, words, samples, rate))
+    return SpokenTake(segments, words, measure_prosody(segments, words, samples, rate))
 
 
 def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:

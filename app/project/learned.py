@@ -132,10 +132,10 @@ class Learned(QObject):
         self._due -= 1
 
     def _keep(self, project: Project, key: str, wait: bool = True) -> None:
-        from metagraph.suggest.propose import examples_of
-        from metagraph.suggest.traits import list_known_traits, traits_of
+        from metagraph.suggest.propose import list_examples
+        from metagraph.suggest.traits import list_known_traits, measure_all_traits
 
-        examples = examples_of(project, traits_of(project) if wait else list_known_traits(project))
+        examples = list_examples(project, measure_all_traits(project) if wait else list_known_traits(project))
         self._change(CLIPS, lambda m: m.with_project(key, examples))
 
     def edit(self, change: Callable[[Patterns], Patterns]) -> None:

@@ -15,8 +15,8 @@ from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import Standardisation
 from metagraph.graph.conversation.model import Conversation, list_other_sides
-from metagraph.speech.activity import activity as spoken
-from metagraph.speech.pitch import pitch
+from metagraph.speech.activity import find_activity as spoken
+from metagraph.speech.pitch import measure_pitch
 from metagraph.speech.sound import analyse_sound
 from metagraph.speech.soundtrack import resample_sound
 
@@ -239,7 +239,7 @@ def detect_voice_activity(own: Array, partner: Array | None, rate: int, frames: 
     answers.
     """
     heard = [analyse_sound(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
-    tones = [pitch(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
+    tones = [measure_pitch(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
     found = []
     for n in range(2):
         other = heard[1 - n] if len(heard) == 2 else None

@@ -32,7 +32,7 @@ from metagraph.playback.posing.composer import Reach, find_composer
 from metagraph.playback.posing.layers import sample_offsets
 from metagraph.playback.posing.overlay import find_overlaid_joints
 from metagraph.suggest.tracks import RATE, track_seconds
-from metagraph.synthesis.extending.path import FADE, DriverGraph, PathExtender, Told, driver_graph
+from metagraph.synthesis.extending.path import FADE, DriverGraph, PathExtender, Told, make_driver_graph
 from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
 Array = NDArray[Any]
@@ -111,20 +111,20 @@ def make_live_graph(
     keys: float | None = None,
     most: int | None = None,
 ) -> LiveGraph:
-    """Return the graph of takes, made ready to drive. Arguments as for `graph.threshold`, `states.key_states`
-    and `graph.build`. Raises SynthesisError.
+    """Return the graph of takes, made ready to drive. Arguments as for `graph.find_threshold`,
+    `states.key_states` and `graph.build`. Raises SynthesisError.
     """
     from metagraph.synthesis.constraints import find_change_states, find_heard_at
-    from metagraph.synthesis.graph import build_graph, threshold
+    from metagraph.synthesis.graph import build_graph, find_threshold
     from metagraph.synthesis.states import KEYS, LEVEL, STEP, key_states, read_states
 
     states = read_states(takes)
     pairs = [(c, s) for c, s in zip(takes, speech, strict=True) if c.frames >= 2]
     told = [s for _, s in pairs]
-    limit = threshold(states, STEP if k is None else k, LEVEL if level is None else level)
+    limit = find_threshold(states, STEP if k is None else k, LEVEL if level is None else level)
     places = key_states(states, KEYS if keys is None else keys, find_change_states(states, told))
     graph = build_graph(states, limit, places, most)
-    return LiveGraph(tuple(c for c, _ in pairs), driver_graph(graph, find_heard_at(states, told)))
+    return LiveGraph(tuple(c for c, _ in pairs), make_driver_graph(graph, find_heard_at(states, told)))
 
 
 def list_recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segment, ...]]]:

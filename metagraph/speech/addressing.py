@@ -68,7 +68,7 @@ def find_speaking_spans(segments: Iterable[Segment]) -> list[tuple[float, float]
     return out
 
 
-def turns_of(conversation: Conversation) -> tuple[AddressedTurn, ...]:
+def list_addressed_turns(conversation: Conversation) -> tuple[AddressedTurn, ...]:
     """Return the turns of all sides, by start, each with whom it is said to."""
     found = sorted(
         (t for side in range(len(conversation.sides)) for t in _turns(conversation, side)),
@@ -144,7 +144,7 @@ def _called(text: str, names: dict[int, tuple[str, ...]]) -> int | None:
     return max(found)[1] if found else None
 
 
-def floor(turns: Iterable[AddressedTurn]) -> tuple[tuple[float, float, AddressedTurn], ...]:
+def find_floor_holders(turns: Iterable[AddressedTurn]) -> tuple[tuple[float, float, AddressedTurn], ...]:
     """Return from when to when which of some turns holds the floor: of those at once the one that began
     first. By start; nothing while nobody speaks.
     """
@@ -158,11 +158,11 @@ def floor(turns: Iterable[AddressedTurn]) -> tuple[tuple[float, float, Addressed
     return tuple(out)
 
 
-def roles_of(conversation: Conversation, side: int) -> tuple[Role, ...]:
+def list_side_roles(conversation: Conversation, side: int) -> tuple[Role, ...]:
     """Return what a side is from 0 to the conversation's length, without gaps."""
-    every = turns_of(conversation)
-    own = floor(t for t in every if t.side == side)
-    theirs = floor(t for t in every if t.side != side)
+    every = list_addressed_turns(conversation)
+    own = find_floor_holders(t for t in every if t.side == side)
+    theirs = find_floor_holders(t for t in every if t.side != side)
     edges = sorted(
         {0.0, conversation.length, *(x for part in (own, theirs) for a, b, _ in part for x in (a, b))}
     )

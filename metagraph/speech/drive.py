@@ -34,10 +34,10 @@ from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.addressing import TURN, find_speaking_spans
 from metagraph.speech.gesture_choice import GestureClause, choose_gestures
-from metagraph.speech.group_gaze import looks_of
+from metagraph.speech.group_gaze import list_looks
 from metagraph.speech.mode_spans import list_modes
-from metagraph.speech.peak_blinks import peak_blinks
-from metagraph.speech.turn_cues import LISTEN, look_at_turns, nod_to_clauses
+from metagraph.speech.peak_blinks import place_peak_blinks
+from metagraph.speech.turn_cues import LISTEN, look_at_turns, place_clause_nods
 
 PARTNER = "partner"  # named point of the other's head; if there are several, with a number from 1
 TOLERANCE = 0.1  # seconds by which a stroke may miss its peak (section 7.2)
@@ -74,7 +74,7 @@ def drive_side(
     ]
     if conversation.blinks == "peaks":
         peaks = [s.peak for s in conversation.sides[side].segments if s.peak is not None]
-        found = peak_blinks(peaks, conversation.length, conversation.seed, str(side))
+        found = place_peak_blinks(peaks, conversation.length, conversation.seed, str(side))
         out += [Blink(id=f"blink {n}", at=at) for n, at in enumerate(found)]
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
@@ -101,7 +101,7 @@ def drive_side(
     if nods:
         head = project.graphs["head"]
         small = any(LISTEN in a.tags for a in head.of(head.start or "", "gesture"))
-        listened = list(nod_to_clauses(conversation, side, small))
+        listened = list(place_clause_nods(conversation, side, small))
         out += listened
         busy += [(nod.at or 0.0, (nod.at or 0.0) + 1.0) for nod in listened]
     if "transition" in kinds["body"]:
@@ -132,7 +132,7 @@ def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Ite
     for n, other in enumerate(others):
         name = f"{PARTNER} {other + 1}"
         yield Place(id=name, at=0.0, name=name, point=heads[min(n, len(heads) - 1)])
-    for n, look in enumerate(looks_of(conversation, side)):
+    for n, look in enumerate(list_looks(conversation, side)):
         yield Look(id=f"look {n}", at=look.at, to=f"{PARTNER} {look.side + 1}")
 
 
@@ -249,7 +249,7 @@ def drive(
     ), plan
 
 
-def strokes(project: Project, plan: Plan) -> dict[str, float]:
+def find_stroke_times(project: Project, plan: Plan) -> dict[str, float]:
     """Return the time of each requested gesture's stroke, in seconds, by the request's id."""
     out: dict[str, float] = {}
     for cue in plan.layers["arms"].cues:
@@ -264,7 +264,7 @@ def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
     """Return requests for gestures that are not played or miss their peak; of several in a row every second
     one, because without it the next may fit.
     """
-    found = strokes(project, plan)
+    found = find_stroke_times(project, plan)
     out: set[str] = set()
     before = False
     for ask in sorted((a for a in asks if isinstance(a, Gesture | Play)), key=lambda a: a.stroke or 0.0):

@@ -69,7 +69,7 @@ def _beside(head: Point, degrees: float) -> Point:
     )
 
 
-def nod_to_clauses(conversation: Conversation, side: int, small: bool) -> Iterator[Nod]:
+def place_clause_nods(conversation: Conversation, side: int, small: bool) -> Iterator[Nod]:
     """Yield the nods of a side that listens to what the others say. small: whether its head has nods with the
     tag "listen".
     """

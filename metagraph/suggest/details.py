@@ -47,15 +47,15 @@ def with_timing(
         motions = [m for p in mine if (m := project.clips[p.clip].motion) is not None]
         if not motions:
             continue
-        stats = compatibility.statistics(motions, layer, roles)
+        stats = compatibility.compute_statistics(motions, layer, roles)
         loops: dict[str, list[tuple[Clip, float, float]]] = {
-            k: list(v) for k, v in compatibility.loops_of(project, layer).items()
+            k: list(v) for k, v in compatibility.list_stance_loops(project, layer).items()
         }
         for p in mine:
             motion = project.clips[p.clip].motion
             if p.kind.value == "stance" and p.stance is not None and motion is not None:
                 loops.setdefault(p.stance.value, []).append((motion, 0.0, motion.duration))
-        frames = {key: compatibility.stance_frames(stats, rows, roles) for key, rows in loops.items()}
+        frames = {key: compatibility.find_stance_frames(stats, rows, roles) for key, rows in loops.items()}
         for p in mine:
             if cancelled is not None and cancelled():
                 return out
@@ -249,7 +249,9 @@ def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> t
 # --- where to stand when nothing rests
 
 
-def rest_of(project: Project, place: StancePlace, proposals: Mapping[str, Proposal]) -> RestMoment | None:
+def find_rest_moment(
+    project: Project, place: StancePlace, proposals: Mapping[str, Proposal]
+) -> RestMoment | None:
     """Return the stillest moment in which clips show a stance that no clip rests in: the beginning of one
     that starts there, or the end of one that ends there; None if no clip has motion.
     """

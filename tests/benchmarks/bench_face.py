@@ -44,7 +44,7 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import hear_asks
 from metagraph.playback.planning.mood import MOODS
-from metagraph.speech.phones import pieces_of
+from metagraph.speech.phones import list_mouth_pieces
 from metagraph.speech.textgrid import read_textgrid
 from tests.posing import face_weights
 
@@ -179,7 +179,9 @@ def main() -> None:
             (spelled(ALPHABET, text, length).pieces, length) for text, length in spoken
         ]
     grids = [read_textgrid(p) for p in sorted((SAMPLES / "lines").glob("*.TextGrid"))]
-    recorded = [(pieces_of(grid), max(i.end for t in grid.tiers for i in t.intervals)) for grid in grids]
+    recorded = [
+        (list_mouth_pieces(grid), max(i.end for t in grid.tiers for i in t.intervals)) for grid in grids
+    ]
     groups["phones of recorded lines"] = recorded
     print(f"{path.name}: median (least) of the most; of the best frame; share that reach 0.95; gap mm")
     for name, said in groups.items():

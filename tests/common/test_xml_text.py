@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from metagraph.common import svg
 from metagraph.common.xml_text import INSTEAD, clean_xml_text, describe_replaced, escape, quote_xml
-from metagraph.research.study.reports.figure_files import standalone
+from metagraph.research.study.reports.figure_files import make_standalone_svg
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -42,7 +42,7 @@ def test_what_is_replaced_is_counted_and_told() -> None:
 def test_a_figure_with_control_characters_in_its_words_is_read() -> None:
     drawing = svg.make_svg_drawing(20, [svg.draw_svg_text(0, 0, "a\x01<b>", "dim", "start")], "ti\x1btle'\"")
     ElementTree.fromstring(drawing)
-    ElementTree.fromstring(standalone(drawing).encode())
+    ElementTree.fromstring(make_standalone_svg(drawing).encode())
 
 
 def test_nothing_that_writes_files_escapes_by_other_means() -> None:

@@ -19,11 +19,11 @@ from metagraph.speech.text_gestures import (
     TextStream,
     find_gesture_words,
     list_lexicon_languages,
+    load_gesture_words,
     make_gesture_requests,
     propose_gestures,
     read_gesture_words,
     timed_words,
-    words_for_gesture,
 )
 from metagraph.speech.word_gestures import APART, GestureRule, GestureWords, ProposedGesture
 
@@ -45,7 +45,7 @@ def tags_of(project: Project) -> dict[Layer, set[str]]:
 
 
 EVERY: dict[Layer, set[str]] = {
-    "arms": {tag for rule in words_for_gesture().rules for tag in rule.tags} | {"beat", "question"},
+    "arms": {tag for rule in load_gesture_words().rules for tag in rule.tags} | {"beat", "question"},
     "head": {"positive"},
 }
 
@@ -166,7 +166,7 @@ def test_a_lexicon_of_ones_own_is_read_and_a_broken_one_is_told(tmp_path: Path) 
 
 
 def test_every_words_phrase_of_the_lexicon_is_as_words_are_read() -> None:
-    for rule in words_for_gesture().rules:
+    for rule in load_gesture_words().rules:
         assert rule.tags and rule.strength > 0
         for phrase in rule.words:
             assert [w.plain for w in timed_words(phrase)] == phrase.split(), phrase
@@ -201,9 +201,9 @@ def test_other_languages_have_lexicons_of_their_own_found_by_the_words(language:
 
 
 def test_every_lexicon_says_the_same_things_in_its_language() -> None:
-    english = [rule.tags for rule in words_for_gesture("en").rules]
+    english = [rule.tags for rule in load_gesture_words("en").rules]
     for language in list_lexicon_languages():
-        lexicon = words_for_gesture(language)
+        lexicon = load_gesture_words(language)
         assert lexicon.language == language
         assert [rule.tags for rule in lexicon.rules] == english
         every = [phrase for rule in lexicon.rules for phrase in rule.words]
@@ -213,7 +213,7 @@ def test_every_lexicon_says_the_same_things_in_its_language() -> None:
 
 
 def test_a_language_without_a_lexicon_and_none_that_is_told_have_the_english_one() -> None:
-    assert words_for_gesture("xx") == find_gesture_words("") == words_for_gesture("en")
+    assert load_gesture_words("xx") == find_gesture_words("") == load_gesture_words("en")
 
 
 def test_a_stream_goes_on_in_the_language_it_has_been_in() -> None:

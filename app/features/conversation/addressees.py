@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QMenu
 from app.features.conversation.segment_editing import Editing
 from app.translation import tr
 from metagraph.graph.conversation.model import EVERYBODY, Conversation, get_side_name, list_other_sides
-from metagraph.speech.addressing import turns_of
+from metagraph.speech.addressing import list_addressed_turns
 
 
 def offer_addressees(menu: QMenu, editing: Editing) -> None:
@@ -39,7 +39,12 @@ def describe_addressee(conversation: Conversation, side: int, at: int) -> str:
     if len(conversation.sides) < 3:
         return ""
     turn = next(
-        (t for t in turns_of(conversation) if t.side == side and t.start <= segment.start < t.end), None
+        (
+            t
+            for t in list_addressed_turns(conversation)
+            if t.side == side and t.start <= segment.start < t.end
+        ),
+        None,
     )
     to = segment.to if segment.to is not None else turn.to if turn is not None else None
     if to is None:

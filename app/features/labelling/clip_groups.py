@@ -9,7 +9,7 @@ from app.features.labelling.review_watch import order_similar
 from app.translation import tr, tr_plural
 from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import Kind, Layer
-from metagraph.suggest.flags import chance_wrong, needs_look
+from metagraph.suggest.flags import estimate_chance_wrong, needs_look
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
@@ -58,6 +58,6 @@ def group_alike(review: Review, waiting: Sequence[str]) -> list[ClipGroup]:
         alone = p.kind.value in ("gesture", "fidget")
         stance = place.name if place is not None and alone else ""
         groups.setdefault((p.layer.value, p.kind.value, stance), []).append(clip)
-    wrong = lambda clip: -chance_wrong(found.proposals[clip])  # noqa: E731
+    wrong = lambda clip: -estimate_chance_wrong(found.proposals[clip])  # noqa: E731
     made = [ClipGroup(*key, tuple(sorted(clips, key=wrong))) for key, clips in groups.items()]
     return sorted(made, key=lambda g: (g.kind != "stance", -len(g.clips)))

@@ -245,11 +245,11 @@ class MotionGraphDialog(QDialog):
             return
 
         def work(_: WindowJob) -> Any:
-            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.graph import find_threshold
             from metagraph.synthesis.states import read_states
 
             states = known[1] if known is not None else read_states(takes.clips)
-            return takes.clips, states, threshold(states, k, level)
+            return takes.clips, states, find_threshold(states, k, level)
 
         self.jobs.start(tr("Comparing frames"), work, self._compared, self._incomparable, quick=True)
 
@@ -493,16 +493,16 @@ class MotionGraphDialog(QDialog):
         taken = {e.name for e in project.clips.values()}
 
         def work(job: WindowJob) -> Any:
-            from metagraph.synthesis.cut import candidates
-            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.cut import find_candidates
+            from metagraph.synthesis.graph import find_threshold
             from metagraph.synthesis.states import read_states
 
-            limit = threshold(read_states(clips), k, level).limit
+            limit = find_threshold(read_states(clips), k, level).limit
             cuts = []
             for n, clip in enumerate(clips):
                 job.tell(n, len(clips))
                 cuts += cut_into_pieces(
-                    clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)]
+                    clip, [(start, end) for start, end, _ in find_candidates(clip, limit, LEAST, MOST)]
                 )
             return save(cuts, folder, FOLDER, taken) if cuts and not job.cancelled else ()
 

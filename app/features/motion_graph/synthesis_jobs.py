@@ -200,9 +200,9 @@ def synthesise(
     """
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import find_heard_at
-    from metagraph.synthesis.search.path_quality import quality
+    from metagraph.synthesis.search.path_quality import measure_quality
     from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech
-    from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, soft_report
+    from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, make_soft_report
 
     said = find_heard_at(graph.states, takes.speech)
     # Takes nobody annotated went with anything.
@@ -222,8 +222,8 @@ def synthesise(
     found = answer_speech(graph, said, wish.segments, wish.seconds, asked, searching, cancelled, soft)
     took, path = time.perf_counter() - began, found.path
     made = assemble(graph.states, takes.clips, path, name, retiming=found.retiming)
-    beside = soft_report(soft, graph.states, path, found.retiming).told()
-    looks = quality(graph.states, path)
+    beside = make_soft_report(soft, graph.states, path, found.retiming).told()
+    looks = measure_quality(graph.states, path)
     return FoundMotion(made, path.cost, len(path.jumps), took, looks, found.words(), beside)
 
 
@@ -238,7 +238,7 @@ def count_graph_states(
     paper's table 2).
     """
     from metagraph.synthesis.constraints import find_change_states
-    from metagraph.synthesis.graph import build_graph, threshold
+    from metagraph.synthesis.graph import build_graph, find_threshold
     from metagraph.synthesis.states import key_states, read_states
 
     states = read_states(takes.clips)
@@ -246,7 +246,7 @@ def count_graph_states(
     out = {}
     for n, k in enumerate(ks):
         progress(n, len(ks))
-        limit = threshold(states, k, level)
+        limit = find_threshold(states, k, level)
         whole = build_graph(states, limit, keys, connected=False, cancelled=cancelled)
         try:
             kept = build_graph(states, limit, keys, cancelled=cancelled).size

@@ -48,7 +48,7 @@ from app.translation import tr, tr_noop
 from app.widgets.gesture import PointerHand
 from app.widgets.memo import Once
 from app.widgets.vocabulary import get_vocabulary_word
-from metagraph.suggest.jumps.snapping import Snap, snaps_of
+from metagraph.suggest.jumps.snapping import Snap, list_snaps
 
 ZOOM = 1.2
 TEXT = tr_noop(
@@ -267,7 +267,7 @@ class TimingView(QWidget):
     def _handle_drag(self, facts: Facts, name: str) -> TimingDrag:
         grip = next(h.at for h in facts.handles if h.name == name)
         project, now = self.document.project, self.subject.playhead()
-        snaps = snaps_of(
+        snaps = list_snaps(
             project, facts.action, name, facts.seen, facts.speeds, self.subject.stresses(facts), now
         )
 
@@ -292,7 +292,7 @@ class TimingView(QWidget):
                 end=ends[1],
             )
 
-        snaps = snaps_of(self.document.project, facts.action, "ready", None, facts.speeds) if name else ()
+        snaps = list_snaps(self.document.project, facts.action, "ready", None, facts.speeds) if name else ()
         return TimingDrag(self, facts, first, snaps, make_block_change(self.idents(), name), words)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:

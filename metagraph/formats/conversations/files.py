@@ -36,8 +36,8 @@ from metagraph.graph.conversation.model import (
     Side,
 )
 from metagraph.playback.planning.choice import key32
-from metagraph.speech.activity import HUSH, LEAST, activity
-from metagraph.speech.clauses import find_stress_time, segment_by_sound, segments
+from metagraph.speech.activity import HUSH, LEAST, find_activity
+from metagraph.speech.clauses import find_segments, find_segments_by_sound, find_stress_time
 from metagraph.speech.language_packs import LanguagePack
 from metagraph.speech.pitch import smooth
 from metagraph.speech.sound import HeardSound, read_head
@@ -171,9 +171,9 @@ def _side(
         segmented = _kept(reading, called, said, voice, [one.name for _, one in found])
     elif words or not shared:
         if language is not None:
-            segmented = segments(words, voice.pitch, voice.heard, *lists, partner, language)
+            segmented = find_segments(words, voice.pitch, voice.heard, *lists, partner, language)
         else:
-            segmented = segment_by_sound(words, voice.pitch, voice.heard, None if shared else partner)
+            segmented = find_segments_by_sound(words, voice.pitch, voice.heard, None if shared else partner)
     else:
         segmented = ()
     if not words and said.segments is None:
@@ -278,7 +278,7 @@ def _tell_wordless(
         why = phrase("it is silent. Check the microphone, or choose another channel")
     elif top - floor < LEAST:
         why = phrase("the recording is a steady noise. Check the microphone, or record closer to the speaker")
-    elif activity(voice.heard, None, None):
+    elif find_activity(voice.heard, None, None):
         why = phrase("it contains the partner, or no voice. Add a transcript if someone speaks")
     else:
         why = phrase("no speech was found. Add a transcript if someone speaks")

@@ -141,7 +141,7 @@ def make_conversations(
     the project has no skeleton, or conversations would be too short.
     """
     out = []
-    both = actors_rates() if rates is None else tuple(rates)
+    both = list_actors_rates() if rates is None else tuple(rates)
     for n in range(count):
         name = f"made-up {n + 1}"
         spoken = make_planted_speech(
@@ -168,7 +168,7 @@ def with_rates(talk: Conversation, rates: Sequence[Rates]) -> Conversation:
     return msgspec.structs.replace(talk, sides=sides)
 
 
-def actors_rates() -> tuple[Rates, Rates]:
+def list_actors_rates() -> tuple[Rates, Rates]:
     """Return the rates of the paper's two actors (table 1)."""
     shares = {(r.actor, r.hypothesis): r.matched / r.total for r in TABLE_1}
     female, male = (

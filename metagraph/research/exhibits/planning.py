@@ -287,7 +287,7 @@ def exhibit_matrix(material: ExhibitMaterial) -> MadeExhibit:
         ]
         rows.append((STATES[n], *cells))
     forbidden = sum(moves[i][j] for i in range(count) for j in range(count) if not FIGURE_11[i][j])
-    least = [fewest(row) for row in FIGURE_11]
+    least = [find_fewest_transitions(row) for row in FIGURE_11]
     long_run = compute_stationary_shares(ARMS.matrix)
     says = [
         f"{len(sequence):,} actions written by the model that ships: no share is off the published one by "
@@ -310,14 +310,16 @@ def exhibit_matrix(material: ExhibitMaterial) -> MadeExhibit:
         "the published matrix, which ships as the arms' default model",
         tuple(says),
         (
-            ExhibitDrawing("Rows: now; columns: next", drawings.heat(STATES, grids, "Figure 11 and ours")),
+            ExhibitDrawing(
+                "Rows: now; columns: next", drawings.draw_heat(STATES, grids, "Figure 11 and ours")
+            ),
             ExhibitTable("Percent there / here", ("", *STATES), tuple(rows)),
         ),
         {"moves": len(sequence) - 1, "worst": worst, "least": least},
     )
 
 
-def fewest(row: Sequence[float]) -> int:
+def find_fewest_transitions(row: Sequence[float]) -> int:
     """Return the fewest transitions that round to a row of percentages: to one place, or to whole numbers and
     halves where they are.
     """

@@ -114,7 +114,7 @@ def draw_boxes(systems: Mapping[str, Array], unit: str) -> str:
     return make_svg_drawing(height, parts, f"Notched boxes of each landmark, {unit}")
 
 
-def tukey(values: Array) -> tuple[float, float, float, float, float, Array]:
+def compute_box_plot(values: Array) -> tuple[float, float, float, float, float, Array]:
     """Return lower whisker, first quartile, median, third quartile, upper whisker, and what lies beyond."""
     first, middle, third = (float(q) for q in np.percentile(values, (25, 50, 75)))
     reach = 1.5 * (third - first)
@@ -124,7 +124,7 @@ def tukey(values: Array) -> tuple[float, float, float, float, float, Array]:
 
 
 def _box(values: Array, x: float, wide: float, low: float, high: float, top: float, bottom: float) -> str:
-    least, first, middle, third, most, beyond = tukey(values)
+    least, first, middle, third, most, beyond = compute_box_plot(values)
     notch = 1.57 * (third - first) / np.sqrt(len(values))
 
     def y(value: float) -> float:

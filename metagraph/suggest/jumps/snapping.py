@@ -30,7 +30,7 @@ class Snap:
     why: str
 
 
-def snaps_of(
+def list_snaps(
     project: Project,
     action: Action,
     handle: str,
@@ -126,7 +126,7 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
         relax = handle_times(project, action)["relax"]
         if relax is not None:
             yield Snap(relax, phrase("its hold ends"))
-    for frame in turning(speeds, most=handle == "stroke"):
+    for frame in find_turning_frames(speeds, most=handle == "stroke"):
         at = frame / fps
         if start <= at <= end:
             words = (
@@ -137,7 +137,7 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
             yield Snap(round(at, 3), words)
 
 
-def turning(speeds: Array, most: bool) -> list[int]:
+def find_turning_frames(speeds: Array, most: bool) -> list[int]:
     """Return the frames at which speeds `[F]` are greater (else smaller) than all about them, and that stand
     out.
     """

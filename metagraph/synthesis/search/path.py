@@ -35,11 +35,11 @@ def check_cancelled(cancelled: Cancelled) -> None:
         raise SynthesisError("the search was cancelled")
 
 
-def jumps_of(way: Array) -> Array:
+def find_way_jumps(way: Array) -> Array:
     return np.flatnonzero(np.diff(way) != 1) + 1
 
 
-def stuck(t: int) -> str:
+def describe_stuck(t: int) -> str:
     return (
         f"no motion goes with this speech beyond {t / RATE:.1f} s: allow more tolerance, leave a kind of "
         "constraint out, "

@@ -19,8 +19,8 @@ from metagraph.live.live_session import LiveSession
 from metagraph.playback.life.sympathy import Laugh, laughs_along, moods_taken_up, taken_up
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.mood import MOODS, Mood, MoodFrom, Moods, mood_at
-from metagraph.speech.duet import duet
-from metagraph.speech.sympathies import laughs_of
+from metagraph.speech.duet import plan_duet
+from metagraph.speech.sympathies import find_laughs
 from tests.posing import compute_morphs_at
 
 SAMPLES = Path(__file__).parents[3] / "sample_clips"
@@ -87,7 +87,7 @@ def smile(project: Project, plan: Plan, seconds: float) -> float:
 def test_a_listener_smiles_with_a_happy_partner_and_less_with_a_smaller_dial(sample: Project) -> None:
     shown = []
     for share in (0.0, 0.35, 1.0):
-        made = duet(talk(mood=share), "v", (in_mood(sample, "happy"), sample), (None, None))
+        made = plan_duet(talk(mood=share), "v", (in_mood(sample, "happy"), sample), (None, None))
         shown.append(max(smile(made.parts[1].project, made.parts[1].plan, t / 4) for t in range(8, 60)))
     assert shown[0] < 0.35 * shown[2] and shown[0] + 0.05 < shown[1] < shown[2]
     asks = [a for a in made.parts[1].performance.asks if a.id.startswith("side 1 mood")]
@@ -96,11 +96,11 @@ def test_a_listener_smiles_with_a_happy_partner_and_less_with_a_smaller_dial(sam
 
 def test_laughter_among_the_words_brings_a_laughing_face(sample: Project) -> None:
     conversation = talk(("haha", "hahaha", "well"), laugh=1.0)
-    [laugh] = laughs_of(conversation.sides[0], Plan(1, 16.0))
+    [laugh] = find_laughs(conversation.sides[0], Plan(1, 16.0))
     assert laugh == Laugh(8.0, 8.55)
-    made = duet(conversation, "v", (sample, sample), (None, None)).parts[1]
+    made = plan_duet(conversation, "v", (sample, sample), (None, None)).parts[1]
     assert smile(made.project, made.plan, 9.8) > smile(made.project, made.plan, 7.9) + 0.2
-    none = duet(talk(("haha",), laugh=0.0), "v", (sample, sample), (None, None)).parts[1]
+    none = plan_duet(talk(("haha",), laugh=0.0), "v", (sample, sample), (None, None)).parts[1]
     assert not [a for a in none.performance.asks if "laugh" in a.id]
 
 

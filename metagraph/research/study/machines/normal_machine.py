@@ -77,11 +77,11 @@ def is_manual(project: Project) -> bool:
     return any(m.states for m in project.manual.values())
 
 
-def normal(project: Project, manual: bool | None = None) -> dict[Layer, NormalMachine]:
+def normalize_machines(project: Project, manual: bool | None = None) -> dict[Layer, NormalMachine]:
     """Return the machines of the layers that have any states. manual: which of both is meant, if not what the
     project has.
     """
-    names = clip_names(project)
+    names = name_clips(project)
     by_hand = is_manual(project) if manual is None else manual
     meant = as_meta(project)[0] if by_hand else project
     out = {}
@@ -97,7 +97,7 @@ def normal(project: Project, manual: bool | None = None) -> dict[Layer, NormalMa
     return out
 
 
-def clip_names(project: Project) -> dict[str, str]:
+def name_clips(project: Project) -> dict[str, str]:
     """Return clip id -> its file's name, with its folder where two files are called alike, and its take where
     it is not the first.
     """

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from metagraph.common.svg import draw_svg_dot, draw_svg_line, draw_svg_text, make_svg_drawing
 from metagraph.research.study.perceive.perceive_analysis import PerceiveResults
 from metagraph.research.study.reports import plots
-from metagraph.research.study.reports.plots_flow import flow
+from metagraph.research.study.reports.plots_flow import plot_flow
 from metagraph.research.study.statistics.small_samples import Estimate
 
 MOST_ROWS = 60  # of one drawing
@@ -92,7 +92,7 @@ def _flow(results: PerceiveResults) -> str:
             left[p.why] = left.get(p.why, 0) + 1
     whole = [p for p in begun if p.why in ("", "missed checks")]
     missed = len(whole) - len(results.answers.counting)
-    return flow(
+    return plot_flow(
         [
             (
                 "codes",

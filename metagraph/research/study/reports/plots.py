@@ -18,14 +18,14 @@ from metagraph.research.study.reports.plot_axes import (
     RATIOS,
     TIMES,
     Place,
-    finite,
+    list_finite,
     log_axis,
-    plain_axis,
+    make_plain_axis,
 )
 from metagraph.research.study.statistics.small_samples import Estimate
 
 
-def seconds(value: float) -> str:
+def format_duration(value: float) -> str:
     """Return a time as people read it: 42 s, 8 min, 1.5 min, 2.1 h."""
     if value < 90:
         return f"{value:.3g} s" if value < 9.95 else f"{value:.0f} s"
@@ -48,10 +48,10 @@ def plot_paired(
         v for m in means for v in (m.low, m.high) if v is not None
     ]
     y, ticks = log_axis(min(every), max(every), bottom, top, TIMES)
-    parts = [_grid(x1=88, x2=560, y=y(t), words=seconds(t)) for t in ticks]
+    parts = [_grid(x1=88, x2=560, y=y(t), words=format_duration(t)) for t in ticks]
     parts.append(_title_up((top + bottom) / 2, f"time a {unit} (logarithmic)"))
     for name, a, b in people:
-        words = escape(f"{name}: {seconds(a)} and {seconds(b)}, {b / a:.2f} times")
+        words = escape(f"{name}: {format_duration(a)} and {format_duration(b)}, {b / a:.2f} times")
         parts.append(
             f"<g class='person'><title>{words}</title>{draw_svg_line(xs[0], y(a), xs[1], y(b))}"
             f"{draw_svg_dot(xs[0], y(a), 3)}{draw_svg_dot(xs[1], y(b), 3)}</g>"
@@ -60,13 +60,15 @@ def plot_paired(
         parts.append(f"<g class='{kind}'>{_vertical(x, mean, y)}</g>")
         anchor = "end" if side < 0 else "start"
         parts.append(
-            draw_svg_text(x + 12 * side, y(mean.value) + 4, seconds(mean.value), f"label {kind}", anchor)
+            draw_svg_text(
+                x + 12 * side, y(mean.value) + 4, format_duration(mean.value), f"label {kind}", anchor
+            )
         )
         parts.append(draw_svg_text(x - 13 * side, bottom + 26, name, f"label {kind}", "middle"))
     return make_svg_drawing(height, parts, f"Times of {len(people)} people in both conditions")
 
 
-def ratios(
+def plot_ratios(
     rows: Sequence[tuple[str, Estimate]], title: str = "ratio of times, by hand / meta-graph (logarithmic)"
 ) -> str:
     """Ratios with their intervals, one below the other, on a logarithmic axis with a line at 1. Where an end
@@ -74,7 +76,7 @@ def ratios(
     """
     row, left, right = 34 if len(rows) < 6 else 24, 190, 500
     bottom = 18 + row * len(rows)
-    every = finite([v for _, e in rows for v in (e.value, e.low, e.high)])
+    every = list_finite([v for _, e in rows for v in (e.value, e.low, e.high)])
     x, ticks = log_axis(min(1.0, *every), max(1.0, *every), left, right, RATIOS)
     parts = []
     for t in ticks:
@@ -115,7 +117,7 @@ def plot_learning(found: Mapping[str, tuple[Sequence[float], float, float]], nam
     longest = max(len(values) for values, _, _ in found.values())
     y, ticks = log_axis(min(every), max(every), bottom, top, TIMES)
     x, across = log_axis(1, max(2, longest), left, right, COUNTS)
-    parts = [_grid(x1=left, x2=right, y=y(t), words=seconds(t)) for t in ticks]
+    parts = [_grid(x1=left, x2=right, y=y(t), words=format_duration(t)) for t in ticks]
     parts += [draw_svg_text(x(t), bottom + 18, f"{t:g}", "dim", "middle") for t in across]
     parts.append(
         draw_svg_text(
@@ -147,26 +149,30 @@ def plot_stacked(rows: Mapping[str, Mapping[str, float]], names: Mapping[str, st
     most = max(sum(parts.values()) for parts in rows.values()) or 1.0
     kinds = list(dict.fromkeys(name for parts in rows.values() for name in parts))
     axis = 16 + row * len(rows)
-    place, ticks = plain_axis(0, most, left, right, PLAIN_TIMES)
+    place, ticks = make_plain_axis(0, most, left, right, PLAIN_TIMES)
     out = []
     for t in ticks:
         out.append(draw_svg_line(place(t), 12, place(t), axis, "grid"))
         out.append(
             draw_svg_text(
-                place(t), axis + 16, seconds(t) if t else "0", "dim", "middle" if t < most else "end"
+                place(t), axis + 16, format_duration(t) if t else "0", "dim", "middle" if t < most else "end"
             )
         )
     for n, (condition, parts) in enumerate(rows.items()):
         at, total = 16 + row * n, sum(parts.values())
         out.append(
             draw_svg_text(
-                left, at + 10, f"{names[condition]}: {seconds(total)} a task", f"label {condition}", "start"
+                left,
+                at + 10,
+                f"{names[condition]}: {format_duration(total)} a task",
+                f"label {condition}",
+                "start",
             )
         )
         edge = float(left)
         for name, value in parts.items():
             wide = place(value) - left
-            words = escape(f"{name}: {seconds(value)}, {value / total if total else 0:.0%}")
+            words = escape(f"{name}: {format_duration(value)}, {value / total if total else 0:.0%}")
             out.append(
                 f"<rect class='s{kinds.index(name)}' x='{format_px(edge)}' y='{at + 18}' "
                 f"width='{format_px(wide)}' height='22'><title>{words}</title></rect>"
@@ -199,7 +205,7 @@ def plot_means(
     row, left, right = 46, 190, 560
     height, bottom = 24 + row * len(rows) + 44, 16 + row * len(rows)
     whole = (1.0, 2.0) if high - low <= 12 else ()  # points of a scale
-    x, ticks = plain_axis(low, high, left, right, (*whole, *((high - low) / k for k in (5, 4, 2))))
+    x, ticks = make_plain_axis(low, high, left, right, (*whole, *((high - low) / k for k in (5, 4, 2))))
     parts = [draw_svg_text((left + right) / 2, bottom + 38, title, "dim", "middle")]
     for k, condition in enumerate(dict.fromkeys(c for _, found in rows for c in found) if names else ()):
         parts.append(

@@ -10,7 +10,7 @@ from metagraph.common.xml_text import escape
 WIDE, HIGH, GAP = 250, 44, 26
 
 
-def flow(
+def plot_flow(
     steps: Sequence[tuple[str, int, Mapping[str, int]]], arms: Sequence[tuple[str, Sequence[tuple[str, int]]]]
 ) -> str:
     """Boxes from above to below, then side by side. steps: (words, people, why people left here -> how many);

@@ -26,7 +26,7 @@ from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.research.motion_graph.search_evaluation import cut_segments
 from metagraph.synthesis.graph import build_graph
-from metagraph.synthesis.iconic_words import word_wish
+from metagraph.synthesis.iconic_words import parse_word_wish
 from metagraph.synthesis.soft_constraints import SoftWish
 from metagraph.synthesis.states import SynthesisError, read_states
 from tests.synthesis.talking import VOICE, WORDS, aloud, speech, talking
@@ -197,7 +197,7 @@ def test_words_and_sounds_of_the_sides_are_compared(tmp_path: Path) -> None:
     states = read_states([clip])
     graph = build_graph(states)
     takes = ChosenTakes(("c1",), (clip,), (tuple(segments),), (ann,))
-    soft = SoftWish(0.5, 0.5, tuple(word_wish(text) for text in WORDS), retime=0.15)
+    soft = SoftWish(0.5, 0.5, tuple(parse_word_wish(text) for text in WORDS), retime=0.15)
     wish = Wish(
         4.0, tuple(cut_segments(segments, 8.0, 4.0)), soft=soft, side=ann, whole=tuple(segments), start=8.0
     )
