@@ -318,7 +318,8 @@ def test_names_are_cut_where_writings_change() -> None:
 def test_words_are_read_from_their_files_when_names_are_first_read() -> None:
     code = (
         "import sys; import metagraph.suggest.words.names; from metagraph.suggest.words import files; "
-        "sys.exit(files.sources.cache_info().currsize or files.list_english_meanings.cache_info().currsize)"
+        "read = files.load_language_files, files.list_english_meanings; "
+        "sys.exit(sum(each.cache_info().currsize for each in read))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, timeout=300).returncode == 0
 
