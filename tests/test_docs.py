@@ -283,7 +283,7 @@ def test_readmes_of_runtimes_name_no_file_that_is_not_there() -> None:
 def test_the_pages_of_commands_are_what_the_parsers_say() -> None:
     """Else: `.venv/bin/python docs/command_line_page.py`."""
     written = runpy.run_path(str(ROOT / "docs" / "command_line_page.py"))["pages"]()
-    assert len(written) == 2
+    assert len(written) == 6
     for path, text in written.items():
         assert path.read_text(encoding="utf-8") == text, path.name
     every = "".join(written.values())

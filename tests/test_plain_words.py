@@ -20,7 +20,13 @@ from metagraph.engines.translation.listing import LISTING
 ROOT = Path(__file__).resolve().parents[1]
 QUOTES = ("docs/contributing/style.md",)  # shows what not to write
 # Made from the parsers of commands (`docs/command_line_page.py`).
-MADE = ("docs/reference/command-line.md", "docs/reference/command-line-research.md")
+MADE = (
+    "docs/reference/command-line.md",
+    *(
+        f"docs/reference/command-line-{of}.md"
+        for of in ("generate", "motion-graph", "perceive", "research", "study")
+    ),
+)
 
 # A regular expression (a blank stands for any white space) and what to write instead.
 PHRASES = {
