@@ -156,6 +156,7 @@ def find_floor(
 
 
 def cut_like(whole: Take, take: Take) -> Any:
+    """Return the poses `[T, X]` of a whole take that a take which was cut from it has."""
     first = round(take.source.start * 25) - round(whole.source.start * 25)
     return whole.poses[first : first + len(take.poses)]
 

@@ -94,10 +94,12 @@ SOUND_MARKS = {"clause": "■", "response": "✓", "hesitation": "…"}
 
 
 def get_theme(name: str) -> WindowTheme:
+    """Return the theme of a name; the dark one for names that no theme has."""
     return THEMES.get(name, DARK)
 
 
 def make_palette(look: WindowTheme) -> QPalette:
+    """Return the palette of a theme for Qt, with colours of its own for what is disabled."""
     out = QPalette()
     role = QPalette.ColorRole
     for key, color in (

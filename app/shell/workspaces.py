@@ -52,10 +52,12 @@ def _areas(part: str | Split) -> Iterator[str]:
 
 
 def split_across(*parts: tuple[str | Split, int]) -> Split:
+    """Return parts side by side, each with its share of the width."""
     return Split(parts)
 
 
 def split_down(*parts: tuple[str | Split, int]) -> Split:
+    """Return parts one below the other, each with its share of the height."""
     return Split(parts, down=True)
 
 

@@ -223,6 +223,7 @@ def compute_file_digest(path: Path | None) -> str | None:
 
 
 def compute_content_digest(content: bytes) -> str:
+    """Return the SHA-256 of a content in hex."""
     return hashlib.sha256(content).hexdigest()
 
 

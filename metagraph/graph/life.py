@@ -384,7 +384,7 @@ def scaled(
 
 
 def is_same_life(one: Life | None, other: Life) -> bool:
-    """Whether two are the same settings."""
+    """Return whether two are the same settings."""
     return one is other or one == other
 
 

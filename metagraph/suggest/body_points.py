@@ -57,6 +57,7 @@ class PosedFigure:
 
 @lru_cache(maxsize=64)
 def make_posed_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> PosedFigure:
+    """Return the figure of a skeleton whose roles are `named` (role, joint), in its rest pose."""
     roles = dict(named)
     wanted = {r: j for r, j in roles.items() if r in (*_CARRIERS, "head") or r.endswith(_LIMBS)}
     if "hips" not in wanted:

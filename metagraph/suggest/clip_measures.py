@@ -45,6 +45,7 @@ SUREST = 0.95
 
 
 def compute_energy(traits: Traits) -> float:
+    """Return the mean speeds of all parts of a clip added up, heights a second."""
     return sum(traits.energy.values())
 
 
@@ -73,6 +74,7 @@ def _beyond_tremble(traits: Traits) -> Mapping[str, float]:
 
 
 def has_no_measures(traits: Traits) -> bool:
+    """Return whether nothing of a clip moves, so that its motion says nothing."""
     return all(x.peak < 1e-3 for x in traits.layers.values()) and traits.energy["fingers"] < 1e-3
 
 

@@ -133,6 +133,7 @@ def list_meanings(meaning: str) -> list[tuple[str, object, str]]:
 
 
 def describe_label_meaning(meaning: str) -> str:
+    """Return what a label means in words of the window, behind the mark of its kind."""
     first, tags = split_meaning(meaning)
     if first == IGNORE:
         return tr("Ignore")

@@ -47,6 +47,7 @@ class KeypointFrame:
 
 
 def normalize_key(key: str) -> str:
+    """Return a key in small letters, without underscores and hyphens."""
     return key.replace("_", "").replace("-", "").lower()
 
 

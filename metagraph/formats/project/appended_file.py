@@ -143,6 +143,7 @@ def _aside(path: Path) -> Path:
 
 
 def make_identity(found: os.stat_result) -> Identity:
+    """Return the identity of a file or folder that was looked at: its device and its number there."""
     return found.st_dev, found.st_ino
 
 

@@ -90,6 +90,7 @@ _CONTACT = ("upper", "lower", "hand", "to", "first", "last")
 
 
 def make_clip_data(entry: ClipEntry) -> Data:
+    """Return a clip as the project file has it, without its motion."""
     out = list_changed_fields(entry, ("motion", "source", "digest", "retime"))
     out["path"] = recover_original_path(entry.path)
     if entry.retime.speed != 1.0:

@@ -230,6 +230,8 @@ def read_items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[s
 
 
 def read_floats(values: list[Any], count: int, where: str, largest: float = LARGEST) -> list[float]:
+    """Return a list of exactly `count` numbers. Raises DataError for anything else, and for numbers beyond
+    `largest` either way."""
     numbers = [
         x for x in values if isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= largest
     ]

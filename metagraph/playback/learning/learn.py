@@ -160,6 +160,7 @@ def _together(a: Act, b: Act) -> Act:
 
 
 def get_act_state(act: Act, tagged: bool) -> State:
+    """Return the state of a model that an act belongs to; without tags if acts are not told apart by them."""
     return act.limb, act.kind, " ".join(act.tags) if tagged else ""
 
 
@@ -171,6 +172,7 @@ def describe_state(state: State, layer: Layer) -> str:
 
 
 def list_model_states(model: Markov) -> tuple[State, ...]:
+    """Return the states of a model, in its order."""
     return tuple((limb, kind, model.tag(n)) for n, (limb, kind) in enumerate(model.states))
 
 

@@ -22,5 +22,5 @@ def placed(places: Mapping[str, Point], to: Spot) -> Spot:
 
 
 def is_same_spot(one: Spot, other: Spot) -> bool:
-    """Whether two names or two points are the same."""
+    """Return whether two names or two points are the same."""
     return one == other

@@ -96,7 +96,7 @@ def stressed(voices: Mapping[str, Voice], speech: Speech) -> list[float]:
 
 
 def are_same_voices(one: Mapping[str, Voice] | None, other: Mapping[str, Voice]) -> bool:
-    """Whether lines sound the same."""
+    """Return whether lines sound the same."""
     return one is other or one == other
 
 

@@ -216,7 +216,7 @@ class SpokenLanguages:
 
 
 def has_english_meaning(word: str, meanings: Any) -> bool:
-    """Whether a word itself means something in English, as the patterns have it."""
+    """Return whether a word itself means something in English, as the patterns have it."""
     return any(word in meanings[table] for table in ("kinds", "layers", "limbs", "postures", "joins"))
 
 

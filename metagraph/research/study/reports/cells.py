@@ -54,6 +54,7 @@ def format_interval(found: Estimate | None, words: Say) -> str:
 
 
 def describe_who(time: ConditionComparison) -> str:
+    """Return the interval of the ratio of times and how many people it comes from, in words."""
     people = f"{time.ratio.n} {'person' if time.ratio.n == 1 else 'people'}"
     if time.ratio.low is None:
         return f"no interval, {people}"

@@ -71,8 +71,8 @@ def plot_paired(
 def plot_ratios(
     rows: Sequence[tuple[str, Estimate]], title: str = "ratio of times, by hand / meta-graph (logarithmic)"
 ) -> str:
-    """Ratios with their intervals, one below the other, on a logarithmic axis with a line at 1. Where an end
-    is not known an arrow goes on. title: of the axis.
+    """Draw ratios with their intervals, one below the other, on a logarithmic axis with a line at 1. Where an
+    end is not known an arrow goes on. title: of the axis.
     """
     row, left, right = 34 if len(rows) < 6 else 24, 190, 500
     bottom = 18 + row * len(rows)

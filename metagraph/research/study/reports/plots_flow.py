@@ -13,7 +13,8 @@ WIDE, HIGH, GAP = 250, 44, 26
 def plot_flow(
     steps: Sequence[tuple[str, int, Mapping[str, int]]], arms: Sequence[tuple[str, Sequence[tuple[str, int]]]]
 ) -> str:
-    """Boxes from above to below, then side by side. steps: (words, people, why people left here -> how many);
+    """Draw boxes from above to below, then side by side. steps: (words, people, why people left here -> how
+    many);
     arms: (title, its boxes from above to below).
     """
     parts: list[str] = []

@@ -38,6 +38,9 @@ def format_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]], separator
 
 
 def format_cell(value: Any) -> str:
+    """Return a value as text: MISSING for None and for what is not finite, yes or no, numbers to six
+    digits.
+    """
     if value is None:
         return MISSING
     if isinstance(value, bool):
@@ -53,6 +56,7 @@ Table = tuple[tuple[str, ...], list[tuple[Any, ...]]]
 
 
 def tabulate_people(results: Results) -> Table:
+    """Return a row for each participant: how far they came, their order, and their times."""
     data = results.data
     time = {p.participant: p for p in results.time.people} if results.time is not None else {}
     out: list[tuple[Any, ...]] = []
@@ -121,6 +125,7 @@ SCORES = (
 
 
 def tabulate_tasks(data: Data) -> Table:
+    """Return a row for each task that a participant did."""
     columns = (
         "participant",
         "condition",
@@ -184,6 +189,7 @@ def _scores(score: Score | None) -> tuple[Any, ...]:
 
 
 def tabulate_clips(data: Data) -> Table:
+    """Return a row for each clip of each task, with the seconds it took."""
     rows: list[tuple[Any, ...]] = [
         (r.run.participant, r.run.condition, r.run.task, n, clip, seconds)
         for r in data.rows
@@ -193,6 +199,7 @@ def tabulate_clips(data: Data) -> Table:
 
 
 def tabulate_mistakes(data: Data) -> Table:
+    """Return a row for each kind of mistake in each task."""
     rows: list[tuple[Any, ...]] = [
         (r.run.participant, r.run.condition, r.run.task, WORDS[m.what], m.layer, m.clip, m.count, m.words)
         for r in data.rows
@@ -202,6 +209,7 @@ def tabulate_mistakes(data: Data) -> Table:
 
 
 def tabulate_questionnaires(data: Data) -> Table:
+    """Return a row for each answer, and below them one for each score of a questionnaire."""
     rows: list[tuple[Any, ...]] = [
         (a.participant, a.condition, a.task, a.questionnaire, a.item, a.value) for a in data.answers
     ]
@@ -215,7 +223,7 @@ def tabulate_questionnaires(data: Data) -> Table:
 
 
 def tabulate_estimates(results: Results) -> Table:
-    """The ratio as it is reported, by task, and computed otherwise."""
+    """Return the ratio as it is reported, by task, and computed otherwise."""
     rows: list[tuple[Any, ...]] = []
 
     def add(sort: str, name: str, e: Estimate, title: str | None = None) -> None:
