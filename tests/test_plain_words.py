@@ -22,10 +22,11 @@ QUOTES = ("docs/contributing/style.md",)  # shows what not to write
 # Made from the parsers of commands (`docs/command_line_page.py`).
 MADE = (
     "docs/reference/command-line.md",
-    *(
-        f"docs/reference/command-line-{of}.md"
-        for of in ("generate", "motion-graph", "perceive", "research", "study")
-    ),
+    "docs/reference/command-line-generate.md",
+    "docs/reference/command-line-motion-graph.md",
+    "docs/reference/command-line-perceive.md",
+    "docs/reference/command-line-research.md",
+    "docs/reference/command-line-study.md",
 )
 
 # A regular expression (a blank stands for any white space) and what to write instead.

@@ -160,7 +160,7 @@ def _together(a: Act, b: Act) -> Act:
 
 
 def get_act_state(act: Act, tagged: bool) -> State:
-    """Return the state of a model that an act belongs to; without tags if acts are not told apart by them."""
+    """Return the state of a model that an act belongs to; with its tags where `tagged`."""
     return act.limb, act.kind, " ".join(act.tags) if tagged else ""
 
 
