@@ -104,7 +104,7 @@ def _sections(parser: argparse.ArgumentParser, depth: int) -> Iterator[str]:
             yield from _sections(action, depth + 1)
         else:
             said = _escaped(" ".join((action.description or "").split()))
-            yield f"{'#' * (depth + 1)} {action.prog}\n\n{said} See [its own page]({page}.md).\n"
+            yield f"{'#' * (depth + 1)} {action.prog}\n\n{said}\n\nSee [its own page]({page}.md).\n"
 
 
 def _choices(parser: argparse.ArgumentParser) -> Mapping[str, argparse.ArgumentParser]:
