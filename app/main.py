@@ -59,9 +59,9 @@ def _application() -> QApplication:
 
 def follow_language(app: QApplication) -> None:
     """Make Qt's own texts, and numbers and dates in fields, follow the chosen language."""
-    from app.translation import ENGLISH, current_language
+    from app.translation import ENGLISH, get_language
 
-    code = current_language()
+    code = get_language()
     QLocale.setDefault(QLocale(code))
     for translator in app.findChildren(QTranslator):
         app.removeTranslator(translator)
@@ -167,10 +167,10 @@ class WindowKeeper:
 
     def _change(self, said: str = "") -> None:
         from app import translation
-        from app.shell.handing_over import describe_running, hand_over
+        from app.shell.handing_over import describe_running, replace_window
 
         old, code = self.window, self._wanted
-        if code == translation.current_language():
+        if code == translation.get_language():
             return
         runs = describe_running(old)
         if runs:
@@ -183,4 +183,4 @@ class WindowKeeper:
         old.workspaces.save()
         self.window = make_window()
         self._follow()
-        hand_over(old, self.window)
+        replace_window(old, self.window)

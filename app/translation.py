@@ -178,8 +178,8 @@ class _Translated:
         self._make, self._made, self._code = make, None, ""
 
     def _now(self) -> Any:
-        if self._code != current_language():
-            self._made, self._code = self._make(), current_language()
+        if self._code != get_language():
+            self._made, self._code = self._make(), get_language()
         return self._made
 
     def __getitem__(self, key: Any) -> Any:
@@ -198,14 +198,14 @@ class _Translated:
         return getattr(self._now(), name)
 
 
-def lazy_texts(make: Callable[[], T]) -> T:
+def make_lazy_texts(make: Callable[[], T]) -> T:
     """Return a dict or tuple of texts that a module can hold: what `make` returns, in the language chosen
     when it is used. A single text is held by `tr_noop`, and shown by `tr`.
     """
     return cast(T, _Translated(make))
 
 
-def current_language() -> str:
+def get_language() -> str:
     """Return the code of the chosen language."""
     return ENGLISH if _chosen is None else _chosen.code
 

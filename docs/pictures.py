@@ -324,13 +324,15 @@ def conversation() -> None:
 def motion_graph() -> None:
     """What counts as a jump between the sample's stances, and new motion from them."""
     from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
-    from metagraph.formats.store import absolute, open_project, save_project
+    from metagraph.formats.store import make_paths_absolute, open_project, save_project
 
     samples = ROOT / "sample_clips"
     out = window()
     with tempfile.TemporaryDirectory() as place:
         path = Path(place) / "sample.metagraph.yaml"
-        save_project(absolute(open_project(samples / "sample.metagraph.yaml").project, samples), path)
+        save_project(
+            make_paths_absolute(open_project(samples / "sample.metagraph.yaml").project, samples), path
+        )
         out.files.open(path)
         wait(20000, lambda: bool(out.document.project.clips) and not out.jobs.running)
         out.do("motion_graph")

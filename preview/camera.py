@@ -170,7 +170,9 @@ def _matrix(camera: Camera, aspect: float) -> Array:
     return out
 
 
-def frame_whole_figure(bounds: tuple[ArrayLike, ArrayLike], aspect: float, heading: float = 0.0) -> Camera:
+def make_whole_figure_camera(
+    bounds: tuple[ArrayLike, ArrayLike], aspect: float, heading: float = 0.0
+) -> Camera:
     """Return a camera three quarters in front with the whole box in the picture. `heading` is where the
     character faces, radians about +Y.
     """
@@ -188,7 +190,7 @@ def close_up(head: ArrayLike, height: float, aspect: float, heading: float = 0.0
     return camera.frame(((x - h, y - 1.35 * h, z - h * 0.3), (x + h, y + h, z + h * 0.3)), aspect)
 
 
-def frame_upper_body(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> Camera:
+def make_upper_body_camera(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> Camera:
     """Return a camera for the figure from the hips up, with room for gesturing arms. `head` is the middle of
     the head `[3]`, `height` the height of the figure in metres.
     """

@@ -15,7 +15,7 @@ from preview.default_body.footing import Footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 
-def figure_from_file(
+def load_mesh_figure(
     path: Path | None,
     skeleton: Skeleton,
     hidden: Collection[str] = (),

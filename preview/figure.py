@@ -13,12 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, followers
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, find_followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
-from preview.levels import Level, levels_of
-from preview.mesh import VERTEX, Morphs, SkinnedMesh, TriangleBatch, ball, capsule, cut_at_bones, egg
-from preview.occlusion import Rods, main_matrices, rods
+from preview.levels import Level, make_levels
+from preview.mesh import (
+    VERTEX,
+    Morphs,
+    SkinnedMesh,
+    TriangleBatch,
+    cut_at_bones,
+    make_ball,
+    make_capsule,
+    make_egg,
+)
+from preview.occlusion import Rods, find_rods, main_matrices
 
 Array = NDArray[Any]
 
@@ -61,7 +70,7 @@ class MeshFigure:
         self.bound = skeleton.globals(skeleton.rest) if bound is None else bound
         self.drawn = rules.find_drawn_joints(skeleton)
         self.height = max(1e-3, float(np.ptp(self.bound[1][self.drawn], axis=0).max()))
-        self._above = rules.nearest_above(skeleton, self.drawn)
+        self._above = rules.find_nearest_above(skeleton, self.drawn)
         self.lines = np.flatnonzero(self.drawn & (self._above >= 0))
         self.line_starts = self._above[self.lines]
         body = [k for k, i in enumerate(self.lines) if not rules.is_finger(skeleton.names[i])]
@@ -75,7 +84,7 @@ class MeshFigure:
         May be called from any thread. Only figures that are small in the picture change.
         """
         if not self.levels:
-            self.levels = levels_of(self.mesh, self.height, cancelled)
+            self.levels = make_levels(self.mesh, self.height, cancelled)
 
     def finest(self, error: float) -> SkinnedMesh:
         """Return the mesh with the fewest triangles whose surface is off by at most `error` metres."""
@@ -84,7 +93,7 @@ class MeshFigure:
     @cached_property
     def rods(self) -> Rods | None:
         """The rods by which limbs keep light from each other, None for a figure that is no person."""
-        return rods(self.skeleton, self.sources, self.mesh.vertices, self.bound[1])
+        return find_rods(self.skeleton, self.sources, self.mesh.vertices, self.bound[1])
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         """Return the matrices from rest pose to posed, `[..., M, 3, 4]` float32, for global `rotations [...,
@@ -205,7 +214,7 @@ class SkinnedFigure(MeshFigure):
         skeleton = own if skeleton is None else skeleton
         rest_r, rest_p = own.globals(own.rest)
         self.matched = sum(name in skeleton for name in own.names)
-        follow, sources = followers(own, skeleton)  # the character's joint whose matrix each joint uses
+        follow, sources = find_followers(own, skeleton)  # the character's joint whose matrix each joint uses
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
         bound_r, bound_p = (x.copy() for x in skeleton.globals(skeleton.rest))
@@ -262,7 +271,7 @@ class StickFigure(MeshFigure):
         now = positions - positions[..., above, :]
         carried = rotation.rotate_vectors(turn[..., above, :], before)
         aim = rotation.multiply(
-            rotation.rotation_between(carried, now).astype(np.float32), turn[..., above, :]
+            rotation.find_rotation_between(carried, now).astype(np.float32), turn[..., above, :]
         )
         length = np.maximum(np.linalg.norm(before, axis=-1), 1e-6)
         axis = before / length[..., None]
@@ -279,7 +288,7 @@ class StickFigure(MeshFigure):
 
     def _build(self, rest: Array) -> None:
         skeleton, height = self.skeleton, self.height
-        side = rules.sides_of_joints(skeleton)
+        side = rules.find_side_signs(skeleton)
         colors = {1: LEFT_COLOR, 0: MIDDLE_COLOR, -1: RIGHT_COLOR}
         finger = [rules.is_finger(n) for n in skeleton.names]
         radius = np.full(len(skeleton), 0.006 * height)
@@ -296,9 +305,9 @@ class StickFigure(MeshFigure):
                 max(radius[parent], thick if not finger[child] else 0),
             )
             sides, rings = (6, 2) if small else (12, 3)
-            turn = rotation.rotation_between(np.array([0.0, 1, 0]), offset)
+            turn = rotation.find_rotation_between(np.array([0.0, 1, 0]), offset)
             self._add(
-                capsule(length, thick, thin, sides, rings),
+                make_capsule(length, thick, thin, sides, rings),
                 len(skeleton) + int(child),
                 rest[parent],
                 colors[int(side[child])],
@@ -308,12 +317,12 @@ class StickFigure(MeshFigure):
             if joint == self._head or finger[joint]:
                 continue
             size = radius[joint] * 1.16
-            self._add(ball(size), int(joint), rest[joint], (128, 131, 138))
+            self._add(make_ball(size), int(joint), rest[joint], (128, 131, 138))
         if self._head is not None:
             self._add_head(rest, self._head, colors[0])
         elif len(self.lines) == 0:
             self._add(
-                ball(0.08 if height <= 2e-3 else 0.05 * height),
+                make_ball(0.08 if height <= 2e-3 else 0.05 * height),
                 int(np.flatnonzero(self.drawn)[0]),
                 rest[int(np.flatnonzero(self.drawn)[0])],
                 colors[0],
@@ -322,7 +331,7 @@ class StickFigure(MeshFigure):
     def _add_head(self, rest: Array, joint: int, color: tuple[int, int, int]) -> None:
         """Add an egg above the head's joint, upright in the rest pose."""
         tall = 0.135 * self.height
-        self._add(egg(tall, tall * 0.42), joint, rest[joint] + [0, -0.1 * tall, 0.06 * tall], color)
+        self._add(make_egg(tall, tall * 0.42), joint, rest[joint] + [0, -0.1 * tall, 0.06 * tall], color)
 
     def _add(
         self,

@@ -80,7 +80,7 @@ def is_drawable(actor: Actor) -> bool:
     )
 
 
-def tall(actor: Actor, camera: Camera, height: int) -> float:
+def measure_pixel_height(actor: Actor, camera: Camera, height: int) -> float:
     """Return about how many pixels tall the nearest instance is."""
     away = np.linalg.norm(np.asarray(actor.positions)[..., 0, :].reshape(-1, 3) - camera.eye, axis=1).min()
     return float(actor.figure.height / (2 * np.tan(camera.fov / 2) * max(float(away), 1e-3)) * height)
@@ -123,7 +123,7 @@ def find_covered(frame: Frame) -> Array:
     return np.asarray(np.minimum(runs, (width, height, width, height)))
 
 
-def piece_boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:
+def find_piece_boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:
     """Return the corners of the boxes round all actors' pieces `[N, 8, 3]`. `palettes` holds each actor's
     palette `[instances, M, 3, 4]`.
     """

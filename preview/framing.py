@@ -28,7 +28,7 @@ HAND = 0.07  # beyond a wrist
 AVERTED = 1.0  # radians from the front beyond which a face is hardly seen
 
 
-def nearness(clip: Clip) -> Near:
+def choose_nearness(clip: Clip) -> Near:
     """Return how near to show a clip, by what it moves. Skeletons that are no humanoids are shown whole."""
     parts = set(find_moved_parts(clip))
     if not parts or parts & {"place", "legs"} or not is_humanoid(find_roles(clip.skeleton)):
@@ -36,7 +36,7 @@ def nearness(clip: Clip) -> Near:
     return "upper" if parts & {"arms", "spine"} else "head"
 
 
-def near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, height: float) -> Box:
+def find_near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, height: float) -> Box:
     """Return the box to show of a character in poses `positions [F, J, 3]`, which faces +Z above the origin.
     `whole` is the box round all of it, `height` the height of the character at rest, in metres.
     """
@@ -61,7 +61,7 @@ def find_heading(figure: MeshFigure, positions: Array) -> float:
     """Return where the hips face, radians about +Y: across the line from the right limbs to the left ones;
     0 if that is not known. positions: `[J, 3]`.
     """
-    side = rules.sides_of_joints(figure.skeleton) * figure.drawn
+    side = rules.find_side_signs(figure.skeleton) * figure.drawn
     if not ((side > 0).any() and (side < 0).any()):
         return 0.0
     p = np.asarray(positions, float)

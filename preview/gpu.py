@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import PICTURE_PIXELS
-from metagraph.common.pictures import picture_size
+from metagraph.common.pictures import read_picture_size
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch, arrange_vertices
 from preview.occlusion import Rods
-from preview.paint import without_invisible_texture
+from preview.paint import remove_invisible_texture
 from preview.scene import Actor
 
 Array = NDArray[Any]
@@ -173,7 +173,7 @@ class Store:
         if loaded is None:
             buffer = self._ctx.buffer
             drawn, origins = (
-                without_invisible_texture(mesh, decode_texture)
+                remove_invisible_texture(mesh, decode_texture)
                 if self._software
                 else (mesh, np.arange(len(mesh.vertices)))
             )
@@ -240,7 +240,7 @@ def decode_texture(encoded: bytes) -> tuple[tuple[int, int], bytes]:
     from PIL import Image
 
     try:
-        size = picture_size(encoded)
+        size = read_picture_size(encoded)
         if size is None or size[0] * size[1] > PICTURE_PIXELS:
             raise ValueError("no picture that can be drawn")
         picture = Image.open(io.BytesIO(encoded)).convert("RGBA")

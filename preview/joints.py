@@ -55,7 +55,7 @@ def is_face(name: str) -> bool:
     )
 
 
-def sides_of_joints(skeleton: Skeleton) -> NDArray[Any]:
+def find_side_signs(skeleton: Skeleton) -> NDArray[Any]:
     """Return `[J]`: 1 for left, -1 for right, 0 for the middle; by the joint's name, or the side of its
     parent if the name has none.
     """
@@ -106,7 +106,7 @@ def find_drawn_joints(skeleton: Skeleton) -> NDArray[Any]:
     return keep
 
 
-def nearest_above(skeleton: Skeleton, shown: NDArray[Any]) -> NDArray[Any]:
+def find_nearest_above(skeleton: Skeleton, shown: NDArray[Any]) -> NDArray[Any]:
     """Return `[J]`: for each joint the nearest joint above it that is shown (`shown` `[J]`), or -1."""
     out = np.full(len(skeleton), -1)
     for i, parent in enumerate(skeleton.parents):  # parents stand before their children

@@ -45,7 +45,7 @@ def find_levels_folder() -> Path | None:
     return cache_folder("meshes") if told is None else Path(told) if told else None
 
 
-def levels_of(
+def make_levels(
     mesh: SkinnedMesh,
     height: float,
     cancelled: Callable[[], bool] = lambda: False,

@@ -162,7 +162,7 @@ def _bounds(key: Array, low: Array, high: Array) -> tuple[Array, Array, Array, A
     )
 
 
-def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:
+def turn_profile(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:
     """Turn a profile of `(y, radius)` pairs, from low to high, round the Y axis. Return positions and normals
     `[V, 3]` and triangles.
     """
@@ -193,20 +193,20 @@ def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Ar
     return flat, normals.reshape(-1, 3), triangles[area > 1e-12]
 
 
-def capsule(
+def make_capsule(
     length: float, low: float, high: float, sides: int = 10, rings: int = 3
 ) -> tuple[Array, Array, Array]:
     """Return a tapered bone along +Y from 0 to `length` with round ends of the radii `low` and `high`."""
     turn = np.linspace(-math.pi / 2, 0, rings + 1)
     first = [(low * math.sin(t), low * math.cos(t) if i else 0.0) for i, t in enumerate(turn)]
     last = [(length - high * math.sin(t), high * math.cos(t) if i else 0.0) for i, t in enumerate(turn)]
-    return lathe(first + last[::-1], sides)
+    return turn_profile(first + last[::-1], sides)
 
 
-def ball(radius: float, sides: int = 12, rings: int = 8) -> tuple[Array, Array, Array]:
+def make_ball(radius: float, sides: int = 12, rings: int = 8) -> tuple[Array, Array, Array]:
     """Return a sphere round the origin."""
     turn = np.linspace(-math.pi / 2, math.pi / 2, rings + 1)
-    return lathe(
+    return turn_profile(
         [
             (radius * math.sin(t), 0.0 if i in (0, rings) else radius * math.cos(t))
             for i, t in enumerate(turn)
@@ -215,7 +215,9 @@ def ball(radius: float, sides: int = 12, rings: int = 8) -> tuple[Array, Array, 
     )
 
 
-def egg(profile_height: float, radius: float, sides: int = 18, rings: int = 14) -> tuple[Array, Array, Array]:
+def make_egg(
+    profile_height: float, radius: float, sides: int = 18, rings: int = 14
+) -> tuple[Array, Array, Array]:
     """Return a head: from 0 to `profile_height` along +Y, narrower at the chin."""
     turn = np.linspace(0, math.pi, rings + 1)
     rows = []
@@ -223,4 +225,4 @@ def egg(profile_height: float, radius: float, sides: int = 18, rings: int = 14) 
         y = (1 - math.cos(t)) / 2
         width = math.sin(t) * (0.78 + 0.30 * y - 0.06 * y * y)
         rows.append((y * profile_height, 0.0 if i in (0, rings) else radius * width))
-    return lathe(rows, sides)
+    return turn_profile(rows, sides)

@@ -38,7 +38,7 @@ LIMBS: tuple[tuple[str, tuple[str, ...], tuple[str, ...], str], ...] = (
 OWN, WHOLE, FROM_START, FROM_END = range(4)
 
 
-def occlusion_ways() -> Array:
+def tabulate_occlusion() -> Array:
     """Return how rod c counts for a vertex on limb v, `[v, c]`."""
     names = [name for name, *_ in LIMBS]
     out = np.full((len(LIMBS), len(LIMBS)), WHOLE)
@@ -86,7 +86,7 @@ def main_matrices(vertices: Array) -> Array:
     return np.asarray(np.take_along_axis(vertices["bones"], most, 1)[:, 0])
 
 
-def rods(skeleton: Skeleton, sources: Array, vertices: Array, rest: Array) -> Rods | None:
+def find_rods(skeleton: Skeleton, sources: Array, vertices: Array, rest: Array) -> Rods | None:
     """Return the rods of a mesh, None if the skeleton is not that of a person.
 
     `sources` `[M]` is the joint that each matrix follows. `vertices` `[V]` are at rest (see mesh.VERTEX), as

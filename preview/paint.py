@@ -23,7 +23,7 @@ _GAMMA = 2.2
 _LINEAR = ((np.arange(256) / 255) ** _GAMMA).astype(np.float32)  # what the shader makes of a vertex's colours
 
 
-def without_invisible_texture(
+def remove_invisible_texture(
     mesh: SkinnedMesh, decoded: Callable[[bytes], tuple[tuple[int, int], bytes]]
 ) -> tuple[SkinnedMesh, Array]:
     """Return a mesh that looks the same with fewer textured triangles, and for each of its vertices the

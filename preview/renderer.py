@@ -14,10 +14,18 @@ from preview import shaders
 from preview.backdrop import ViewBackdrop
 from preview.camera import Camera
 from preview.drawing import SceneDrawing, set_uniforms
-from preview.frame import MARGIN, Array, Frame, find_covered, is_drawable, piece_boxes, tall
+from preview.frame import (
+    MARGIN,
+    Array,
+    Frame,
+    find_covered,
+    find_piece_boxes,
+    is_drawable,
+    measure_pixel_height,
+)
 from preview.mesh import SkinnedMesh
 from preview.scene import DARK, Actor, Scene, SceneTheme
-from preview.shadows import SHADOW_LIMIT, Shadows, draw_depths, shadow_casters
+from preview.shadows import SHADOW_LIMIT, Shadows, draw_depths, list_shadow_casters
 
 GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre at a figure
 CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is; up to which share of the height
@@ -97,14 +105,14 @@ class Renderer:
         def mesh(a: Actor) -> SkinnedMesh:
             second = self.software and (self._beside is not None or a.opacity < 1)
             off = max(OFF_CROWD if crowd else OFF[self.software], OFF_BESIDE if second else 0.0)
-            return a.figure.finest(off * a.figure.height / max(1.0, tall(a, camera, height)))
+            return a.figure.finest(off * a.figure.height / max(1.0, measure_pixel_height(a, camera, height)))
 
         meshes = [mesh(a) for a in actors]
-        casters = shadow_casters(actors) if cast else []
+        casters = list_shadow_casters(actors) if cast else []
         rows = self._drawing.store.prepare(actors, meshes + casters)
         matrix = camera.matrix(width / height)
         bounds = Scene(tuple(solid)).bounds()
-        round_pieces = piece_boxes(actors, self.store.palettes if actors else ())
+        round_pieces = find_piece_boxes(actors, self.store.palettes if actors else ())
         frame = Frame(
             scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces, casters
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from preview.occlusion import FROM_END, FROM_START, LIMBS, OWN, occlusion_ways
+from preview.occlusion import FROM_END, FROM_START, LIMBS, OWN, tabulate_occlusion
 
 # A triangle that covers the picture.
 COVER = """#version 330 core
@@ -216,7 +216,7 @@ DEPTH = "#version 330 core\nvoid main() {}\n"
 _OCCLUSION = f"""
 #ifdef OCCLUDED
 const int RODS = {len(LIMBS)};
-const int WAYS[RODS * RODS] = int[RODS * RODS]({", ".join(str(way) for way in occlusion_ways().ravel())});
+const int WAYS[RODS * RODS] = int[RODS * RODS]({", ".join(str(way) for way in tabulate_occlusion().ravel())});
 uniform vec4 u_rod_starts[RODS], u_rod_ends[RODS];  // with the radius; with 1 where there is such a limb
 in uint in_limb;
 out float v_open;

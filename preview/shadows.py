@@ -203,7 +203,7 @@ def _strip(frame: Frame) -> Strip | None:
     return patch, (x, z), ((fade_x[0] + fade_x[1]) / 2, (fade_z[0] + fade_z[1]) / 2, wide)
 
 
-def shadow_casters(actors: Sequence[Actor]) -> list[SkinnedMesh]:
+def list_shadow_casters(actors: Sequence[Actor]) -> list[SkinnedMesh]:
     """Return the mesh that throws each actor's shadow."""
     return [a.figure.finest(CAST_OFF * a.figure.height) for a in actors]
 

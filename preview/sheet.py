@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.outputs import claim_output
-from preview.typeface import typeface_file
+from preview.typeface import find_typeface_file
 
 Array = NDArray[Any]
 Color = tuple[int, int, int]
@@ -20,7 +20,7 @@ PAPER: Color = (28, 29, 33)
 INK: Color = (232, 234, 237)
 
 
-def contact_sheet(
+def make_contact_sheet(
     images: Sequence[Array],
     columns: int,
     labels: Sequence[str] = (),
@@ -90,7 +90,7 @@ def _font(size: int) -> Any:
     """Return the window's typeface, so that text looks the same on every system."""
     from PIL import ImageFont
 
-    return ImageFont.truetype(typeface_file("Regular"), size)
+    return ImageFont.truetype(find_typeface_file("Regular"), size)
 
 
 def _fit(draw: Any, words: str, font: Any, width: int) -> str:

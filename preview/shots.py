@@ -51,7 +51,7 @@ def place_camera(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
     )
 
 
-def camera_side(heads: Array) -> Array:
+def find_camera_side(heads: Array) -> Array:
     """Return the direction `[3]` from the line between the speakers to the cameras: level, towards the
     viewer.
     """
@@ -66,13 +66,13 @@ def camera_side(heads: Array) -> Array:
     return -beside if beside[2] < 0 or (beside[2] == 0 and beside[0] < 0) else beside
 
 
-def partner(heads: Array, side: int) -> int:
+def choose_shown_partner(heads: Array, side: int) -> int:
     """Return over whose shoulder a speaker is seen: of several, the one farthest away on the ground."""
     others = [n for n in range(len(heads)) if n != side]
     return max(others, key=lambda n: float(np.linalg.norm((heads[n] - heads[side])[[0, 2]])), default=side)
 
 
-def shot_camera(shot: Shot, side: int, heads: Array, heights: Sequence[float], aspect: float) -> Camera:
+def make_shot_camera(shot: Shot, side: int, heads: Array, heights: Sequence[float], aspect: float) -> Camera:
     """Return the camera of a shot.
 
     `side` is who is seen. `heads` are the middles of the heads `[N, 3]` in metres, `heights` the heights of
@@ -81,7 +81,7 @@ def shot_camera(shot: Shot, side: int, heads: Array, heights: Sequence[float], a
     side = min(side, len(heads) - 1)
     if shot == "two" or len(heads) < 2:
         return _all(heads, heights, aspect)
-    beside, other = camera_side(heads), partner(heads, side)
+    beside, other = find_camera_side(heads), choose_shown_partner(heads, side)
     sight = heads[other] - heads[side]
     sight[1] = 0.0
     sight /= max(1e-6, float(np.linalg.norm(sight)))
@@ -112,19 +112,19 @@ def shot_camera(shot: Shot, side: int, heads: Array, heights: Sequence[float], a
     return place_camera(eye, target, 2 * math.atan(tall / 2 / float(np.linalg.norm(eye - target))))
 
 
-def lamp_side(camera: Camera, shot: Shot, side: int, heads: Array) -> bool:
+def is_lamp_on_right(camera: Camera, shot: Shot, side: int, heads: Array) -> bool:
     """Return whether the lamp of a shot stands on the camera's right, not on its left: it lights the side of
     a face that is turned from the camera, as the light of a filmed conversation does.
     """
     if shot == "two" or len(heads) < 2:
         return False
     side = min(side, len(heads) - 1)
-    return bool(camera.axes[0] @ (heads[partner(heads, side)] - heads[side]) > 0)
+    return bool(camera.axes[0] @ (heads[choose_shown_partner(heads, side)] - heads[side]) > 0)
 
 
 def _all(heads: Array, heights: Sequence[float], aspect: float) -> Camera:
     """Return the camera that shows all speakers from the waist up, from three quarters."""
-    beside, height = camera_side(heads), float(max(heights))
+    beside, height = find_camera_side(heads), float(max(heights))
     camera = Camera(fov=TWO_FOV).facing(math.atan2(beside[0], beside[2]) - TWO_TURN, math.radians(4.0))
     low, high = heads.min(axis=0), heads.max(axis=0)
     room = height * (TWO_BESIDE if aspect > WIDE else NARROW_BESIDE)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Skeleton
 from preview.figure import MeshFigure, join_parts
-from preview.mesh import capsule, lathe
+from preview.mesh import make_capsule, turn_profile
 from preview.scene import Actor
 
 Array = NDArray[Any]
@@ -33,13 +33,13 @@ class Stool(MeshFigure):
             (0.0, radius - edge),
             (0.0, 0.0),
         ]
-        parts: list[Any] = [(lathe(rim, 36), 0, np.zeros(3), SEAT_COLOR)]
+        parts: list[Any] = [(turn_profile(rim, 36), 0, np.zeros(3), SEAT_COLOR)]
         for angle in np.radians([45, 135, 225, 315]):
             way = np.array([np.cos(angle), 0.0, np.sin(angle)])
             top, foot = way * 0.62 * radius - [0, thick, 0], way * 0.95 * radius - [0, height, 0]
             length, width = float(np.linalg.norm(top - foot)), 0.035 * height
-            positions, normals, triangles = capsule(length - width, width, width, 10, 3)
-            turn = rotation.rotation_between(np.array([0.0, 1, 0]), top - foot)
+            positions, normals, triangles = make_capsule(length - width, width, width, 10, 3)
+            turn = rotation.find_rotation_between(np.array([0.0, 1, 0]), top - foot)
             shape = (
                 rotation.rotate_vectors(turn, positions) + foot + [0, width, 0],
                 rotation.rotate_vectors(turn, normals),
@@ -62,7 +62,7 @@ def _stool(height: float, radius: float) -> Stool:
     return Stool(height, radius)
 
 
-def stool(at: tuple[float, float, float], radius: float) -> Actor:
+def make_stool(at: tuple[float, float, float], radius: float) -> Actor:
     """Return a stool that stands on the ground. `at` is the middle of the top of its seat, in metres."""
     figure = _stool(round(max(at[1], 0.05), 3), round(radius, 3))
     return Actor(figure, np.array([[0.0, 0, 0, 1]], np.float32), np.array([at], np.float32))

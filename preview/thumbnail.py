@@ -15,7 +15,7 @@ from metagraph.motion.skeleton import Pose
 from preview import joints as rules
 from preview.camera import Camera
 from preview.figure import MeshFigure
-from preview.framing import Box, find_heading, near_box, nearness
+from preview.framing import Box, choose_nearness, find_heading, find_near_box
 from preview.offscreen import Offscreen
 from preview.scene import DARK, Actor, Scene, SceneTheme
 
@@ -67,7 +67,7 @@ class ThumbnailStyle:
 USUAL = ThumbnailStyle()
 
 
-def thumbnail(
+def render_thumbnail(
     offscreen: Offscreen,
     figure: MeshFigure,
     rotations: Array,
@@ -90,7 +90,7 @@ def thumbnail(
     return offscreen.render(scene, camera, style.theme, (pixels, pixels))
 
 
-def thumbnails(
+def render_thumbnails(
     offscreen: Offscreen,
     figure: MeshFigure,
     clip: Clip,
@@ -111,11 +111,11 @@ def thumbnails(
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-find_heading(figure, positions[0])))
     centred = rotation.rotate_vectors(turn, positions - positions[:, :1] * [1, 0, 1])
     turned = rotation.multiply(turn, rotations)
-    near = nearness(clip)
+    near = choose_nearness(clip)
     if near == "whole":
         box = _person(figure, figure.posed_bounds(turned, centred))
     else:
-        low, high = near_box(clip.skeleton, near, centred, figure.bounds(centred), figure.height)
+        low, high = find_near_box(clip.skeleton, near, centred, figure.bounds(centred), figure.height)
         # Some heads are wider than the shoulders.
         head = figure.posed_bounds(turned, centred, find_roles(clip.skeleton)["head"])
         box = np.minimum(low, [head[0][0], low[1], head[0][2]]), np.maximum(high, head[1])
@@ -148,6 +148,6 @@ def _camera(box: Box) -> Camera:
 def draw_clip_thumbnail(
     offscreen: Offscreen, figure: MeshFigure, clip: Clip, style: ThumbnailStyle = USUAL
 ) -> Array:
-    """Return `thumbnail` of the clip's telling frame. The clip is on the figure's skeleton."""
+    """Return `render_thumbnail` of the clip's telling frame. The clip is on the figure's skeleton."""
     rotations, positions = clip.skeleton.globals(clip.poses()[find_telling_frame(clip)])
-    return thumbnail(offscreen, figure, rotations, positions, style)
+    return render_thumbnail(offscreen, figure, rotations, positions, style)

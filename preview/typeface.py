@@ -8,7 +8,7 @@ FAMILY = "Source Sans Pro"
 WEIGHTS = ("Regular", "Semibold", "Bold", "It")
 
 
-def typeface_file(weight: str) -> Path:
+def find_typeface_file(weight: str) -> Path:
     """Return the TrueType file of a weight, one of `WEIGHTS`."""
     from font_source_sans_pro import font_directory
 

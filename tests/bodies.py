@@ -7,7 +7,7 @@ import numpy as np
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.skeleton import Skeleton
-from preview.mesh import ball
+from preview.mesh import make_ball
 
 LENGTH = 0.35
 
@@ -19,7 +19,7 @@ def column(joints: int = 6) -> Skeleton:
     return Skeleton(
         tuple(f"j{n}" for n in range(joints)),
         np.arange(-1, joints - 1),
-        rotation.identity_rotations((joints,)),
+        rotation.make_identity_rotations((joints,)),
         offsets,
     )
 
@@ -32,7 +32,7 @@ def body(
     points, corners, joints, surfaces = [], [], [], []
     count = first = 0
     for joint, radius in balls.items():
-        p, _, t = ball(radius)
+        p, _, t = make_ball(radius)
         points.append(p + (at or {}).get(joint, rest[joint]))
         corners.append(t + count)
         joints += [[joint, 0, 0, 0]] * len(p)

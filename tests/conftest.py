@@ -43,7 +43,7 @@ os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
 # others take these names from their modules.
 sound.analyse_sound = heard_once(sound.analyse_sound)
 sound.read_recording = read_once(sound.read_recording)
-pitch.pitch = heard_once(pitch.pitch)
+pitch.measure_pitch = heard_once(pitch.measure_pitch)
 
 stated = os.fstat
 

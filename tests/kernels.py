@@ -63,20 +63,20 @@ def provide(name: str) -> Path:
 
 def compile_all() -> None:
     """Call everything that is compiled."""
-    from app.features.motion_graph.synthesis_jobs import Wish, list_usable_clips, synthesise, takes_of
+    from app.features.motion_graph.synthesis_jobs import Wish, choose_takes, list_usable_clips, synthesise
     from metagraph.formats.store import open_project
     from metagraph.synthesis.constraints import find_heard_at
-    from metagraph.synthesis.extending.path import PathExtender, driver_graph
+    from metagraph.synthesis.extending.path import PathExtender, make_driver_graph
     from metagraph.synthesis.graph import build_graph
     from metagraph.synthesis.states import read_states
 
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
-    takes = takes_of(
+    takes = choose_takes(
         project, [i for i in list_usable_clips(project) if project.clips[i].name.endswith("__stance")]
     )
     graph = build_graph(read_states(takes.clips))
     synthesise(graph, takes, Wish(4.0, ()), "new")
-    PathExtender(driver_graph(graph, find_heard_at(graph.states, [() for _ in takes.clips]))).step()
+    PathExtender(make_driver_graph(graph, find_heard_at(graph.states, [() for _ in takes.clips]))).step()
     compile_searches()
 
 

@@ -22,13 +22,13 @@ from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.manual_playback import ManualEvaluator, ManualPlan
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import morphs_at, pose_at
+from metagraph.playback.player import compute_morphs_at, compute_pose_at
 from metagraph.playback.posing.composer import ComposerRig
 from metagraph.playback.posing.overlay import Overlay
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import Weight
 
-__all__ = ["morphs_at", "pose_at"]
+__all__ = ["compute_morphs_at", "compute_pose_at"]
 
 KEPT = 8
 _kept: list[Evaluator] = []
@@ -81,16 +81,16 @@ def gaze_of(schedule: Schedule, life: Life, body: Body, points: Mapping[str, Poi
 
 
 def rig(project: Project) -> ComposerRig:
-    return rigs_of(project).composer
+    return get_rigs(project).composer
 
 
 def contact_rig(project: Project) -> ContactRig | None:
-    return rigs_of(project).contacts
+    return get_rigs(project).contacts
 
 
 def weight_of(project: Project) -> Weight:
-    return rigs_of(project).weight
+    return get_rigs(project).weight
 
 
 def body_of(project: Project) -> Body:
-    return rigs_of(project).body
+    return get_rigs(project).body

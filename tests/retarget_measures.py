@@ -51,7 +51,7 @@ def round_trip(
     joint_map = replace(propose_joint_map(clip.skeleton, middle), contacts=contacts)
     out = retarget(clip, middle, joint_map, source_pose=pose, target_pose=other)
     back = retarget(out, clip.skeleton, joint_map.reversed, source_pose=other, target_pose=pose)
-    turned = rotation.angle_between(
+    turned = rotation.measure_angle_between(
         clip.skeleton.globals(clip.poses())[0], back.skeleton.globals(back.poses())[0]
     )
     degrees = {

@@ -8,7 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from metagraph.formats.project.journal_records import frame_record, parse_record
+from metagraph.formats.project.journal_records import encode_record, parse_record
 
 
 @cache
@@ -26,5 +26,5 @@ def kill_sittings(folder: Path) -> None:
         record = parse_record(first)
         head = record.data if record is not None else json.loads(first)
         head.get("owner", head)["pid"] = ended()
-        line = frame_record(head, 0)[:-2] if record is not None else json.dumps(head).encode()
+        line = encode_record(head, 0)[:-2] if record is not None else json.dumps(head).encode()
         path.write_bytes(line + b"\n" + rest)

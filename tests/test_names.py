@@ -28,22 +28,22 @@ PARTICIPLES = {
 # What names of functions begin with: verbs, and words for questions and for variants of a value.
 VERBS = set(
     """
-    ablate absorb accept access add adopt align allocate allow analyse anchor answer append apply
+    ablate absorb accept access add address adopt align allocate allow analyse anchor answer append apply
     are arrange arrive as ask assemble assign assume bake batch begin bind blend break breathe
     bridge bring build bundle cache can change charge check choose claim clamp classify clean clear
     close collect combine compare compose compute conjugate connect continue contribute convert copy
     count cover crop crossfade cut declare decode decompose delay delete derive describe detect
     differs digest discover drag draw drive drop duplicate ease edit elide encode escape estimate
-    evaluate exchange exhibit explain export extend fade fetch fill filter find finish fit fix fold
+    evaluate exchange exhibit expand explain export extend fade fetch fill filter find finish fit fix fold
     follow foresee forget format free freeze from gather generate get go grade group guard guess
     handle has hear hide hit hold holds import improvise infer install is join judge keep keeps key label
-    land last lay lead leap learn leave level lie lift limit list load lock log look main make mark
+    land last lay lead leap learn leave level lie lift limit list load localize lock log look main make mark
     mask match matches may mean measure meet merge mimic mirror mix move moves multiply name needs
     normalize note nudge offer open order pack pad paint parse paste perceive perform pick place plan
     play plot predict prepare preregister print process project propose put quote rank reach read
     recall receive recover refuse register rehearse relabel relocate remake remember remove rename
     render reopen reorder repair repeat replace replay repoint report require reread resample reset
-    resize restore retarget retime retire reveal reword rotate route run sample save say scale score
+    resize restore retarget retime retire reveal reword rotate round route run sample save say scale score
     seal search see select send serve set settle shade share shift shorten show shuffle simplify
     simulate slip smooth snap soften solve sort spell spend split stack stand standardise start
     straighten strengthen strip study summarise swap sweep sync synthesise synthesize tabulate take
@@ -51,6 +51,16 @@ VERBS = set(
     uses vary verify wait walk warn watch weigh with withdraw write
     """.split()  # noqa: SIM905 - three hundred quotes more to read
 )
+# Names that stay: of plain mathematics, where each is clearer than a verb with it, and of marks on texts.
+SHORT = {
+    "exp",  # the exponential map from rotation vectors to quaternions
+    "logistic",  # the logistic function
+    "nlerp",  # normalised linear interpolation, as every book on animation calls it
+    "phrase",  # marks a text in the domain, as `tr` does in the window; it is a verb, too
+    "plural_phrase",  # marks a text that depends on a count, as `tr_plural` does in the window
+    "slerp",  # spherical linear interpolation
+    "slerp_exact",  # slerp for keys that are far apart
+}
 # Names of functions that were nouns before this was checked. The list only gets shorter.
 NOUNS = set(Path(__file__).with_name("noun_names.txt").read_text(encoding="utf-8").split())
 
@@ -102,7 +112,7 @@ def find_nouns() -> set[str]:
         for name, places in defined().items()
         for path, node in places
         if isinstance(node, ast.FunctionDef) and name.split("_")[0] not in VERBS
-        if path not in TRANSLATED and name not in PROTOCOLS | KEPT | NATIVE
+        if path not in TRANSLATED and name not in PROTOCOLS | KEPT | NATIVE | SHORT
     }
 
 

@@ -20,7 +20,14 @@ from metagraph.engines.translation.listing import LISTING
 ROOT = Path(__file__).resolve().parents[1]
 QUOTES = ("docs/contributing/style.md",)  # shows what not to write
 # Made from the parsers of commands (`docs/command_line_page.py`).
-MADE = ("docs/reference/command-line.md", "docs/reference/command-line-research.md")
+MADE = (
+    "docs/reference/command-line.md",
+    "docs/reference/command-line-generate.md",
+    "docs/reference/command-line-motion-graph.md",
+    "docs/reference/command-line-perceive.md",
+    "docs/reference/command-line-research.md",
+    "docs/reference/command-line-study.md",
+)
 
 # A regular expression (a blank stands for any white space) and what to write instead.
 PHRASES = {

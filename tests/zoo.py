@@ -254,9 +254,11 @@ def _axes(animal: Animal, joint: str) -> Array:
     children = [c for c in joints_of(animal) if _parent(animal, c) == joint]
     if not animal.bones or not children:
         above = _parent(animal, joint)
-        return _axes(animal, above) if animal.bones and above is not None else rotation.identity_rotations()
+        return (
+            _axes(animal, above) if animal.bones and above is not None else rotation.make_identity_rotations()
+        )
     along = _place(animal, children[0]) - _place(animal, joint)
-    return rotation.rotation_between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
+    return rotation.find_rotation_between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
 
 
 def _local(above: Array | None, own: Array) -> Array:
@@ -294,12 +296,12 @@ def clip_doing(animal: Animal, name: str, turns: Mapping[str, Array], way: Array
         moving[joint] = rotation.multiply(turns[joint], axes)
         if animal.kind == ".bvh":  # where joints have no turn at rest: all is given from there
             moving[joint] = rotation.multiply(moving[joint], rotation.conjugate(resting[joint]))
-            resting[joint] = rotation.identity_rotations()
+            resting[joint] = rotation.make_identity_rotations()
     rows: list[tuple[str, int, Array, Array, Array]] = []
     turned = (
         rotation.from_axis_angle(np.array([1.0, 0, 0]), np.pi / 2)
         if animal.up == "Z"
-        else rotation.identity_rotations()
+        else rotation.make_identity_rotations()
     )
     if animal.above is not None:
         rows.append((animal.above, -1, turned, np.zeros(3), np.tile(turned, (count, 1))))
@@ -313,7 +315,7 @@ def clip_doing(animal: Animal, name: str, turns: Mapping[str, Array], way: Array
         called = animal.called(joint)
         assert called is not None
         if above is None:
-            first = rotation.identity_rotations() if animal.above is not None else turned
+            first = rotation.make_identity_rotations() if animal.above is not None else turned
             offset = rotation.rotate_vectors(first, _place(animal, joint))
             own, path = rotation.multiply(first, resting[joint]), rotation.multiply(first, moving[joint])
         else:
@@ -329,7 +331,7 @@ def clip_doing(animal: Animal, name: str, turns: Mapping[str, Array], way: Array
         rows.append((called, parent if above is not None else len(rows) - 1, own, offset / animal.unit, path))
     names, parents, rest, offsets, paths = zip(*rows, strict=True)
     if animal.kind == ".bvh":  # the offsets turn, not the rest pose
-        rest = tuple(rotation.identity_rotations() for _ in rest)
+        rest = tuple(rotation.make_identity_rotations() for _ in rest)
         offsets = tuple(
             rotation.rotate_vectors(turned, o) if n > (animal.above is not None) else o
             for n, o in enumerate(offsets)
@@ -340,7 +342,7 @@ def clip_doing(animal: Animal, name: str, turns: Mapping[str, Array], way: Array
             for n, p in enumerate(paths)
         )
     skeleton = Skeleton(names, np.array(parents), np.stack(rest), np.stack(offsets))
-    whole = rotation.continuous(np.stack(paths, 1))
+    whole = rotation.make_continuous(np.stack(paths, 1))
     moved = (0,) if animal.above is None or way is None else (0, 1)
     at = np.tile(skeleton.rest_translations[list(moved)], (count, 1, 1))
     if way is not None:

@@ -14,10 +14,10 @@ from app.cli.kept_options import check_kept_name
 from app.cli.outputs import ProjectOutput
 from app.project.annotation_reading import (
     AnnotationReading,
+    apply_reading,
     begin_reading,
     count_replayed,
     describe_doubts,
-    work_into_project,
 )
 from app.project.opening import open_whole
 from metagraph.errors import FileError
@@ -33,7 +33,7 @@ from metagraph.playback.learning.annotation import (
     label_of,
 )
 from metagraph.playback.learning.compare import compare_model
-from metagraph.playback.learning.learn import Act, describe_state, learn_model, model_states
+from metagraph.playback.learning.learn import Act, describe_state, learn_model, list_model_states
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -107,7 +107,7 @@ def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
             options.annotation, f"no tier is read as an action; the tiers are {tiers}", "in its tiers",
             f"Set their roles: --tier \"NAME=left arm\" (or {', '.join(list(ROLES)[1:])}).",
         )  # fmt: skip
-    made = work_into_project(
+    made = apply_reading(
         project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing
     )
     saved = output is not None and (bool(made.learned) or made.performance is not None)
@@ -183,7 +183,7 @@ def _layer(layer: Layer, acts: tuple[Act, ...], options: Namespace) -> dict[str,
     return {
         "actions": len(acts),
         "per_minute": round(found.observed.rate, 2),
-        "states": [describe_state(state, layer) for state in model_states(model)],
+        "states": [describe_state(state, layer) for state in list_model_states(model)],
         "matrix": [[round(p, 4) for p in row] for row in model.matrix],
         "lengths": [list(pair) for pair in model.lengths],
         "gap": model.gap,

@@ -11,7 +11,7 @@ from app.cli.journal_note import warn_of_journals
 from app.cli.showing_command import name_showing_command
 from metagraph.formats.project.verified import count_in_words
 from metagraph.graph.check import check_project as find_problems
-from metagraph.graph.check import grave
+from metagraph.graph.check import list_grave_problems
 from metagraph.graph.problem_groups import group_problems
 
 PLAYED = 600.0  # seconds
@@ -69,7 +69,7 @@ def run(options: Namespace) -> int:
                 if command := name_showing_command(project, p, options.project):
                     print(f"        See it: {command}")
         print(", ".join(count_in_words(counts[one], one) for one in ("error", "warning", "hint")))
-    failing = grave(problems, options.strict)
+    failing = list_grave_problems(problems, options.strict)
     if failing:
         explain_code_3(f"{count_in_words(len(failing), 'problem')} to solve")
     return 3 if failing else 0

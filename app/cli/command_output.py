@@ -56,7 +56,7 @@ def explain_code_3(why: str) -> None:
     print(f"exit code 3: {why}", file=sys.stderr)
 
 
-def stage_performance(project: Project, options: Namespace) -> Plan:
+def choose_plan(project: Project, options: Namespace) -> Plan:
     """Return the requested performance, or an improvised one, and set the option of its length."""
     kept = _kept(project, options.performance) if options.performance is not None else None
     if options.seconds is None:

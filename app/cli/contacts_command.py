@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.command_output import open_for_command, say
 from app.cli.outputs import ProjectOutput, with_project_ending
-from metagraph.formats.outputs import claim, wrote
+from metagraph.formats.outputs import claim, note_written
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Layer, Project
@@ -48,7 +48,7 @@ def run(options: Namespace) -> int:
         claim(out)
         with ProjectOutput(out) as output:
             code = _found(options, output)
-        wrote(out)
+        note_written(out)
         return code
     with ProjectOutput(out) as output:
         return _found(options, output)

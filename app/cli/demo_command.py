@@ -6,7 +6,7 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from app.cli.command_output import add_performance_arguments, open_for_command, stage_performance
+from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command
 from app.cli.render_command import Shot, draw_to, load_figure, mix_sound
 from app.stage.playback_source import ShownPlayback
 from metagraph.formats.store import SUFFIX
@@ -29,16 +29,16 @@ def run(options: Namespace) -> int:
     are.
     """
     from metagraph.engines.export import export_project as write_export
-    from metagraph.engines.export import stem_of
-    from metagraph.formats.outputs import claim, wrote
+    from metagraph.engines.export import make_export_stem
+    from metagraph.formats.outputs import claim, note_written
 
     source: Path = getattr(options, "project", None) or SAMPLE
     project = open_for_command(source)
     folder = source.resolve().parent
-    made = stage_performance(project, options)
+    made = choose_plan(project, options)
     out: Path = options.out
     sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
-    own = out / f"{stem_of(project)}.json", out / f"{stem_of(project)}.glb"
+    own = out / f"{make_export_stem(project)}.json", out / f"{make_export_stem(project)}.glb"
     claim(sheet, video, *own)
     out.mkdir(parents=True, exist_ok=True)
     whole = count_machine_size(project)
@@ -58,7 +58,7 @@ def run(options: Namespace) -> int:
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write_export(project, out, character=folder / project.character if project.character else None)
-    wrote(*own)
+    note_written(*own)
     results = {"sheet": sheet, "video": video, "json": exported.json, "glb": exported.glb}
     if quiet:
         print(json.dumps({k: str(v.resolve()) for k, v in results.items()}))

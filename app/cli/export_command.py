@@ -70,7 +70,7 @@ def run(options: Namespace) -> int:
     from metagraph.engines.targets import registry
 
     if options.targets:
-        for target in registry.targets().values():
+        for target in registry.list_targets().values():
             print(
                 f"{target.name:18} {target.title}: "
                 f"{target.files}{' (experimental)' if target.untried else ''}"
@@ -83,7 +83,7 @@ def run(options: Namespace) -> int:
             file=sys.stderr,
         )
         return 2
-    registry.target(options.target)  # a wrong name is reported before anything is read
+    registry.get_target(options.target)  # a wrong name is reported before anything is read
     if options.vectors:
         from metagraph.engines.vectors import NAME
         from metagraph.formats.outputs import claim
@@ -142,20 +142,20 @@ def _state(path: Path) -> tuple[int, int] | None:
 def _once(options: Namespace) -> None:
     from metagraph.engines.targets import registry
     from metagraph.engines.targets.target import Contents
-    from metagraph.graph.manual.meta import exportable
+    from metagraph.graph.manual.meta import make_exportable
 
-    project, differences = exportable(open_for_command(options.project))
+    project, differences = make_exportable(open_for_command(options.project))
     character = (
         options.project.resolve().parent / project.character
         if project.character and not options.no_mesh
         else None
     )
     if options.tools:
-        from metagraph.engines.export import stem_of
+        from metagraph.engines.export import make_export_stem
         from metagraph.engines.tools_file import name_tools_file
         from metagraph.formats.outputs import claim
 
-        claim(options.out / name_tools_file(stem_of(project)))
+        claim(options.out / name_tools_file(make_export_stem(project)))
     contents = Contents(
         character,
         options.expanded,
@@ -186,7 +186,7 @@ def _once(options: Namespace) -> None:
             files.append(write_vectors(graph))
     for warning in made.warnings:
         print(f"warning: {warning}", file=sys.stderr)
-    untried = registry.target(options.target).untried
+    untried = registry.get_target(options.target).untried
     if untried:
         print(f"experimental: {untried}", file=sys.stderr)
     for words in differences:

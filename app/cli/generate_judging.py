@@ -79,7 +79,7 @@ def judge_models(options: Namespace) -> int:
     from app.cli.generate_takes import make_progress_printer, read_all, read_models
     from metagraph.formats.outputs import claim
     from metagraph.generation.stored import SUFFIX
-    from metagraph.research.generation.evaluation import HeldOut, for_all, judge_on_takes
+    from metagraph.research.generation.evaluation import HeldOut, find_takes_unseen_by_all, judge_on_takes
 
     paths = [p for p in options.given if p.suffix.lower() == SUFFIX]
     options.takes = [p for p in options.given if p.suffix.lower() != SUFFIX]
@@ -93,7 +93,7 @@ def judge_models(options: Namespace) -> int:
     first = next(iter(models.values()))
     require_alike(models)
     batch = read_all(options, first.rig, first.card.tracks)
-    takes, left = for_all(models, batch.takes)
+    takes, left = find_takes_unseen_by_all(models, batch.takes)
     if left:
         print(f"note: {len(left)} takes skipped, because a model has learned from them", file=sys.stderr)
     held = HeldOut(takes, find_floor(options.floor, options.takes, takes, first.rig))
@@ -151,11 +151,12 @@ def find_floor(
         if missing:
             why = f" ({batch.failures[0]})" if batch.failures else ""
             raise ValueError(f"{folder} has no other motion for '{missing[0]}'{why}")
-        return [part_like(found[t.source.name], t) for t in takes]
+        return [cut_like(found[t.source.name], t) for t in takes]
     return perform_planted_floor(given, takes, rig)
 
 
-def part_like(whole: Take, take: Take) -> Any:
+def cut_like(whole: Take, take: Take) -> Any:
+    """Return the poses `[T, X]` of a whole take that a take which was cut from it has."""
     first = round(take.source.start * 25) - round(whole.source.start * 25)
     return whole.poses[first : first + len(take.poses)]
 
@@ -164,7 +165,7 @@ def perform_planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseR
     """Return another performance of takes that the sample project made, or None for other takes."""
     from app.cli.command_output import open_for_command
     from app.cli.demo_command import SAMPLE
-    from metagraph.research.generation.planted import again, read_planted
+    from metagraph.research.generation.planted import perform_again, read_planted
 
     cards = [card for folder in given if folder.is_dir() and (card := read_planted(folder)) is not None]
     if len(cards) != 1 or len(given) != 1:
@@ -172,7 +173,7 @@ def perform_planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseR
     project = open_for_command(SAMPLE)
     if project.skeleton is None or project.skeleton.fingerprint != cards[0].project:
         return None
-    return [part_like(again(project, cards[0], t, rig), t) for t in takes]
+    return [cut_like(perform_again(project, cards[0], t, rig), t) for t in takes]
 
 
 def list_judging_cautions(

@@ -291,7 +291,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
     from metagraph.formats.gltf.writer import write_glb
     from metagraph.formats.outputs import claim
     from metagraph.generation.stored import read_model
-    from metagraph.synthesis.cut import candidates, uncut
+    from metagraph.synthesis.cut import explain_uncut, find_candidates
 
     if not 0 < options.minutes <= MINUTES:
         raise ValueError(f"--minutes must be more than 0 and at most {MINUTES:g}, not {options.minutes:g}")
@@ -308,8 +308,8 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
         if clip.duration > left:
             clip = clip.trimmed(0, max(2, round(left * clip.fps)))
         left -= max(clip.duration, 0.1)
-        found = candidates(clip, None, options.least, options.most)
-        why = why or ("" if found else uncut(clip, None, options.least, options.most))
+        found = find_candidates(clip, None, options.least, options.most)
+        why = why or ("" if found else explain_uncut(clip, None, options.least, options.most))
         for start, end, score in found:
             piece = clip.trimmed(round(start * clip.fps), round(end * clip.fps) + 1)
             name = f"{options.model.stem}_seed{seed}_{round(start * 10):05d}"

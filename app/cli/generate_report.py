@@ -10,7 +10,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from metagraph.common.csv_text import csv_text
+from metagraph.common.csv_text import format_csv
 from metagraph.common.xml_text import escape
 from metagraph.formats.atomic import write_together
 from metagraph.generation.features import PARTNER, SELF
@@ -102,7 +102,7 @@ def report_as_csv(rows: Sequence[MeasureRow]) -> str:
                 low, high = row.spread.get(n, (float("nan"), float("nan")))
                 cells = (_number(v, 6) for v in (row.values[n], low, high))
                 lines.append([row.name, n, *("" if c == "-" else c for c in cells)])
-    return csv_text(lines)
+    return format_csv(lines)
 
 
 def write_generation_report(

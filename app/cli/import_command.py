@@ -10,8 +10,8 @@ from app.cli.command_output import open_for_command, say
 from app.cli.outputs import ProjectOutput, with_project_ending
 from metagraph.errors import FileError
 from metagraph.formats.action_labels import apply_labels, read_labels
-from metagraph.formats.clip_readers import clip_suffixes
-from metagraph.formats.import_words import count_alike, describe_import, remedies
+from metagraph.formats.clip_readers import list_clip_suffixes
+from metagraph.formats.import_words import count_alike, describe_import, list_remedies
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.pieces import read_other_project
 from metagraph.formats.store import SUFFIX
@@ -108,7 +108,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
             place,
             "has no clips",
             "while importing it",
-            f"Clips are {', '.join(clip_suffixes())} files.",
+            f"Clips are {', '.join(list_clip_suffixes())} files.",
         )
     for failure in count_alike(result.failures):
         print(f"left out: {failure}", file=sys.stderr)
@@ -135,7 +135,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         **({"taken": taken} if taken else {}),
         "failures": list(result.failures),
         "notes": list(result.notes),
-        "remedies": [remedy.command for remedy in remedies(result)],
+        "remedies": [remedy.command for remedy in list_remedies(result)],
     }
     imported = describe_import(result, window=False)
     if again:

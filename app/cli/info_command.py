@@ -9,7 +9,7 @@ from typing import Any
 from app.cli.command_output import open_for_command, say
 from app.cli.journal_note import warn_of_journals
 from metagraph.errors import FileError
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.clips import read_clips
 from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import KINDS, LAYERS
@@ -29,7 +29,7 @@ def run(options: Namespace) -> int:
             "the path",
             "Give a project, an exported JSON or a clip file in it; 'metagraph verify' takes a folder.",
         )
-    if path.suffix.lower() in clip_suffixes():
+    if path.suffix.lower() in list_clip_suffixes():
         clips = read_clips(path)
         from metagraph.motion.roles import find_roles
 
@@ -55,10 +55,10 @@ def run(options: Namespace) -> int:
         say(options, "\n".join(lines), data)
         return 0
     if path.suffix == ".json":
-        from metagraph.engines.reading import glb_of, read_export
+        from metagraph.engines.reading import find_export_glb, read_export
 
         project = read_export(path, motions=False)
-        glb_of(path)  # raises where it is another's
+        find_export_glb(path)  # raises where it is another's
     else:
         project = open_for_command(path)
         warn_of_journals(path)

@@ -83,7 +83,7 @@ def run(options: Namespace) -> int:
     from app.cli.command_output import LONGEST
     from app.cli.outputs import ProjectOutput, with_project_ending
     from metagraph.errors import FileError
-    from metagraph.formats.outputs import claim, wrote
+    from metagraph.formats.outputs import claim, note_written
     from metagraph.formats.store import SUFFIX
 
     if not 0 <= options.play <= LONGEST:
@@ -105,7 +105,7 @@ def run(options: Namespace) -> int:
     with ProjectOutput(path) as output:
         code = _labelled(options, output)
     if source.is_file() and not path.samefile(source):
-        wrote(path)
+        note_written(path)
     return code
 
 
@@ -116,11 +116,11 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from app.cli.showing_command import name_showing_command
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import count_alike
-    from metagraph.graph.check import check_project, grave
+    from metagraph.graph.check import check_project, list_grave_problems
     from metagraph.playback.rehearsal import rehearse
     from metagraph.suggest.flags import needs_look
     from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges, describe_unbridged
-    from metagraph.suggest.left_aside import reasons
+    from metagraph.suggest.left_aside import group_reasons
     from metagraph.suggest.propose import SOURCES, accept, propose
 
     began = time.perf_counter()
@@ -163,7 +163,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         )
         write_atomically(place, format_label_report(taken.project, found, taken, drawn, lists, path).encode())
     look = [p for p in found.doubtful if needs_look(p, taken.left)]
-    errors = [p.message for p in grave(check_project(taken.project))]
+    errors = [p.message for p in list_grave_problems(check_project(taken.project))]
     seconds = time.perf_counter() - began
     for note in count_alike(notes):
         print(f"note: {note}", file=sys.stderr)
@@ -174,9 +174,9 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         print(f"bridged: {line}", file=sys.stderr)
     for line in gaps:
         print(f"no bridge: {line}", file=sys.stderr)
-    for why, clips in reasons(found.aside):
+    for why, clips in group_reasons(found.aside):
         print(f"skipped: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
-    for why, clips in reasons(taken.left):
+    for why, clips in group_reasons(taken.left):
         print(f"left: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for message in errors:
         print(f"problem: {message}", file=sys.stderr)
@@ -309,7 +309,7 @@ def _begun(options: Namespace, path: Path) -> Begun:
     from metagraph.formats.imports import import_files
     from metagraph.formats.store import SUFFIX
     from metagraph.graph.model import Project
-    from metagraph.suggest.propose import waiting
+    from metagraph.suggest.propose import list_waiting_clips
 
     source: Path = options.folder
     if source.is_file():
@@ -342,7 +342,9 @@ def _begun(options: Namespace, path: Path) -> Begun:
     clips = [clip for clip in project.clips if clip not in before.clips]
     notes = [*result.failures, *result.notes]
     skipped = len(result.loaded) - len(fresh.loaded)
-    return Begun(project, clips if merged else None, notes, before, merged, skipped, len(waiting(before)))
+    return Begun(
+        project, clips if merged else None, notes, before, merged, skipped, len(list_waiting_clips(before))
+    )
 
 
 def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Project, tuple[Bridge, ...]]:

@@ -17,7 +17,7 @@ def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) ->
     from app.cli.render_command import load_figure
     from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError
-    from preview.thumbnail import ThumbnailStyle, draw_clip_thumbnail, thumbnail
+    from preview.thumbnail import ThumbnailStyle, draw_clip_thumbnail, render_thumbnail
 
     out: dict[str, Any] = {}
     style = ThumbnailStyle(SIZE, scale=1)
@@ -36,7 +36,7 @@ def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) ->
                     start, end = project.span(rest)
                     frame = min(motion.frames - 1, round((start + end) / 2 * motion.fps))
                     pose = motion.skeleton.globals(motion.poses()[frame])
-                    out[stance] = thumbnail(stage, figure, *pose, style)
+                    out[stance] = render_thumbnail(stage, figure, *pose, style)
     except (OpenGLError, FileError) as error:
         print(f"note: the report has no pictures: {error}", file=sys.stderr)
         return {}

@@ -16,8 +16,8 @@ from app.translation import tr_plural
 from metagraph.common.xml_text import escape
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_look
-from metagraph.suggest.left_aside import reasons
+from metagraph.suggest.flags import estimate_chance_wrong, estimate_gain, explain_doubt, needs_look
+from metagraph.suggest.left_aside import group_reasons
 from metagraph.suggest.propose import AcceptedProposals, Proposal, Proposals
 
 KIND_MARKS = {
@@ -40,7 +40,9 @@ def format_label_report(
     that could be drawn. `lists`: what else happened, by title; empty lists are left out. `path`: the
     project's file, which the page says how to open.
     """
-    doubtful = sorted((p for p in found.doubtful if needs_look(p, taken.left)), key=lambda p: -gain(p))
+    doubtful = sorted(
+        (p for p in found.doubtful if needs_look(p, taken.left)), key=lambda p: -estimate_gain(p)
+    )
     stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
     held = [
         f"<li>{escape(stances[i])}: {escape(rest.reason)}</li>"
@@ -86,7 +88,7 @@ def _list(title: str, lines: Sequence[str]) -> str:
 def _aside(project: Project, found: Proposals) -> str:
     """Return the skipped clips by reason, the most frequent reason first."""
     lines = []
-    for why, clips in reasons(found.aside):
+    for why, clips in group_reasons(found.aside):
         names = ", ".join(escape(project.clips[c].name) for c in clips)
         count = count_clips(len(clips))
         lines.append(f"<li>{count}: {escape(why)} <span class='dim'>({names})</span></li>")
@@ -168,7 +170,7 @@ def _data_of(project: Project, found: Proposals, p: Proposal, taken: AcceptedPro
         "layer": p.layer.value,
         "stance": stance,
         "end": end,
-        "sure": f"{1 - chance_wrong(p):.3f}",
+        "sure": f"{1 - estimate_chance_wrong(p):.3f}",
         "look": "1" if needs_look(p, taken.left) else "0",
     }
     return " ".join(f"data-{key}='{escape(value, quote=True)}'" for key, value in values.items())
@@ -210,7 +212,7 @@ def _card(
             f"likelihood</summary><ul>{''.join(details)}</ul></details></li>"
         )
     warnings = [
-        *([doubt(p)] if needs_look(p) else p.conflicts),
+        *([explain_doubt(p)] if needs_look(p) else p.conflicts),
         *([p.timing_reason] if p.good is False else []),
         *([taken.left[p.clip]] if p.clip in taken.left else []),
     ]

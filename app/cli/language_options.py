@@ -32,10 +32,10 @@ def add_language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
 def read_speaking(options: Namespace, project: str = "auto") -> Speaking:
     """Return what to read words by. project: what the project is set to. Raises FileError, ValueError."""
     from metagraph.formats.conversations.languages import Speaking
-    from metagraph.formats.language_files import packs_with, read_pack
+    from metagraph.formats.language_files import gather_packs, read_pack
     from metagraph.graph.conversation.model import AUTO
 
-    packs = packs_with(options.words_list)
+    packs = gather_packs(options.words_list)
     asked: str | None = options.language
     if asked is not None:
         asked = asked.casefold()

@@ -249,14 +249,14 @@ def _kept_beside(project: Project, played: Performance, path: Path) -> Path | No
     """
     import tempfile
 
-    from metagraph.common.file_names import file_stem
+    from metagraph.common.file_names import make_file_stem
     from metagraph.errors import FileError
     from metagraph.formats.store import SUFFIX, save_project
     from metagraph.graph.editing.performances import add_performance
 
     whole, _ = add_performance(project, played)
     own = path.name.removesuffix(SUFFIX)
-    stem = file_stem(f"{own} - {played.name} {time.strftime('%Y-%m-%d %H.%M.%S')}", most=200)
+    stem = make_file_stem(f"{own} - {played.name} {time.strftime('%Y-%m-%d %H.%M.%S')}", most=200)
     for folder in (path.resolve().parent, Path(tempfile.gettempdir())):
         place = folder / f"{stem}{SUFFIX}"
         with contextlib.suppress(FileError, OSError):

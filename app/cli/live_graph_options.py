@@ -68,14 +68,14 @@ def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
     """Return the motion graph of the given takes, or else of the project's own takes, by name. Raises
     FileError and ValueError.
     """
-    from metagraph.live.graph_motion import list_recorded_takes, live_graph
+    from metagraph.live.graph_motion import list_recorded_takes, make_live_graph
 
     if not options.takes:
         own, told = list_recorded_takes(project)
         if not own:
             return {}
         try:
-            graph = live_graph(own, told)
+            graph = make_live_graph(own, told)
             graph.warm(project)
         except (ValueError, RuntimeError) as error:
             print(
@@ -86,7 +86,7 @@ def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
     from app.cli.takes import match_speech
 
     clips, speech = match_speech(options)
-    graph = live_graph(_brought(clips, project, options.retarget), speech)
+    graph = make_live_graph(_brought(clips, project, options.retarget), speech)
     kept, edges = graph.driver.graph.size
     if not graph.fits(project):
         raise ValueError(
@@ -130,11 +130,11 @@ def keep_motion(session: LiveSession, options: Namespace) -> None:
     motions = session.generating.motions()
     if not motions:
         return
-    from metagraph.common.file_names import file_stem
+    from metagraph.common.file_names import make_file_stem
     from metagraph.formats.store import SUFFIX as PROJECT
     from metagraph.live.kept_motion import write_kept
 
-    stem = file_stem(f"{options.project.name.removesuffix(PROJECT)} - {options.keep}", most=200)
+    stem = make_file_stem(f"{options.project.name.removesuffix(PROJECT)} - {options.keep}", most=200)
     path = options.project.resolve().parent / f"{stem}{SUFFIX}"
     write_kept(path, motions)
     print(

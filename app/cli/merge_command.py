@@ -11,7 +11,7 @@ from app.cli.command_output import say
 from app.cli.outputs import ProjectOutput
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.formats.outputs import claim, wrote
+from metagraph.formats.outputs import claim, note_written
 from metagraph.formats.project.merging import MergeError, merge_projects
 from metagraph.formats.store import SUFFIX, read_project
 from metagraph.graph.model import Project
@@ -73,7 +73,7 @@ def run(options: Namespace) -> int:
     with ProjectOutput(path, 0 if options.name is not None else None) as output:
         code = _merged(options, output)
     if not path.samefile(options.ours):
-        wrote(path)
+        note_written(path)
     return code
 
 

@@ -264,12 +264,12 @@ def build_and_print(options: Namespace) -> int:
     from metagraph.suggest.jumps.fits import fit_distributions
     from metagraph.synthesis.blocks import BlockMakers
     from metagraph.synthesis.graph import build_graph as build_graph
-    from metagraph.synthesis.graph import largest, threshold
+    from metagraph.synthesis.graph import find_largest_component, find_threshold
     from metagraph.synthesis.states import key_states
 
     _checked(options)
     states, heard = _heard(options)
-    limit = threshold(states, options.k, options.level)
+    limit = find_threshold(states, options.k, options.level)
     begun = perf_counter()
     whole = build_graph(
         states,
@@ -280,7 +280,7 @@ def build_and_print(options: Namespace) -> int:
         _telling(options, "key states"),
         makers=BlockMakers(folder=options.keep),
     )
-    graph = largest(whole)
+    graph = find_largest_component(whole)
     facts = {
         **_facts(whole, graph),
         "takes": len(states.starts) - 1,
@@ -324,7 +324,7 @@ def print_states(options: Namespace) -> int:
     """
     from app.cli.command_output import say
     from metagraph.synthesis.graph import build_graph as build_graph
-    from metagraph.synthesis.graph import largest, threshold
+    from metagraph.synthesis.graph import find_largest_component, find_threshold
     from metagraph.synthesis.states import SynthesisError, key_states
 
     _checked(options)
@@ -339,10 +339,10 @@ def print_states(options: Namespace) -> int:
     )
     follows = int((~states.last).sum())
     for k in (2, 3, 4):
-        limit = threshold(states, k, options.level)
+        limit = find_threshold(states, k, options.level)
         whole = build_graph(states, limit, keys, options.most, False, _telling(options, f"k = {k}"))
         try:
-            graph = largest(whole)
+            graph = find_largest_component(whole)
         except SynthesisError:
             graph = None
         f = {**_facts(whole, graph), **_limits(limit)}
@@ -367,11 +367,11 @@ def synthesize(options: Namespace) -> int:
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import find_change_states, find_heard_at
     from metagraph.synthesis.graph import build_graph as build_graph
-    from metagraph.synthesis.graph import threshold
-    from metagraph.synthesis.search.path_quality import quality
+    from metagraph.synthesis.graph import find_threshold
+    from metagraph.synthesis.search.path_quality import measure_quality
     from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech
     from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES
-    from metagraph.synthesis.soft_constraints import SoftMaterial, soft_report
+    from metagraph.synthesis.soft_constraints import SoftMaterial, make_soft_report
     from metagraph.synthesis.states import key_states
 
     _checked(options)
@@ -393,7 +393,7 @@ def synthesize(options: Namespace) -> int:
     speech = [one.segments for one in spoken]
     states = _states(clips)
     keys = key_states(states, options.keys, find_change_states(states, speech))
-    graph = build_graph(states, threshold(states, options.k, options.level), keys, options.most)
+    graph = build_graph(states, find_threshold(states, options.k, options.level), keys, options.most)
     use = [k for k in SOUNDS if k not in options.without]
     asked = Constraints(
         options.tolerance,
@@ -417,8 +417,8 @@ def synthesize(options: Namespace) -> int:
     path = found.path
     if words := found.words():
         print(f"note: {words}", file=sys.stderr)
-    told = soft_report(soft, states, path, found.retiming)
-    looks = quality(states, path)
+    told = make_soft_report(soft, states, path, found.retiming)
+    looks = measure_quality(states, path)
     clip = assemble(states, clips, path, options.out.stem, retiming=found.retiming)
     _write(options.out, clip)
     data = {
@@ -510,11 +510,11 @@ def _write(path: Path, clip: Clip) -> None:
 def _again(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
     """Write the last motion of a live session once more."""
     from app.cli.command_output import say
-    from metagraph.live.graph_motion import live_graph
+    from metagraph.live.graph_motion import make_live_graph
     from metagraph.live.kept_motion import read_kept, remake_motion
 
     kept = read_kept(options.again)[-1]
-    graph = live_graph(clips, speech, options.k, options.level, options.keys, options.most)
+    graph = make_live_graph(clips, speech, options.k, options.level, options.keys, options.most)
     clip = remake_motion(graph, kept, options.out.stem)
     _write(options.out, clip)
     data = {"out": str(options.out), "seconds": clip.duration, "frames": clip.frames, "begun": kept.begun}

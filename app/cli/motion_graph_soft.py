@@ -87,10 +87,10 @@ def add_soft_arguments(parser: ArgumentParser) -> None:
 def read_soft_wish(options: Namespace) -> SoftWish:
     """Return the preferences. Raises ValueError, and FileError for a file of words."""
     from metagraph.formats.word_lists import read_word_lists
-    from metagraph.synthesis.iconic_words import word_wish
+    from metagraph.synthesis.iconic_words import parse_word_wish
     from metagraph.synthesis.soft_constraints import SoftWish
 
-    words = tuple(word_wish(text) for text in options.word)
+    words = tuple(parse_word_wish(text) for text in options.word)
     if options.words is not None:
         words += read_word_lists(options.words)
     if options.words_must and not words:

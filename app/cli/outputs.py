@@ -94,16 +94,16 @@ class ProjectOutput:
         self.path, self.versions = path, versions
 
     def __enter__(self) -> ProjectOutput:
-        from metagraph.formats.locking import Lock, new_owner
-        from metagraph.formats.outputs import declare_updates, locked_error
-        from metagraph.formats.store import file_digest
+        from metagraph.formats.locking import Lock, make_owner
+        from metagraph.formats.outputs import declare_updates, make_locked_error
+        from metagraph.formats.store import compute_file_digest
 
-        self._lock = Lock(self.path, new_owner())
+        self._lock = Lock(self.path, make_owner())
         found = self._lock.acquire()
         if found is not None:
-            raise locked_error(self.path, found)
+            raise make_locked_error(self.path, found)
         try:
-            self._digest = file_digest(self.path)
+            self._digest = compute_file_digest(self.path)
         except OSError:
             self._digest = None  # whoever reads it says why
         declare_updates(self.path)
@@ -116,12 +116,12 @@ class ProjectOutput:
         """Write the project, and keep what was there as an earlier version; return it as it was saved. Raises
         FileError. was_at: see `save_project`.
         """
-        from app.project.version_count import version_count
+        from app.project.version_count import count_kept_versions
         from metagraph.errors import FileError
         from metagraph.formats.project.versions import write_project
-        from metagraph.formats.store import encode_project, file_digest, move_project
+        from metagraph.formats.store import compute_file_digest, encode_project, move_project
 
-        if file_digest(self.path) != self._digest:
+        if compute_file_digest(self.path) != self._digest:
             raise FileError(
                 self.path,
                 "was written by another program while this command worked",
@@ -130,11 +130,11 @@ class ProjectOutput:
             )
         if was_at is not None:
             project = move_project(project, was_at, self.path)
-        versions = version_count() if self.versions is None else self.versions
+        versions = count_kept_versions() if self.versions is None else self.versions
         note = write_project(self.path, encode_project(project, self.path), versions)
         if note is not None:
             print(f"note: {note}", file=sys.stderr)
-        self._digest = file_digest(self.path)
+        self._digest = compute_file_digest(self.path)
         return project
 
 

@@ -182,10 +182,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser = _parser("window")
     options = parser.parse_args(given)
     from metagraph.errors import FileError
-    from metagraph.formats.outputs import writing
+    from metagraph.formats.outputs import check_outputs
 
     try:
-        with writing(claim_outputs(options)):
+        with check_outputs(claim_outputs(options)):
             return int(_module(options.command).run(options))
     except BrokenPipeError:  # whoever read our words has read enough
         sys.stdout = None  # nothing is left to flush

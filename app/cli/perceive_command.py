@@ -78,7 +78,7 @@ def make_perceptual_study(options: Namespace) -> int:
     from app.cli.command_output import say
     from app.cli.perceive_stimuli import Stimuli
     from metagraph.formats.outputs import claim
-    from metagraph.research.study.perceive.design import count_sequences, design
+    from metagraph.research.study.perceive.design import count_sequences, make_design
     from metagraph.research.study.perceive.folder import KEY, level_times, write_folder
     from metagraph.research.study.perceive.perceive_plan import FILE, read_perceive_plan
     from metagraph.research.study.plan.allocation import make_secret
@@ -94,7 +94,7 @@ def make_perceptual_study(options: Namespace) -> int:
     videos = options.into / "show" / "videos"
     videos.mkdir(parents=True, exist_ok=True)
     secret = make_secret(options.into)
-    made = design(plan, secret)
+    made = make_design(plan, secret)
     items = {i.id: i for i in plan.items}
     apart = plan.choice is None or plan.choice.present == "after"  # else one sound is heard of both
     cameras: dict[str, Any] = {}
@@ -159,11 +159,11 @@ def serve_perceptual_study(options: Namespace) -> int:
 
     from app.cli.command_output import run_until_stopped
     from metagraph.research.study.perceive.folder import read_folder
-    from metagraph.research.study.perceive.serving import page_of
+    from metagraph.research.study.perceive.serving import find_page
     from metagraph.research.study.perceive.serving import serve_page as begin
 
     study = read_folder(options.folder)
-    page_of(study)
+    find_page(study)
     try:
         served = begin(study, options.port, options.address)
     except (OSError, OverflowError) as error:

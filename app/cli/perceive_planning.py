@@ -114,8 +114,8 @@ def write_perceptual_plan(options: Namespace) -> int:
     from metagraph.research.study.perceive import binomial
     from metagraph.research.study.perceive.perceive_power import (
         Expected,
+        compute_design_effect,
         count_raters_needed,
-        design_effect,
         simulate_power,
     )
 
@@ -133,7 +133,7 @@ def write_perceptual_plan(options: Namespace) -> int:
     data: dict[str, Any] = {
         "answers": answers,
         "alpha": alpha,
-        "design_effect": design_effect(expected, each),
+        "design_effect": compute_design_effect(expected, each),
     }
     lines = [
         f"for a chance of {options.chance:.0%}"
@@ -143,7 +143,9 @@ def write_perceptual_plan(options: Namespace) -> int:
     ]
     if options.smallest is not None:
         data["smallest"] = binomial.count_needed_answers(options.smallest, options.chance, alpha)
-        data["equivalent"] = binomial.equivalence_needed(options.smallest - 0.5, options.chance, alpha)
+        data["equivalent"] = binomial.count_answers_for_equivalence(
+            options.smallest - 0.5, options.chance, alpha
+        )
         lines += [
             f"  to show the smallest share that matters, {options.smallest:.0%}: {_count(data['smallest'])}",
             f"  to show that a half is within {1 - options.smallest:.0%} and {options.smallest:.0%}: "

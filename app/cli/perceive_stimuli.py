@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from app.cli.command_output import open_for_command, stage_performance
+from app.cli.command_output import choose_plan, open_for_command
 from app.cli.render_command import load_figure, measure_bounds, mix_sound, render_pictures
 from app.stage.conversation_plans import ConversationPlans
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
@@ -86,7 +86,7 @@ class Stimuli:
 
     def camera(self, item: Stretch) -> Any:
         """Return the camera that sees an item in all conditions; None if nothing is drawn."""
-        from preview.camera import frame_whole_figure
+        from preview.camera import make_whole_figure_camera
 
         boxes, several = [], False
         for name in self.plan.conditions:
@@ -98,7 +98,7 @@ class Stimuli:
             return None
         box = np.min([b[0] for b in boxes], 0), np.max([b[1] for b in boxes], 0)
         look = self.plan.video
-        return frame_whole_figure(box, look.width / look.height, ASIDE if several else 0.0)
+        return make_whole_figure_camera(box, look.width / look.height, ASIDE if several else 0.0)
 
     def pictures(self, name: str, item: Stretch, camera: Any) -> Iterator[np.ndarray]:
         """Yield the pictures that a condition shows for an item."""
@@ -202,7 +202,7 @@ class Stimuli:
         wanted = Namespace(
             performance=made.performance, seconds=None, seed=made.seed, usual_seconds=10.0, mode=None
         )
-        plan = stage_performance(project, wanted)
+        plan = choose_plan(project, wanted)
         return ShownPlayback(project, plan, wanted.seconds), folder
 
     def _motion(self, name: str, made: Condition, item: Stretch) -> tuple[ShownPlayback, Path]:

@@ -6,7 +6,7 @@ import json
 import sys
 from argparse import ArgumentParser, Namespace
 
-from app.cli.command_output import add_performance_arguments, open_for_command, stage_performance
+from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command
 from metagraph.graph.model import LAYERS
 
 
@@ -17,7 +17,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     project = open_for_command(options.project)
-    made = stage_performance(project, options)
+    made = choose_plan(project, options)
     rows = [
         {
             "layer": layer,

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.cli.command_output import add_performance_arguments, open_for_command, say, stage_performance
-from app.look.names import node_names
+from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command, say
+from app.look.names import name_node_rows
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.formats.outputs import claim, declare_inputs
 from metagraph.formats.store import list_project_files
@@ -76,7 +76,7 @@ def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
     """Return the figure that draws a project, and print a note if it is not the character's mesh. `sticks`
     draws a stick figure in place of the default body. Raises FileError.
     """
-    from preview.character_file import figure_from_file as drawn
+    from preview.character_file import load_mesh_figure as drawn
     from preview.default_body.footing import choose_footing
     from preview.figure import StickFigure
 
@@ -121,15 +121,15 @@ def render_pictures(
     with one before they ask for the next.
     """
     from app.stage.cutting import Filmed
-    from app.stage.stools import stools
-    from preview.camera import frame_whole_figure
+    from app.stage.stools import make_stools
+    from preview.camera import make_whole_figure_camera
     from preview.drawing_apart import draw_scenes
     from preview.framing import turn_to_face
     from preview.scene import THEMES, LampTurn, Scene
 
     theme = THEMES[look] if isinstance(look, str) else look
 
-    seats = tuple(seat for _, shown in seen for seat in stools(shown))
+    seats = tuple(seat for _, shown in seen for seat in make_stools(shown))
     if camera is None:
         box = measure_bounds(seen, times)
         figure, shown = seen[0]
@@ -137,7 +137,7 @@ def render_pictures(
         turn = 0.0
         if pose is not None and shown.skeleton is not None:
             turn = turn_to_face(figure, shown.skeleton.globals(pose)[1])
-        whole = frame_whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else turn)
+        whole = make_whole_figure_camera(box, size[0] / size[1], ASIDE if len(seen) > 1 else turn)
         filmed = Filmed(whole, LampTurn(turn) if turn else None)
         camera = lambda _: filmed  # noqa: E731
 
@@ -165,10 +165,10 @@ def render_directed(
     camera: Callable[[float], Any] | None = None
     if cuts:
         from app.stage.cutting import Cutting, Filmed
-        from preview.camera import frame_whole_figure
+        from preview.camera import make_whole_figure_camera
 
         aspect, cutting = size[0] / size[1], Cutting()
-        whole = frame_whole_figure(measure_bounds(seen, times), aspect, ASIDE)
+        whole = make_whole_figure_camera(measure_bounds(seen, times), aspect, ASIDE)
         camera = lambda at: cutting.camera(seen, cuts, at, aspect) or Filmed(whole)  # noqa: E731
     if not captions:
         yield from render_pictures(seen, times, size, look, camera, into)
@@ -241,7 +241,7 @@ def run(options: Namespace) -> int:
         shown = (
             play_clip_alone(project, clip)
             if clip is not None
-            else ShownPlayback(project, stage_performance(project, options), options.start + options.seconds)
+            else ShownPlayback(project, choose_plan(project, options), options.start + options.seconds)
         )
     for one in shown.everyone:
         declare_inputs(*list_project_files(one.project, one.folder or folder))
@@ -288,18 +288,18 @@ def _direction(
 ) -> Direction:
     """Return the cuts and captions of a video, from the options or else from the timeline's notes."""
     from app.stage.cutting import list_captions
-    from metagraph.graph.timeline_edits import timeline_of
+    from metagraph.graph.timeline_edits import get_timeline
 
     some = project.performances if options.conversation is None else project.conversations
     name = options.performance if options.conversation is None else options.conversation
     key = next((i for i, of in some.items() if name in (i, of.name)), "")
-    noted = timeline_of(project, key)
+    noted = get_timeline(project, key)
     captions = noted.captions if options.captions is None else options.captions
     cuts = noted.cuts if options.cuts is not False and len(seen) > 1 else ()
     if options.cuts and not cuts and len(seen) > 1:
-        from metagraph.speech.automatic_cuts import automatic_cuts
+        from metagraph.speech.automatic_cuts import make_automatic_cuts
 
-        cuts = automatic_cuts(project.conversations[key])
+        cuts = make_automatic_cuts(project.conversations[key])
     talk = project.conversations.get(key) if options.conversation is not None else None
     return cuts, list_captions(shown, talk, folder) if captions else ()
 
@@ -373,7 +373,7 @@ def draw_to(
         drawn = render_directed(seen, times, shot.size, shot.look, shot.direction, into)
         write_video(out, drawn, shot.fps, shot.size, told, sound=sound)
     elif out.suffix == ".png":
-        from preview.sheet import contact_sheet, write_png
+        from preview.sheet import make_contact_sheet, write_png
 
         times = shot.start + np.linspace(0, shot.seconds, max(2, shot.frames))
         small = (max(16, width * 2 * min(len(seen), 2) // 9), max(16, height * 5 // 9))
@@ -382,7 +382,7 @@ def draw_to(
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times
         ]
-        write_png(out, contact_sheet(images, 8 // min(len(seen), 2), labels))
+        write_png(out, make_contact_sheet(images, 8 // min(len(seen), 2), labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 
@@ -436,4 +436,4 @@ def _doing(shown: ShownPlayback, seconds: float) -> str:
     if cue is None:
         return ""
     action = cue.action
-    return node_names(shown.project, action.layer, action.stance, action.kind).get(action.id, action.name)
+    return name_node_rows(shown.project, action.layer, action.stance, action.kind).get(action.id, action.name)

@@ -165,9 +165,9 @@ def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
     """Return a conversation with only the given speakers (names, or numbers from 1), in that order. Raises
     ValueError.
     """
-    from metagraph.graph.conversation.model import side_name, with_sides
+    from metagraph.graph.conversation.model import get_side_name, with_sides
 
-    names = [side_name(conversation, n) for n in range(len(conversation.sides))]
+    names = [get_side_name(conversation, n) for n in range(len(conversation.sides))]
     known = {name.casefold(): n for n, name in reversed(list(enumerate(names)))}
     known |= {str(n + 1): n for n in range(len(names)) if str(n + 1) not in known}
     asked = [name.strip() for name in chosen.split(",") if name.strip()]
@@ -181,12 +181,12 @@ def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
 def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
     """Return what all sides do, with the project's graph moving all of them."""
     from app.cli.command_output import open_for_command
-    from metagraph.speech.duet import duet
+    from metagraph.speech.duet import plan_duet
 
     project = open_for_command(path)
     conversation = project.conversations[ident]
     count = len(conversation.sides)
-    return duet(conversation, ident, (project,) * count, (None,) * count).parts
+    return plan_duet(conversation, ident, (project,) * count, (None,) * count).parts
 
 
 def _write(out: Path, read: Read, folder: Path | None) -> None:

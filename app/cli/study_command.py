@@ -63,7 +63,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     replay_arguments(action)
     watch_arguments(action)
     words = "studies of preferences and ratings of videos: stimuli, page, answers, report"
-    perceive_arguments(actions.add_parser("perceive", help=words, description=f"W{words[1:]}."))
+    perceive_arguments(
+        actions.add_parser("perceive", help=words, description=f"{words[:1].upper()}{words[1:]}.")
+    )
     action("example", "recompute the comparison published with the meta-graph", print_example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate_study)
     made.add_argument("out", type=Path, help="the folder to make; it must not exist yet")

@@ -56,12 +56,12 @@ def _who(parser: ArgumentParser) -> None:
 def freeze_study(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.research.study.plan.freeze import freeze_files as write
-    from metagraph.research.study.plan.freeze import frozen, seal
+    from metagraph.research.study.plan.freeze import read_frozen, seal
     from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     path = write(study, options.force)
-    digests = frozen(study) or {}
+    digests = read_frozen(study) or {}
     say(
         options,
         f"{path}: {len(digests)} digests, together {seal(digests)}",
@@ -72,7 +72,7 @@ def freeze_study(options: Namespace) -> int:
 
 def withdraw_participant(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.research.study.logs.withdrawal import mentions
+    from metagraph.research.study.logs.withdrawal import find_mentions
     from metagraph.research.study.logs.withdrawal import note_withdrawal as note
     from metagraph.research.study.study_plan import read_study
 
@@ -83,14 +83,14 @@ def withdraw_participant(options: Namespace) -> int:
         f"{options.participant}: {'left out from now on' if new else 'withdrawn earlier'}",
         {"participant": options.participant, "new": new},
     )
-    _told(mentions(study, options.participant))
+    _told(find_mentions(study, options.participant))
     return 0
 
 
 def delete_participant(options: Namespace) -> int:
     from app.cli.command_output import may_delete, say
     from metagraph.research.study.logs.withdrawal import delete_data as remove
-    from metagraph.research.study.logs.withdrawal import mentions
+    from metagraph.research.study.logs.withdrawal import find_mentions
     from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
@@ -100,7 +100,7 @@ def delete_participant(options: Namespace) -> int:
         return 1
     note = remove(study, options.participant)
     say(options, f"{options.participant}: {note['files']} files deleted", {"deleted": note})
-    _told(mentions(study, options.participant))
+    _told(find_mentions(study, options.participant))
     return 0
 
 
@@ -116,7 +116,7 @@ def import_gaze(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.outputs import claim
-    from metagraph.research.study.logs.gaze import dwelt, read_gaze
+    from metagraph.research.study.logs.gaze import read_gaze, tabulate_dwell
     from metagraph.research.study.logs.log import read_log
     from metagraph.research.study.reports.tables import format_rows
     from metagraph.research.study.study_plan import read_study
@@ -125,7 +125,9 @@ def import_gaze(options: Namespace) -> int:
     study.plan.known(options.participant)
     out = options.out or study.data(options.participant) / "gaze.csv"
     claim(out)
-    found = dwelt(read_log(study.log(options.participant)), read_gaze(options.recording), options.clap)
+    found = tabulate_dwell(
+        read_log(study.log(options.participant)), read_gaze(options.recording), options.clap
+    )
     write_atomically(out, format_rows(*found).encode())
     lines = [f"{row[2]} ({row[1]}): {row[3]} {row[4]:.1f} s, {row[5]:.0%}" for row in found[1]]
     say(options, "\n".join([*lines, str(out)]), {"written": str(out), "rows": len(found[1])})

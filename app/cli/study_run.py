@@ -93,10 +93,10 @@ def _order(study, participant):
 def _promised(study):
     """Return in words where the study is not what was frozen, preregistered or drawn."""
     from metagraph.research.study.plan import allocation
-    from metagraph.research.study.plan.freeze import find_changed_names, frozen, study_manifest
-    from metagraph.research.study.plan.preregistration import unlike
+    from metagraph.research.study.plan.freeze import find_changed_names, read_frozen, study_manifest
+    from metagraph.research.study.plan.preregistration import list_departures
 
-    before = frozen(study)
+    before = read_frozen(study)
     out = (
         [
             f"{name} has changed since it was frozen"
@@ -105,5 +105,5 @@ def _promised(study):
         if before
         else []
     )
-    drawn = allocation.problems(study) if study.plan.order == "concealed" else []
-    return [*out, *unlike(study), *drawn]
+    drawn = allocation.find_allocation_problems(study) if study.plan.order == "concealed" else []
+    return [*out, *list_departures(study), *drawn]

@@ -123,23 +123,23 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
 def read_side_speech(
     path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
 ) -> SpokenTake:
-    """Return the segments that one speaker of a file moves with (`segments_heard_by`) with its words, and how
-    they are said. sound: of the recording, None if there is none; where it has a channel for each of them, of
-    its own. transcript: where its words are, None if they are in the file itself. Raises FileError.
+    """Return the segments that one speaker of a file moves with (`list_segments_heard_by`) with its words,
+    and how they are said. sound: of the recording, None if there is none; where it has a channel for each of
+    them, of its own. transcript: where its words are, None if they are in the file itself. Raises FileError.
     """
-    from metagraph.graph.conversation.model import segments_heard_by
-    from metagraph.speech.prosody import prosody
+    from metagraph.graph.conversation.model import list_segments_heard_by
+    from metagraph.speech.prosody import measure_prosody
     from metagraph.speech.sound import read_head, read_sound
     from metagraph.synthesis.prosody_costs import SpokenTake
 
     made, number = read_side(path, side)
-    of, segments = made.sides[number], segments_heard_by(made, number)
+    of, segments = made.sides[number], list_segments_heard_by(made, number)
     words = of.words if transcript is None else _words_of(transcript, of.name, number)
     samples, rate = None, 0
     if sound is not None:
         channel = of.channel if of.channel is not None else number if read_head(sound)[1] >= 2 else None
         samples, rate = read_sound(sound, channel, LONGEST, KEPT)
-    return SpokenTake(segments, words, prosody(segments, words, samples, rate))
+    return SpokenTake(segments, words, measure_prosody(segments, words, samples, rate))
 
 
 def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:

@@ -42,7 +42,7 @@ def run(options: Namespace) -> int:
         wanted = Namespace(json=options.json, project=options.project)
         return demo_command.run(parser.parse_args([], wanted))
     from app.main import run_window
-    from metagraph.formats.outputs import writing_freely
+    from metagraph.formats.outputs import allow_all_outputs
 
-    with writing_freely():  # what it saves to, it has read
+    with allow_all_outputs():  # what it saves to, it has read
         return run_window(options.project, options.sample, options.clip)

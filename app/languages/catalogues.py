@@ -53,16 +53,16 @@ def find_marked(root: Path = ROOT, folders: Iterable[str] = FOLDERS) -> Iterator
             if not isinstance(node, ast.Call) or name not in TEXTS:
                 continue
             values = frozenset(keyword.arg for keyword in node.keywords if keyword.arg is not None)
-            for texts in product(*(constants(x) for x in node.args[: TEXTS[name]])):
+            for texts in product(*(list_constant_texts(x) for x in node.args[: TEXTS[name]])):
                 if texts and texts[0]:
                     context = texts[0] if name in CONTEXT else None
                     yield Marked(file, node.lineno, context, texts[1:] if context else texts, values)
 
 
-def constants(node: ast.expr) -> list[str]:
+def list_constant_texts(node: ast.expr) -> list[str]:
     """Return the texts that an expression can be, as far as they are written in it."""
     if isinstance(node, ast.IfExp):
-        return [*constants(node.body), *constants(node.orelse)]
+        return [*list_constant_texts(node.body), *list_constant_texts(node.orelse)]
     return [node.value] if isinstance(node, ast.Constant) and isinstance(node.value, str) else []
 
 

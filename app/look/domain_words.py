@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.translation import lazy_texts, tr, tr_noop
+from app.translation import make_lazy_texts, tr, tr_noop
 
-KIND_TITLES = lazy_texts(
+KIND_TITLES = make_lazy_texts(
     lambda: {
         "stance": tr("Stance"),
         "gesture": tr("Gesture"),
@@ -12,7 +12,7 @@ KIND_TITLES = lazy_texts(
         "transition": tr("Transition"),
     }
 )
-KIND_MEANINGS = lazy_texts(
+KIND_MEANINGS = make_lazy_texts(
     lambda: {
         "stance": tr(
             "A stance is a resting pose that the layer loops in. Gestures and fidgets start and end in it."
@@ -22,7 +22,7 @@ KIND_MEANINGS = lazy_texts(
         "transition": tr("A transition leaves one stance and ends in another."),
     }
 )
-MANY_OF_KIND = lazy_texts(
+MANY_OF_KIND = make_lazy_texts(
     lambda: {
         "stance": tr("Stances"),
         "gesture": tr("Gestures"),
@@ -30,11 +30,11 @@ MANY_OF_KIND = lazy_texts(
         "transition": tr("Transitions"),
     }
 )
-LAYER_TITLES = lazy_texts(lambda: {"body": tr("Body"), "arms": tr("Arms"), "head": tr("Head")})
-LAYER_LONG_TITLES = lazy_texts(
+LAYER_TITLES = make_lazy_texts(lambda: {"body": tr("Body"), "arms": tr("Arms"), "head": tr("Head")})
+LAYER_LONG_TITLES = make_lazy_texts(
     lambda: {"body": tr("Body layer"), "arms": tr("Arms layer"), "head": tr("Head layer")}
 )
-COLOR_TITLES = lazy_texts(
+COLOR_TITLES = make_lazy_texts(
     lambda: {
         "": "",
         "red": tr("Red"),
@@ -45,7 +45,7 @@ COLOR_TITLES = lazy_texts(
         "purple": tr("Purple"),
     }
 )
-COLOR_LABELS = lazy_texts(
+COLOR_LABELS = make_lazy_texts(
     lambda: {
         "red": tr("Red label"),
         "orange": tr("Orange label"),

@@ -50,7 +50,7 @@ PATHS = {
 
 
 @cache
-def icon(name: str, color: str, size: int = 18) -> QIcon:
+def make_icon(name: str, color: str, size: int = 18) -> QIcon:
     """Return an icon in a colour (#rrggbb), sharp up to 3 times its size; faded when disabled."""
     out, drawing = QIcon(), _drawing(name, color)
     for scale in (1, 2, 3):

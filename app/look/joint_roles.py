@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 
-_BODY = lazy_texts(
+_BODY = make_lazy_texts(
     lambda: {
         "root": tr("root"),
         "hips": tr("hips"),

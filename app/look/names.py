@@ -23,7 +23,7 @@ _SIDES: Mapping[str, tuple[Limb, str]] = {
 }
 
 
-def plain_action_name(name: str, stance: str = "", limb: Limb | None = None) -> str:
+def make_readable_name(name: str, stance: str = "", limb: Limb | None = None) -> str:
     """Return a name as it is read: without its stance's in front, blanks for underscores. limb: the arm that
     moves; a word for that very arm becomes L or R, and one for both is left out.
     """
@@ -72,10 +72,10 @@ def _row_name(name: str, stance: str, shared: int, limb: Limb | None) -> str:
 
 @lru_cache(maxsize=MANY)
 def _read(name: str, limb: Limb | None) -> str:
-    return plain_action_name(name, "", limb)
+    return make_readable_name(name, "", limb)
 
 
-def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
+def name_rows(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     """Return by id how the actions of one node are called in it: transitions by where they lead."""
     some = tuple(actions)
     told: list[str] = []
@@ -84,7 +84,7 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     for action in some:
         limb, stance = action.limb if action.layer == "arms" else None, called.get(action.stance)
         name = (
-            plain_action_name(action.name, "", limb)
+            make_readable_name(action.name, "", limb)
             if stance is None
             else _row_name(action.name, stance, shared, limb)
         )
@@ -95,7 +95,7 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     if any(a.kind == "transition" for a in some):  # several ways to one stance go by their own names
         ways = Counter(told)
         told = [
-            name if ways[name] == 1 else f"{name}: {plain_action_name(a.name)}"
+            name if ways[name] == 1 else f"{name}: {make_readable_name(a.name)}"
             for name, a in zip(told, some, strict=True)
         ]
     # The number of a stance is no take's.
@@ -106,7 +106,7 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     return {a.id: name for a, name in zip(some, bare, strict=True)}
 
 
-def names_in_tooltip(words: str, name: str) -> str:
+def describe_name_in_tooltip(words: str, name: str) -> str:
     """Return what a tooltip says of something called `words` in its place: that, and its name if that is
     another.
     """
@@ -125,8 +125,8 @@ class _Kept:
 _KEPT: dict[tuple[Layer, str, Kind], _Kept] = {}
 
 
-def node_names(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[str, str]:
-    """Return `row_names` of a node, made again only where what is called there is."""
+def name_node_rows(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[str, str]:
+    """Return `name_rows` of a node, made again only where what is called there is."""
     graph, key = project.graphs[layer], (layer, stance, kind)
     kept = _KEPT.get(key)
     if kept is not None and kept.graph is graph:
@@ -138,7 +138,7 @@ def node_names(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[
         return kept.names
     if len(_KEPT) >= 64:
         _KEPT.clear()
-    _KEPT[key] = _Kept(graph, (called, groups), row_names(project, graph.of(stance, kind)))
+    _KEPT[key] = _Kept(graph, (called, groups), name_rows(project, graph.of(stance, kind)))
     return _KEPT[key].names
 
 

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication, QPushButton
 
 from app.look.domain_words import KIND_TITLES as KIND_TITLES
 from metagraph.graph.model import Kind
-from preview.typeface import FAMILY, WEIGHTS, typeface_file
+from preview.typeface import FAMILY, WEIGHTS, find_typeface_file
 
 FONT_PIXELS = 15
 
@@ -93,11 +93,13 @@ KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": 
 SOUND_MARKS = {"clause": "■", "response": "✓", "hesitation": "…"}
 
 
-def theme(name: str) -> WindowTheme:
+def get_theme(name: str) -> WindowTheme:
+    """Return the theme of a name; the dark one for names that no theme has."""
     return THEMES.get(name, DARK)
 
 
-def palette(look: WindowTheme) -> QPalette:
+def make_palette(look: WindowTheme) -> QPalette:
+    """Return the palette of a theme for Qt, with colours of its own for what is disabled."""
     out = QPalette()
     role = QPalette.ColorRole
     for key, color in (
@@ -232,7 +234,7 @@ def make_window_font() -> QFont:
     letters that it does not have.
     """
     for weight in WEIGHTS:
-        QFontDatabase.addApplicationFont(str(typeface_file(weight)))
+        QFontDatabase.addApplicationFont(str(find_typeface_file(weight)))
     font = QFont(FAMILY)
     font.setPixelSize(FONT_PIXELS)
     return font
@@ -246,7 +248,7 @@ def apply_theme(app: QApplication, look: WindowTheme) -> None:
         app.setFont(make_window_font())
     if app.property("look") != look.name:
         app.setProperty("look", look.name)
-        app.setPalette(palette(look))
+        app.setPalette(make_palette(look))
         app.setStyleSheet(make_style_sheet(look))
 
 

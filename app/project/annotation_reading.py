@@ -12,7 +12,7 @@ from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.learning.annotation import SPEECH, Annotation, Label, guess_roles, labels
+from metagraph.playback.learning.annotation import SPEECH, Annotation, Label, guess_roles, list_labels
 from metagraph.playback.learning.learn import Act, as_performance, find_act_sequences, learn_model
 from metagraph.playback.planning.markov import DEFAULTS
 from metagraph.playback.planning.mode_shares import with_modes
@@ -36,7 +36,7 @@ class AnnotationReading:
 
     @cached_property
     def labels(self) -> tuple[Label, ...]:
-        return labels(self.annotation, self.roles, self.said, *self.memory)
+        return list_labels(self.annotation, self.roles, self.said, *self.memory)
 
     @cached_property
     def observed(self) -> dict[Layer, tuple[Act, ...]]:
@@ -86,7 +86,7 @@ class ReadingResult:
     performance: str | None = None
 
 
-def work_into_project(
+def apply_reading(
     project: Project,
     reading: AnnotationReading,
     learned: Collection[Layer],
@@ -142,7 +142,7 @@ def count_replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
 
 def remember_reading(project: Project, reading: AnnotationReading) -> Project:
     """Note in a project what tiers are read as, and labels whose meaning is not what would be guessed."""
-    guessed = {label.key: label.meaning for label in labels(reading.annotation, reading.roles)}
+    guessed = {label.key: label.meaning for label in list_labels(reading.annotation, reading.roles)}
     noted = {key: meaning for key, meaning in project.labels.items() if key not in guessed}
     noted |= {label.key: label.meaning for label in reading.labels if label.meaning != guessed[label.key]}
     return replace(project, tiers={**project.tiers, **reading.roles}, labels=noted)

@@ -13,7 +13,7 @@ from app.translation import tr, tr_phrase
 from metagraph.errors import FileError
 from metagraph.formats.locking import Owner
 from metagraph.formats.new_file import PRIVATE, Access
-from metagraph.formats.project.journal import Done, How, Journal, journal_path
+from metagraph.formats.project.journal import Done, How, Journal, make_journal_path
 from metagraph.formats.project.journal_register import JournalRegister
 from metagraph.graph.model import Project
 
@@ -46,7 +46,7 @@ class Autosave:
         """Return the user's own folder, for journals of projects that were never saved, and those whose own
         place is gone; it also has the list of all journals.
         """
-        return state_folder()
+        return make_state_folder()
 
     @property
     def register(self) -> JournalRegister:
@@ -57,8 +57,8 @@ class Autosave:
         """Return where this sitting keeps its edits, unless something prevents it."""
         document = self.document
         if document.path is None:
-            return journal_path(self.folder / "untitled", document.owner.sitting)
-        return journal_path(document.path.resolve(), document.owner.sitting)
+            return make_journal_path(self.folder / "untitled", document.owner.sitting)
+        return make_journal_path(document.path.resolve(), document.owner.sitting)
 
     def begin(self, base: Project | None, unsaved: int = 0, done: Sequence[Done] = ()) -> None:
         """Begin again. `base` is what the journal must hold itself because no file does; `unsaved` is the
@@ -129,7 +129,7 @@ class Autosave:
         folder = find_journal_shelter(self.folder)
         if document.path is None or (self.journal is not None and self.journal.path.parent == folder):
             return None
-        place = journal_path(folder / document.path.name, document.owner.sitting)
+        place = make_journal_path(folder / document.path.name, document.owner.sitting)
         journal = Journal(place, document.path, document.owner, document.digest, PRIVATE, self.register)
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -193,7 +193,7 @@ def find_journal_shelter(folder: Path) -> Path:
     return folder / "journals"
 
 
-def state_folder() -> Path:
+def make_state_folder() -> Path:
     """Return the folder for the recent projects and the journals of unsaved work; it is made if necessary."""
     folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
     with suppress(OSError):  # the code that writes there reports it

@@ -9,12 +9,12 @@ from operator import is_not
 from typing import Any
 
 from app.look.domain_words import KIND_TITLES
-from app.translation import format_number, lazy_texts, tr, tr_plural
+from app.translation import format_number, make_lazy_texts, tr, tr_plural
 from metagraph.graph.model import LAYERS, Action, Project, Settings, Timing
 
 # What a field is called in Properties, and how its value is written.
 SECONDS, NUMBER, WORD, STANCE, TAGS = "seconds", "number", "word", "stance", "tags"
-FIELDS: Mapping[str, tuple[str, str]] = lazy_texts(
+FIELDS: Mapping[str, tuple[str, str]] = make_lazy_texts(
     lambda: {
         "start": (tr("Start"), SECONDS),
         "end": (tr("End"), SECONDS),

@@ -15,20 +15,20 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.autosave import Autosave
-from app.project.autosave import state_folder as state_folder  # where others look for it
+from app.project.autosave import make_state_folder as make_state_folder  # where others look for it
 from app.project.change_words import describe_edit
 from app.project.opening import with_motion_of
-from app.project.version_count import version_count
+from app.project.version_count import count_kept_versions
 from app.project.writing import Writing, move_steps
 from app.translation import get_english, tr
 from metagraph.errors import FileError
-from metagraph.formats.locking import Lock, new_owner
+from metagraph.formats.locking import Lock, make_owner
 from metagraph.formats.new_file import Access, access_of
-from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
+from metagraph.formats.project.appended_file import Identity, find_moved_folder, read_identity
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal import Done, How
 from metagraph.formats.project.limits import find_unwritable
-from metagraph.formats.store import file_digest
+from metagraph.formats.store import compute_file_digest
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.half_labels import place_complete
 from metagraph.graph.editing.listing import is_listed_differently
@@ -135,7 +135,7 @@ class Document(QObject):
         self.undo_stack.setUndoLimit(UNDO_STEPS)
         self.undo_stack.cleanChanged.connect(self.state_changed)
         self.undo_stack.indexChanged.connect(self.state_changed)
-        self.owner = new_owner()
+        self.owner = make_owner()
         self.lock: Lock | None = None
         self.read_only = False
         self.common: Project | None = None
@@ -347,7 +347,7 @@ class Document(QObject):
             target,
             journal,
             mark,
-            version_count(),
+            count_kept_versions(),
             home,
             self.access,
             self._steps_done(),
@@ -394,14 +394,14 @@ class Document(QObject):
     def _settle_in(self) -> None:
         """Remember what identifies the file and its folder."""
         self.access = access_of(self.path) or (self.access if self.path is not None else None)
-        self._home = identity_of(self.path.parent) if self.path is not None else None
+        self._home = read_identity(self.path.parent) if self.path is not None else None
 
     def folder_now(self) -> Path | None:
         """Return where the file's folder is now, if it was renamed or moved while this window had it open."""
         if self.path is None:
             return None
         journal = self.autosave.journal
-        return folder_now(self.path.parent, self._home, journal.path if journal is not None else None)
+        return find_moved_folder(self.path.parent, self._home, journal.path if journal is not None else None)
 
     def follow(self, folder: Path) -> None:
         """Follow the project's folder to another name; everything in it has moved along."""
@@ -482,6 +482,6 @@ class Document(QObject):
 
     def _digest_now(self) -> str | None:
         try:
-            return file_digest(self.path)
+            return compute_file_digest(self.path)
         except FileError:
             return None

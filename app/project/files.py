@@ -14,7 +14,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.faults import is_foreseen
-from app.project.autosave import state_folder
+from app.project.autosave import make_state_folder
 from app.project.document import Document, ProjectPast
 from app.project.jobs import WORDS, Jobs, WindowJob
 from app.project.keeper import Keeper
@@ -36,7 +36,7 @@ from metagraph.formats.new_file import PRIVATE
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.versions import is_version
 from metagraph.formats.recovery import Left
-from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
+from metagraph.formats.store import SUFFIX, Opened, make_paths_absolute, read_project
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ class Files(QObject):
                 _release(lock, self.document)
                 return  # it was edited meanwhile
             if template:
-                copy = absolute(opened.project, path.parent)
+                copy = make_paths_absolute(opened.project, path.parent)
                 self.document.load(copy if name is None else replace(copy, name=name), None)
             else:
                 self.document.load(
@@ -381,7 +381,7 @@ class Files(QObject):
     def recent(self) -> list[Path]:
         """Return the recent projects that still exist, the latest first."""
         try:
-            names = json.loads((state_folder() / "recent.json").read_text(encoding="utf-8"))
+            names = json.loads((make_state_folder() / "recent.json").read_text(encoding="utf-8"))
             return [Path(n) for n in names if isinstance(n, str) and Path(n).is_file()]
         except (OSError, ValueError, TypeError):
             return []
@@ -389,7 +389,9 @@ class Files(QObject):
     def _remember(self, path: Path) -> None:
         names = [str(path.resolve()), *(str(p) for p in self.recent() if p != path.resolve())]
         try:
-            write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode(), PRIVATE)
+            write_atomically(
+                make_state_folder() / "recent.json", json.dumps(names[:RECENT]).encode(), PRIVATE
+            )
         except (FileError, OSError):
             self.told.emit(tr("The list of recent projects could not be saved."))
 

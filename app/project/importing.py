@@ -18,10 +18,10 @@ from app.project.load import Load
 from app.project.opening import take_over
 from app.translation import tr, tr_phrase
 from metagraph.common.wording import Phrase
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported
 from metagraph.formats.imports import BY_KNOWN_MAP, Imported, Strangers, import_files
-from metagraph.formats.repairs import repairs_of
+from metagraph.formats.repairs import list_repairs
 from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
@@ -30,7 +30,7 @@ Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
 
 
 def _filter() -> str:
-    return tr("Clips ({endings});;All files (*)", endings=" ".join(f"*{x}" for x in clip_suffixes()))
+    return tr("Clips ({endings});;All files (*)", endings=" ".join(f"*{x}" for x in list_clip_suffixes()))
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Importing(QObject):
 
     def takes(self, paths: Sequence[Path]) -> bool:
         """Return whether files may be usable, by their names."""
-        ends = (*clip_suffixes(), *(suffix for drop in self.drops for suffix in drop.suffixes))
+        ends = (*list_clip_suffixes(), *(suffix for drop in self.drops for suffix in drop.suffixes))
         return any(not path.suffix or path.name.lower().endswith(ends) for path in paths)
 
     def ask_import_folder(self) -> None:
@@ -179,7 +179,7 @@ class Importing(QObject):
         known = [note for note in result.notes if isinstance(note, Phrase) and note.template == BY_KNOWN_MAP]
         self.told.emit(". ".join(map(tr_phrase, [describe_import(result), *known])))
         clips = self.load_for(result).clips
-        repairs = repairs_of(self.document.project, clips)
+        repairs = list_repairs(self.document.project, clips)
         if any(
             found.repair.name != NAME for found in repairs
         ):  # a changed name is visible, and no reason to interrupt

@@ -16,7 +16,7 @@ from app.project.files import Files
 from app.project.importing import FileDrop, Importing
 from app.project.jobs import Jobs, WindowJob
 from app.translation import tr, tr_plural
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
@@ -51,7 +51,9 @@ def find_clips_beside(path: Path) -> list[Path]:
     """Return the clip files with the name of a file of labels: `talk.glb` for `talk.labels.json`."""
     stem = path.name.removesuffix(ENDING)
     return [
-        path.with_name(stem + ending) for ending in clip_suffixes() if path.with_name(stem + ending).is_file()
+        path.with_name(stem + ending)
+        for ending in list_clip_suffixes()
+        if path.with_name(stem + ending).is_file()
     ]
 
 

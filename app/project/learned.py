@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QLockFile, QObject, QSettings, Signal
 
-from app.project.autosave import state_folder
+from app.project.autosave import make_state_folder
 from app.project.document import Document
 from app.translation import tr
 from metagraph.errors import FileError
@@ -132,10 +132,10 @@ class Learned(QObject):
         self._due -= 1
 
     def _keep(self, project: Project, key: str, wait: bool = True) -> None:
-        from metagraph.suggest.propose import examples_of
-        from metagraph.suggest.traits import list_known_traits, traits_of
+        from metagraph.suggest.propose import list_examples
+        from metagraph.suggest.traits import list_known_traits, measure_all_traits
 
-        examples = examples_of(project, traits_of(project) if wait else list_known_traits(project))
+        examples = list_examples(project, measure_all_traits(project) if wait else list_known_traits(project))
         self._change(CLIPS, lambda m: m.with_project(key, examples))
 
     def edit(self, change: Callable[[Patterns], Patterns]) -> None:
@@ -155,7 +155,7 @@ class Learned(QObject):
         """Return what a file holds now; nothing if it cannot be read, which is reported once."""
         from metagraph.suggest.memory import Memory, MemoryFormatError
 
-        path = state_folder() / file
+        path = make_state_folder() / file
         try:
             state = path.stat()
         except OSError:
@@ -189,7 +189,7 @@ class Learned(QObject):
 
     def _change(self, file: str, change: Callable[[Memory], Memory]) -> None:
         """Read a file, change its content, and write it, while no other window does."""
-        path = state_folder() / file
+        path = make_state_folder() / file
         lock = QLockFile(str(path.with_suffix(".lock")))
         if not lock.tryLock(LOCK_WAIT):
             self.failed.emit(

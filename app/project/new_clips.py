@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from metagraph.common.file_names import file_stem
+from metagraph.common.file_names import make_file_stem
 from metagraph.graph.edits import find_free_name
 from metagraph.motion.clip import Clip
 
@@ -49,4 +49,4 @@ def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str
 
 
 def _file(name: str) -> str:
-    return file_stem(re.sub(r"[^\w .()-]", "_", name).strip(" ."), "clip")
+    return make_file_stem(re.sub(r"[^\w .()-]", "_", name).strip(" ."), "clip")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.formats.project.history import UndoStep, history, with_motion
+from metagraph.formats.project.history import UndoStep, list_undo_steps, with_motion
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, load_motions, open_project
 from metagraph.graph.face.rig import with_morphs
@@ -37,7 +37,7 @@ def load_recovered(
 ) -> tuple[Opened, tuple[UndoStep, ...]]:
     """Read the clips and voices of a journal's project, and return the steps that lead to it."""
     opened = load_whole(left.project, folder, progress)
-    steps = history(left)
+    steps = list_undo_steps(left)
     if not steps:
         return opened, ()
     return opened, with_motion(steps, left.project, opened.project, lambda p: load_motions(p, folder).project)
@@ -65,10 +65,10 @@ def with_face(project: Project, folder: Path) -> Project:
     """
     if project.character is None:
         return project
-    from metagraph.formats.gltf.reader import morph_targets
+    from metagraph.formats.gltf.reader import read_morph_targets
 
     try:
-        return with_morphs(project, morph_targets(folder / project.character))
+        return with_morphs(project, read_morph_targets(folder / project.character))
     except FileError:
         return project
 

@@ -20,10 +20,10 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.plural import count_clips
-from app.look.theme import strengthen, theme
+from app.look.theme import get_theme, strengthen
 from app.project.leftovers import FoundJournal
 from app.project.questions import describe_moment
-from app.translation import lazy_texts, tr, tr_plural
+from app.translation import make_lazy_texts, tr, tr_plural
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
 from metagraph.formats.project.journal_records import LostEdit
@@ -32,10 +32,10 @@ from metagraph.formats.recovery import Left
 from metagraph.formats.store import read_project
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.motion.clip import Clip
-from preview.joints import find_drawn_joints, nearest_above
+from preview.joints import find_drawn_joints, find_nearest_above
 
 Choice = Literal["recover", "copy", "later", "discard"]
-WORDS: dict[Choice, str] = lazy_texts(
+WORDS: dict[Choice, str] = make_lazy_texts(
     lambda: {
         "recover": tr("Recover"),
         "copy": tr("Save as a copy beside the project"),
@@ -260,7 +260,7 @@ class SittingPicture(QWidget):
 
     def _paint_layers(self, painter: QPainter, room: QRectF) -> None:
         """Paint a bar for each layer, in the colours of what is on it."""
-        look = theme("dark" if self.palette().window().color().lightness() < 128 else "light")
+        look = get_theme("dark" if self.palette().window().color().lightness() < 128 else "light")
         high = room.height() / len(LAYERS)
         counts = {
             layer: {k: sum(a.kind == k for a in self.project.graphs[layer].actions.values()) for k in KINDS}
@@ -290,7 +290,7 @@ def _figure(clip: Clip) -> np.ndarray | None:
     if not np.isfinite(places).all():
         return None
     shown = find_drawn_joints(skeleton)
-    starts = nearest_above(skeleton, shown)
+    starts = find_nearest_above(skeleton, shown)
     ends = np.flatnonzero(shown & (starts >= 0))
     turned = np.stack([0.88 * places[:, 0] + 0.47 * places[:, 2], places[:, 1]], -1)
     return turned[np.stack([starts[ends], ends], -1)] if len(ends) else None

@@ -9,7 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 
-from metagraph.common.programs import run_program, system_program
+from metagraph.common.programs import find_system_program, run_program
 
 
 def reveal_command(path: Path, platform: str = sys.platform) -> tuple[str, list[str]] | None:
@@ -41,7 +41,7 @@ def open_folder(folder: Path) -> None:
 
 def _shown(path: Path) -> bool:
     words = reveal_command(path)
-    program = system_program(words[0]) if words is not None else None
+    program = find_system_program(words[0]) if words is not None else None
     if words is None or program is None:
         return False
     threading.Thread(target=run_program, args=([program, *words[1]],), daemon=True).start()

@@ -23,7 +23,7 @@ from app.translation import tr, tr_plural
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal_search import project_of
 from metagraph.formats.recovery import Left
-from metagraph.formats.store import Opened, absolute
+from metagraph.formats.store import Opened, make_paths_absolute
 
 
 class Unsaved(QObject):
@@ -123,7 +123,7 @@ class Unsaved(QObject):
             opened, steps = result
             if saved is not None:  # its folder is gone, so it becomes a project that was never saved
                 steps = ()
-            project = opened.project if saved is None else absolute(opened.project, folder)
+            project = opened.project if saved is None else make_paths_absolute(opened.project, folder)
             document.load(project, None, ProjectPast(steps=steps, lost=count_lost_steps(left, steps)))
             if document.secured():
                 remove_journal(left.path)

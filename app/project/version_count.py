@@ -13,7 +13,7 @@ from metagraph.formats.project.versions import KEPT, MOST
 KEY = "versions"
 
 
-def version_count() -> int:
+def count_kept_versions() -> int:
     """Return how many versions are kept, 0 for none; METAGRAPH_VERSIONS overrides the window's setting."""
     told = os.environ.get("METAGRAPH_VERSIONS")
     try:

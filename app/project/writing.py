@@ -12,15 +12,15 @@ from metagraph.common.files import is_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.new_file import Access
-from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
+from metagraph.formats.project.appended_file import Identity, find_moved_folder, read_identity
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal import Journal
 from metagraph.formats.project.versions import write_project
 from metagraph.formats.store import (
     SUFFIX,
-    content_digest,
+    compute_content_digest,
+    compute_file_digest,
     encode_project,
-    file_digest,
     move_projects,
     read_with_digest,
 )
@@ -90,7 +90,7 @@ class Writing:
         if self.target != self.was:
             self.after = move_states([self.project], self.was, self.target)[0]
         content = encode_project(self.after, self.target)
-        self.digest = content_digest(content)
+        self.digest = compute_content_digest(content)
         if expected is not None:
             changed = find_file_change(self.target, expected)
             if changed is not None and changed.digest != self.digest:
@@ -113,10 +113,10 @@ class Writing:
         project in a new one.
         """
         folder = self.target.parent
-        there = identity_of(folder)
+        there = read_identity(folder)
         if there is None or (self.home not in (None, there) and not is_file(self.target)):
             journal = self.journal.path if self.journal is not None else None
-            place = folder_now(folder, self.home, journal)
+            place = find_moved_folder(folder, self.home, journal)
             if there is None or place is not None:
                 raise FolderGoneError(self.target, place)
 
@@ -140,7 +140,7 @@ def move_steps(steps: Sequence[UndoStep], old: Path | None, new: Path) -> tuple[
 def find_file_change(path: Path, expected: str) -> FileChangedError | None:
     """Return how a project file has changed; None if it has not, or is missing."""
     try:
-        now = file_digest(path)
+        now = compute_file_digest(path)
     except FileError:
         return None  # the code that writes or reads it will report this
     if now is None or now == expected:

@@ -1,8 +1,8 @@
 """Define a feature's commands as a static table, and the conditions that enable them.
 
 A table is a tuple of `Command`s whose functions take the feature and whose texts are marked by `tr_noop`.
-`bind_commands` makes the commands of one window from it. Named conditions enable commands; `all_met`,
-`any_met` and `not_met` combine them.
+`bind_commands` makes the commands of one window from it. Named conditions enable commands; `require_all`,
+`require_any` and `require_not` combine them.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ def _bound(command: Command, feature: Feature) -> Command:
     return replace(command, text=text, tip=tr(command.tip) if command.tip else "", **of_feature)
 
 
-def all_met(*conditions: Condition) -> Condition:
+def require_all(*conditions: Condition) -> Condition:
     """Return the condition that all conditions are met."""
     return lambda feature: all(met(feature) for met in conditions)
 
 
-def any_met(*conditions: Condition) -> Condition:
+def require_any(*conditions: Condition) -> Condition:
     """Return the condition that at least one condition is met."""
     return lambda feature: any(met(feature) for met in conditions)
 
 
-def not_met(condition: Condition) -> Condition:
+def require_not(condition: Condition) -> Condition:
     """Return the condition that a condition is not met."""
     return lambda feature: not condition(feature)
 

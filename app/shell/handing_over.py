@@ -19,7 +19,7 @@ def describe_running(window: Window) -> str:
     return ""
 
 
-def hand_over(old: Window, new: Window) -> None:
+def replace_window(old: Window, new: Window) -> None:
     """Show `new` instead of `old`, with everything that the user did and sees in it; `old` is closed."""
     new.restoreGeometry(old.saveGeometry())
     new.shell.document.take_over(old.shell.document)

@@ -11,7 +11,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QWidget
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.shell.actions import Actions
 from app.shell.context import HeaderItem
@@ -61,7 +61,7 @@ class Header(QToolBar):
         d = self.document
         saved = tr("unsaved") if d.path is None else tr("edited") if d.dirty else tr("saved")
         saved = tr("read-only, {saved}", saved=saved) if d.read_only else saved
-        dim = theme(self.session.look.name).dim
+        dim = get_theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
         words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"

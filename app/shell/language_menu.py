@@ -14,7 +14,7 @@ from app.shell.context import Shell
 from app.translation import tr
 
 
-def language_command(shell: Shell, chosen: Callable[[str], object]) -> Command:
+def make_language_command(shell: Shell, chosen: Callable[[str], object]) -> Command:
     """Return the command whose menu lists the languages, each by its own name. `chosen` is called with the
     code of one.
     """
@@ -28,7 +28,7 @@ def language_command(shell: Shell, chosen: Callable[[str], object]) -> Command:
         for code, name in translation.NAMES.items():
             action = menu.addAction(name, partial(choose, code))
             action.setCheckable(True)
-            action.setChecked(code == translation.current_language())
+            action.setChecked(code == translation.get_language())
             group.addAction(action)
 
     return Command("language", "&View", "look", tr("Lan&guage"), fill=fill)

@@ -12,7 +12,7 @@ from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEve
 from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow
 
 from app.look import icons
-from app.look.theme import apply_theme, theme
+from app.look.theme import apply_theme, get_theme
 from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import Importing
@@ -25,7 +25,7 @@ from app.shell.fault_dialog import FaultTeller
 from app.shell.header import Header
 from app.shell.job_line import JobLine
 from app.shell.keyboard import Keyboard
-from app.shell.language_menu import language_command
+from app.shell.language_menu import make_language_command
 from app.shell.notice import Notice
 from app.shell.places import PanelPlaces
 from app.shell.verbs import Verbs
@@ -105,7 +105,7 @@ class Window(QMainWindow):
         kept = shell.settings.value("theme")
         if kept == "dark" or kept == "light":
             session.look.name = kept
-        apply_theme(_application(), theme(session.look.name))
+        apply_theme(_application(), get_theme(session.look.name))
         self.contributions = [*(contribute(shell) for contribute in features), self._own()]
         self.places = shell.places = shell.services.add(
             PanelPlaces(self, (p for c in self.contributions for p in c.panels), session)
@@ -155,7 +155,7 @@ class Window(QMainWindow):
                     icon="theme",
                     study=True,
                 ),
-                language_command(self.shell, self.language_chosen.emit),
+                make_language_command(self.shell, self.language_chosen.emit),
             ),
         )
 
@@ -236,11 +236,11 @@ class Window(QMainWindow):
     # --- looks
 
     def restyle(self) -> None:
-        look = theme(self.shell.stage.session.look.name)
+        look = get_theme(self.shell.stage.session.look.name)
         apply_theme(_application(), look)
         for command in self.shell.actions.commands:
             if command.icon:
-                self.shell.actions[command.id].setIcon(icons.icon(command.icon, look.text))
+                self.shell.actions[command.id].setIcon(icons.make_icon(command.icon, look.text))
         self.shell.settings.setValue("theme", look.name)
         self.refresh()
 

@@ -51,11 +51,13 @@ def _areas(part: str | Split) -> Iterator[str]:
             yield from _areas(inner)
 
 
-def across(*parts: tuple[str | Split, int]) -> Split:
+def split_across(*parts: tuple[str | Split, int]) -> Split:
+    """Return parts side by side, each with its share of the width."""
     return Split(parts)
 
 
-def down(*parts: tuple[str | Split, int]) -> Split:
+def split_down(*parts: tuple[str | Split, int]) -> Split:
+    """Return parts one below the other, each with its share of the height."""
     return Split(parts, down=True)
 
 
@@ -63,31 +65,31 @@ LABEL = Workspace(
     "label",
     tr_noop("Label"),
     tr_noop("Large clips, to label each of them"),
-    across(("large", 52), (down(("side", 57), ("below", 43)), 48)),
+    split_across(("large", 52), (split_down(("side", 57), ("below", 43)), 48)),
 )
 GRAPH = Workspace(
     "graph",
     tr_noop("Graph"),
     tr_noop("Large graph and character"),
-    across(("list", 16), (down(("large", 73), ("below", 27)), 51), ("side", 33)),
+    split_across(("list", 16), (split_down(("large", 73), ("below", 27)), 51), ("side", 33)),
 )
 TIME = Workspace(
     "time",
     tr_noop("Time"),
     tr_noop("Large character beside the timing of an action"),
-    across((down(("list", 40), ("below", 60)), 66), ("large", 34)),
+    split_across((split_down(("list", 40), ("below", 60)), 66), ("large", 34)),
 )
 PERFORM = Workspace(
     "perform",
     tr_noop("Perform"),
     tr_noop("Large character beside its requests and what it plays"),
-    across((down(("side", 40), ("below", 60)), 63), ("large", 37)),
+    split_across((split_down(("side", 40), ("below", 60)), 63), ("large", 37)),
 )
 TALK = Workspace(
     "talk",
     tr_noop("Talk"),
     tr_noop("Two characters in conversation, beside what they say"),
-    across((down(("side", 30), ("below", 70)), 58), ("large", 42)),
+    split_across((split_down(("side", 30), ("below", 70)), 58), ("large", 42)),
 )
 WORKSPACES: tuple[Workspace, ...] = (LABEL, GRAPH, TIME, PERFORM, TALK)
 FIRST = GRAPH
@@ -98,9 +100,9 @@ ALL = Workspace(
     "all",
     tr_noop("All"),
     tr_noop("Every panel"),
-    across(
-        (down((across(("left", 300), ("centre", 950)), 620), ("bottom", 286)), 1250),
-        (down(("right", 470), ("right below", 440)), 420),
+    split_across(
+        (split_down((split_across(("left", 300), ("centre", 950)), 620), ("bottom", 286)), 1250),
+        (split_down(("right", 470), ("right below", 440)), 420),
     ),
     large="centre",
     spare="bottom",

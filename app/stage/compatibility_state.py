@@ -15,7 +15,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.fixes import Fix
-from app.stage.remedies import end_in, fix_gap, move_to
+from app.stage.remedies import fix_gap, move_to, set_end_stance
 from app.translation import tr, tr_plural
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Action, Layer, Project
@@ -49,7 +49,7 @@ def judge_jumps(
     project: Project, before: JudgedJumps | None = None, cancelled: Callable[[], bool] | None = None
 ) -> JudgedJumps:
     """Return all jumps of a project, reusing what still holds from an earlier judgement."""
-    from metagraph.suggest.jumps.found import Measured, jumps
+    from metagraph.suggest.jumps.found import Measured, find_jumps
 
     measured: dict[Layer, Measured] = {}
     known: dict[Layer, dict[Any, tuple[Jump, ...]]] = {}
@@ -66,7 +66,7 @@ def judge_jumps(
                 if a in before.known[layer]
             }
         measured[layer], known[layer] = new, kept
-        found += jumps(project, new, kept, cancelled)
+        found += find_jumps(project, new, kept, cancelled)
     return JudgedJumps(measured, known, tuple(found))
 
 
@@ -147,7 +147,7 @@ def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | No
         )
     if fits is not None and action.kind == "transition" and jump.edge == "ends" and fits.id != action.stance:
         return tr("It looks like '{name}' there. End it in that stance.", name=fits.name), Fix(
-            tr("End in '{name}'", name=fits.name), action.id, does=end_in, args=(action.id, fits.id)
+            tr("End in '{name}'", name=fits.name), action.id, does=set_end_stance, args=(action.id, fits.id)
         )
     if jump.change:
         seconds = next(iter(jump.change.values()))
@@ -285,9 +285,9 @@ class Compatibility(QObject):
         project, measured = self.document.project, self.judged.measured[action.layer]
 
         def work(_: WindowJob) -> Curves | None:
-            from metagraph.suggest.jumps.found import stance_curves
+            from metagraph.suggest.jumps.found import compute_stance_curves
 
-            return stance_curves(project, measured, action)
+            return compute_stance_curves(project, measured, action)
 
         def done(found: Curves | None) -> None:
             self._looking = False
@@ -308,14 +308,14 @@ class Compatibility(QObject):
             return
 
         def work(job: WindowJob) -> dict[str, dict[str, Any]]:
-            from metagraph.suggest.jumps.found import stance_curves
+            from metagraph.suggest.jumps.found import compute_stance_curves
 
             out = {}
             for n, action in enumerate(chosen):
                 if job.cancelled:
                     break
                 job.tell(n, len(chosen))
-                found = stance_curves(project, judged.measured[action.layer], action)
+                found = compute_stance_curves(project, judged.measured[action.layer], action)
                 if found is not None:
                     fields = compare_proposed_timing(
                         action, found.proposed, project.clips[action.clip].duration
@@ -395,7 +395,7 @@ def extend_matrix(
     """
     import numpy as np
 
-    from metagraph.suggest.jumps.compatibility import Matrix, compatibility_matrix
+    from metagraph.suggest.jumps.compatibility import Matrix, make_compatibility_matrix
 
     clips = tuple(project.clips)
     old = (
@@ -404,7 +404,7 @@ def extend_matrix(
         else {c: n for n, c in enumerate(before.clips)}
     )
     fresh = [c for c in clips if c not in old]
-    new = compatibility_matrix(project, layer, clips=fresh, cancelled=cancelled, progress=progress)
+    new = make_compatibility_matrix(project, layer, clips=fresh, cancelled=cancelled, progress=progress)
     if before is None or not old:
         return new
     place = {c: len(before.clips) + n for n, c in enumerate(fresh)}

@@ -40,7 +40,7 @@ class ConversationPlans:
             return self._show(project, ident, folder, side)
 
     def _show(self, project: Project, ident: str, folder: Path, side: int) -> ShownPlayback:
-        from metagraph.speech.duet import duet, voices
+        from metagraph.speech.duet import load_conversation_voices, plan_duet
 
         conversation = project.conversations[ident]
         notes: list[str] = []
@@ -62,9 +62,9 @@ class ConversationPlans:
             for s in conversation.sides
         )
         if key not in self._voices:
-            self._voices = {key: voices(conversation, folder)}
+            self._voices = {key: load_conversation_voices(conversation, folder)}
         heard, told = self._voices[key]
-        made = duet(conversation, ident, projects, heard)
+        made = plan_duet(conversation, ident, projects, heard)
         moved = [_motion(p.project, s, notes) for p, s in zip(made.parts, conversation.sides, strict=True)]
         everyone = tuple(
             ShownPlayback(

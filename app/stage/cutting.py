@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from app.stage.playback_source import ShownPlayback
-from metagraph.graph.conversation.model import Conversation, Word, side_name
+from metagraph.graph.conversation.model import Conversation, Word, get_side_name
 from metagraph.graph.timeline import Cut
 from metagraph.speech.automatic_cuts import cut_at
 from metagraph.speech.captions import (
@@ -24,7 +24,7 @@ from metagraph.speech.captions import (
 )
 from preview.camera import Camera
 from preview.scene import LampTurn
-from preview.shots import lamp_side, shot_camera
+from preview.shots import is_lamp_on_right, make_shot_camera
 
 Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
 SAMPLED = 2  # moments of a cut at which the positions of heads are taken
@@ -99,8 +99,8 @@ def _film(
         heads.append(middle + np.array([0.0, lift, 0.0]))
         heights.append(height)
     at = np.array(heads)
-    camera = shot_camera(cut.shot, cut.side, at, heights, aspect)
-    return Filmed(camera, LampTurn(camera.yaw, lamp_side(camera, cut.shot, cut.side, at)))
+    camera = make_shot_camera(cut.shot, cut.side, at, heights, aspect)
+    return Filmed(camera, LampTurn(camera.yaw, is_lamp_on_right(camera, cut.shot, cut.side, at)))
 
 
 def list_captions(
@@ -118,7 +118,10 @@ def list_captions(
         named = len({side.name for side in conversation.sides}) == len(conversation.sides)
         return tuple(
             Caption(
-                c.start, c.end, f"{side_name(conversation, c.side)}: {c.text}" if named else c.text, c.side
+                c.start,
+                c.end,
+                f"{get_side_name(conversation, c.side)}: {c.text}" if named else c.text,
+                c.side,
             )
             for c in make_conversation_captions(conversation)
         )

@@ -16,7 +16,7 @@ from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
-from preview.character_file import figure_from_file
+from preview.character_file import load_mesh_figure
 from preview.default_body.footing import Footing, choose_footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
@@ -75,7 +75,7 @@ class Figures(QObject):
         footing = self.footing(skeleton, project)
         self.jobs.start(
             "character",
-            lambda _: (key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], footing, sticks))),
+            lambda _: (key, _ready(load_mesh_figure(Path(key[0]), skeleton, key[2], footing, sticks))),
             self._read,
             lambda error: self._refused(key, error),
             quick=True,
@@ -137,7 +137,7 @@ class Figures(QObject):
             footing, sticks = self.footing(skeleton, clips or project), self.sticks
             self.jobs.start(
                 "figure",
-                lambda _: (sticks, _ready(figure_from_file(None, skeleton, (), footing, sticks))),
+                lambda _: (sticks, _ready(load_mesh_figure(None, skeleton, (), footing, sticks))),
                 self._built,
                 quick=True,
             )
@@ -161,9 +161,9 @@ class Figures(QObject):
 
             def work(_: object) -> tuple[Key, MeshFigure]:
                 try:
-                    return key, _ready(figure_from_file(Path(key[0]), skeleton, key[2], footing, sticks))
+                    return key, _ready(load_mesh_figure(Path(key[0]), skeleton, key[2], footing, sticks))
                 except FileError:  # it moves in any case
-                    return key, _ready(figure_from_file(None, skeleton, (), footing, sticks))
+                    return key, _ready(load_mesh_figure(None, skeleton, (), footing, sticks))
 
             self.jobs.start("character", work, self._came, quick=True)
         return self._guests[key]

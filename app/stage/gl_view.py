@@ -25,7 +25,7 @@ from PySide6.QtGui import (
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QLayout, QVBoxLayout, QWidget
 
-from app.stage.navigation import Move, chosen_navigation
+from app.stage.navigation import Move, get_navigation
 from app.translation import tr, tr_error
 from preview.camera import Camera
 from preview.renderer import Renderer
@@ -70,7 +70,7 @@ class CameraMouse(_Base):
             return
         delta = event.position() - self._last
         self._last = event.position()
-        self._move(chosen_navigation().move_of(event.buttons(), event.modifiers()), delta)
+        self._move(get_navigation().move_of(event.buttons(), event.modifiers()), delta)
 
     def _move(self, move: Move | None, delta: QPointF) -> None:
         """Move the camera by a drag in pixels."""
@@ -96,7 +96,7 @@ class CameraMouse(_Base):
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.accept()
         held, fingers = event.modifiers(), event.pixelDelta()
-        if chosen_navigation().scroll_orbits and not held & Qt.KeyboardModifier.ControlModifier:
+        if get_navigation().scroll_orbits and not held & Qt.KeyboardModifier.ControlModifier:
             by = QPointF(fingers) if not fingers.isNull() else QPointF(event.angleDelta()) / NOTCH
             self._move("pan" if held & Qt.KeyboardModifier.ShiftModifier else "orbit", by)
             return
@@ -230,7 +230,7 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
     image = QGuiApplication.platformName() in without or (sys.platform.startswith("linux") and _in_software())
     view = (ImageView if image else GLView)(compose, parent)
     view.setAccessibleName(tr("Character"))
-    view.setAccessibleDescription(tr(chosen_navigation().words))
+    view.setAccessibleDescription(tr(get_navigation().words))
     return view
 
 

@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QImage
 
 from app.stage.picture_process import PictureOrder
-from app.stage.picture_store import PictureStore, picture_key, pictures_folder
+from app.stage.picture_store import PictureStore, find_pictures_folder, make_picture_key
 
 Work = PictureOrder | tuple[str, list[QImage]] | None
 
@@ -60,7 +60,7 @@ class KeptPictures(QObject):
             self._thread.join(5)
 
     def _run(self) -> None:
-        store = PictureStore(pictures_folder())
+        store = PictureStore(find_pictures_folder())
         with contextlib.suppress(RuntimeError):  # the window is gone
             while (work := self._work.get()) is not None:
                 if isinstance(work, tuple):
@@ -70,7 +70,7 @@ class KeptPictures(QObject):
                     self._search(store, work)
 
     def _search(self, store: PictureStore, order: PictureOrder) -> None:
-        key = picture_key(order)
+        key = make_picture_key(order)
         found = store.load(key)
         if found is not None:
             self.found.emit(order.number, found)

@@ -21,7 +21,7 @@ from metagraph.generation.offered import list_models
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Performance
 from metagraph.live import OSC_PORT, PORT
-from metagraph.live.graph_motion import LiveGraph, list_recorded_takes, live_graph
+from metagraph.live.graph_motion import LiveGraph, list_recorded_takes, make_live_graph
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import HeardMessage, Reply
 from metagraph.live.relay import Relay
@@ -118,7 +118,7 @@ class LiveStage(QObject):
 
         def make() -> None:
             try:
-                graph = live_graph(clips, speech)
+                graph = make_live_graph(clips, speech)
                 graph.warm(project)
                 future.set_result(graph)
             except Exception as error:  # reported to clients that ask for it

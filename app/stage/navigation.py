@@ -112,7 +112,7 @@ NAVIGATIONS: Mapping[str, Navigation] = {
 }
 
 
-def chosen_navigation() -> Navigation:
+def get_navigation() -> Navigation:
     """Return what the user chose."""
     return NAVIGATIONS.get(str(QSettings().value(KEY)), NAVIGATIONS["usual"])
 

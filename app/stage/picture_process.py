@@ -61,7 +61,7 @@ _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 def draw_clip_pictures(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     """Return a clip's pictures `[H, W, 4]`: one typical pose, or its whole loop."""
     from preview.scene import THEMES
-    from preview.thumbnail import ThumbnailStyle, find_telling_frame, thumbnail, thumbnails
+    from preview.thumbnail import ThumbnailStyle, find_telling_frame, render_thumbnail, render_thumbnails
 
     motion = order.clip
     if order.what in FRAMED:
@@ -70,7 +70,7 @@ def draw_clip_pictures(offscreen: Any, figure: Any, order: PictureOrder) -> list
             count = max(2, min(SCRUB, motion.frames))
             frames = np.linspace(0, motion.frames - 1, count).round().astype(int)
         pixels = LARGE if order.what == "large" else SIZE * SCALE
-        return thumbnails(offscreen, figure, motion, frames, pixels, THEMES[order.theme], order.paper)
+        return render_thumbnails(offscreen, figure, motion, frames, pixels, THEMES[order.theme], order.paper)
     if order.what == "moving":
         count = max(1, min(MOVING_MOST, round(motion.duration * MOVING_RATE)))
         frames = np.linspace(0, motion.frames - 1, count, endpoint=False).round().astype(int)
@@ -80,7 +80,9 @@ def draw_clip_pictures(offscreen: Any, figure: Any, order: PictureOrder) -> list
     size = MOVING_SIZE if order.what == "moving" else SIZE
     rotations, positions = motion.skeleton.globals(motion.poses()[frames])
     style = ThumbnailStyle(size, SCALE, paper=order.paper, theme=THEMES[order.theme])
-    return [thumbnail(offscreen, figure, r, p, style) for r, p in zip(rotations, positions, strict=True)]
+    return [
+        render_thumbnail(offscreen, figure, r, p, style) for r, p in zip(rotations, positions, strict=True)
+    ]
 
 
 def serve_pictures(orders: BinaryIO, results: BinaryIO) -> None:
@@ -124,13 +126,13 @@ def _read(orders: BinaryIO, waiting: _Waiting) -> None:
 
 def _figure(order: PictureOrder) -> Any:
     from metagraph.errors import FileError
-    from preview.character_file import figure_from_file
+    from preview.character_file import load_mesh_figure
 
     skeleton = order.clip.skeleton
     try:
-        return figure_from_file(order.character, skeleton, order.hidden, order.footing, order.sticks)
+        return load_mesh_figure(order.character, skeleton, order.hidden, order.footing, order.sticks)
     except FileError:  # the preview reports it
-        return figure_from_file(None, skeleton, (), order.footing, order.sticks)
+        return load_mesh_figure(None, skeleton, (), order.footing, order.sticks)
 
 
 if __name__ == "__main__":

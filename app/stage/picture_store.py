@@ -19,12 +19,12 @@ MOST = 192 * 1024 * 1024  # bytes on disk
 KEPT = ("card", "bare", "large", "scrub")
 
 
-def pictures_folder() -> Path | None:
+def find_pictures_folder() -> Path | None:
     """Return the folder for this user's pictures."""
     return cache_folder("pictures")
 
 
-def picture_key(order: PictureOrder) -> str:
+def make_picture_key(order: PictureOrder) -> str:
     """Return the key of a picture, 40 hex digits; it differs if the picture would."""
     clip = order.clip
     out = hashlib.blake2b(digest_size=20)

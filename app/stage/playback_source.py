@@ -24,8 +24,8 @@ from metagraph.playback.manual_playback import (
     Fire,
     ManualEvaluator,
     ManualPlan,
-    link_alone,
     make_manual_plan,
+    plan_link_alone,
     play_state_alone,
 )
 from metagraph.playback.plan import MetaRequest, Plan
@@ -172,7 +172,9 @@ def play_manual(
     if only is not None:
         with suppress(KeyError):  # a link to a group without an entry leads nowhere
             plan = (
-                link_alone(project, only) if project.state(only) is None else play_state_alone(project, only)
+                plan_link_alone(project, only)
+                if project.state(only) is None
+                else play_state_alone(project, only)
             )
             return ShownPlayback(project, plan.plan, plan.end, manual=plan)
     plan = make_manual_plan(project, length, fires)

@@ -97,7 +97,7 @@ def _to_stance(project: Project, action: str, stance: str) -> Project:
         return project  # the stance was removed, or it is where a transition ends
 
 
-def end_in(project: Project, action: str, stance: str) -> Project:
+def set_end_stance(project: Project, action: str, stance: str) -> Project:
     """Return the project with a transition that ends in a stance; unchanged if it cannot."""
     try:
         return edits.set_ends(project, [action], stance)

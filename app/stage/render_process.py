@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.project.jobs import WindowJob
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.common.network_paths import is_allowed
-from metagraph.common.programs import python_command, start
-from metagraph.formats.store import absolute, save_project
+from metagraph.common.programs import make_python_command, start
+from metagraph.formats.store import make_paths_absolute, save_project
 from metagraph.graph.model import Mode, Project
 
-SUFFIXES = lazy_texts(
+SUFFIXES = make_lazy_texts(
     lambda: {
         ".mp4": tr("Video with sound"),
         ".png": tr("Contact sheet"),
@@ -59,7 +59,7 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
     """
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch) / "project.metagraph.yaml"
-        save_project(absolute(project, folder), copy)
+        save_project(make_paths_absolute(project, folder), copy)
         words = [
             "render",
             str(copy),
@@ -95,7 +95,7 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
         if wanted.conversation is not None:
             words += ["--conversation", wanted.conversation]
         process = start(
-            python_command("app.cli", *words),
+            make_python_command("app.cli", *words),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,

@@ -16,10 +16,10 @@ from app.translation import tr, tr_error, tr_plural
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
-from metagraph.graph.request_text import Pasted, holds_requests, paste_requests, request_text
+from metagraph.graph.request_text import Pasted, holds_requests, paste_requests, write_request_text
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.requests import Performance as KeptPerformance
-from metagraph.graph.timeline_edits import lane_of
+from metagraph.graph.timeline_edits import find_lane
 from metagraph.playback.plan import Plan
 
 SOON = 0.15  # seconds from the playhead to the time of a request for "now", because the plan takes a moment
@@ -58,7 +58,7 @@ class RequestEdits:
         """Return the ids of requests on locked lanes."""
         locked, project = self._locked(), self.document.project
         asks = self.kept.asks if self.kept is not None and locked else ()
-        return frozenset(x.id for x in asks if lane_of(x, project) in locked)
+        return frozenset(x.id for x in asks if find_lane(x, project) in locked)
 
     def free(self, idents: tuple[str, ...]) -> tuple[str, ...]:
         """Return those of some requests that are not on locked lanes; report if there are others."""
@@ -74,7 +74,7 @@ class RequestEdits:
         """Return what moves with some requests: with `ripple`, also everything that follows."""
         if not self.ripple or self.kept is None:
             return idents
-        return performance_edits.following(self.kept, idents, self.still())
+        return performance_edits.find_following_asks(self.kept, idents, self.still())
 
     def _begun(self) -> KeptPerformance:
         """Return a performance without requests that does what was improvised."""
@@ -162,7 +162,7 @@ class RequestEdits:
         chosen = self.free(idents) if cut else idents
         if stage is None or self.kept is None or not chosen:
             return
-        QGuiApplication.clipboard().setText(request_text(self.document.project, stage, chosen))
+        QGuiApplication.clipboard().setText(write_request_text(self.document.project, stage, chosen))
         if cut:
             self.document.edit(
                 tr("Cut requests"), lambda p: performance_edits.remove_requests(p, stage, chosen)

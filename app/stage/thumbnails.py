@@ -14,7 +14,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.stage.cropped import Cropped
 from app.stage.figures import Figures
@@ -23,7 +23,7 @@ from app.stage.kept_pictures import KeptPictures
 from app.stage.picture_process import LONG, PictureOrder
 from app.stage.picture_store import KEPT
 from app.stage.session import StageSession
-from metagraph.common.programs import python_command, start
+from metagraph.common.programs import make_python_command, start
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
@@ -175,7 +175,7 @@ class Thumbnails(QObject):
         character = None
         if project.character is not None and motion.skeleton == project.skeleton:
             character = (self.document.folder or Path()) / project.character
-        card = theme(self.session.look.name).field
+        card = get_theme(self.session.look.name).field
         r, g, b = (int(card[i : i + 2], 16) / 255 for i in (1, 3, 5))
         self._number += 1
         self._orders[self._number] = (key, motion)
@@ -224,7 +224,7 @@ class Thumbnails(QObject):
     def _start(self) -> None:
         """Start the process. Output and input have a thread each, because a full pipe blocks."""
         self._process = start(
-            python_command("app.stage.picture_process"),
+            make_python_command("app.stage.picture_process"),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -61,7 +61,7 @@ class TimelineEdits(QObject):
 
     @property
     def now(self) -> Timeline:
-        return notes.timeline_of(self.document.project, self.key)
+        return notes.get_timeline(self.document.project, self.key)
 
     def _edited(self, before: Project, after: Project) -> None:
         if before.timelines is not after.timelines:
@@ -190,9 +190,9 @@ class TimelineEdits(QObject):
 
     def automatic(self, talk: Conversation) -> None:
         """Cut by who speaks."""
-        from metagraph.speech.automatic_cuts import automatic_cuts
+        from metagraph.speech.automatic_cuts import make_automatic_cuts
 
-        self.set_cuts(tr("Automatic cuts"), automatic_cuts(talk))
+        self.set_cuts(tr("Automatic cuts"), make_automatic_cuts(talk))
 
     def set_cuts(self, text: str, cuts: tuple[Cut, ...]) -> None:
         self.change(text, cuts=cuts)

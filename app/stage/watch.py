@@ -10,13 +10,13 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QSettings, Signal
 
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from preview.scene import THEMES, SceneTheme
 
 KEY = "watch"
 STUDIO, STAGE = "studio", "stage"  # names from `preview.looks`, which is imported when others are chosen
 PANES = (1, 2, 4)
-SIDES = lazy_texts(
+SIDES = make_lazy_texts(
     lambda: {  # names of the views beside the first
         "front": tr("Front"),
         "left": tr("Left side"),

@@ -10,12 +10,12 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.look.theme import KIND_MARKS, WindowTheme, get_theme
 from app.stage.session import StageSession
 from app.translation import format_number, tr
-from app.widgets.vocabulary import vocabulary_title
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import KINDS, Layer
-from metagraph.playback.learning.learn import Act, describe_state, state_of
+from metagraph.playback.learning.learn import Act, describe_state, get_act_state
 
 LEFT, RULER, LANE = 56, 20, 34
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
@@ -94,7 +94,7 @@ class ActStrip(QWidget):
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._ruler(painter, t)
@@ -105,7 +105,7 @@ class ActStrip(QWidget):
                 painter.drawText(
                     QRectF(2, lane.top(), LEFT - 8, lane.height()),
                     Qt.AlignmentFlag.AlignVCenter,
-                    vocabulary_title(layer),
+                    get_vocabulary_title(layer),
                 )
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(t.field))
@@ -188,7 +188,7 @@ class ActStrip(QWidget):
                 layer, act = found
                 words = tr(
                     "{state}\n{start:.2f} to {end:.2f} s, {length:.2f} s long",
-                    state=describe_state(state_of(act, True), layer),
+                    state=describe_state(get_act_state(act, True), layer),
                     start=act.start,
                     end=act.end,
                     length=act.length,

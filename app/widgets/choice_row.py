@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QButtonGroup, QGridLayout, QToolButton, QWidget
 from app.translation import tr
 from app.widgets.form_fields import Mixed
 from app.widgets.making import make_widget
-from app.widgets.vocabulary import vocabulary_title, vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_title, get_vocabulary_word
 from metagraph.graph.model import LIMBS
 
 
@@ -57,15 +57,17 @@ class LimbRow(ChoiceRow):
 
     def __init__(self, parent: QWidget, keeps: str) -> None:
         tips = {
-            "left": tr("Moves the left arm; the other arm follows the {keeps}", keeps=vocabulary_word(keeps)),
+            "left": tr(
+                "Moves the left arm; the other arm follows the {keeps}", keeps=get_vocabulary_word(keeps)
+            ),
             "right": tr(
-                "Moves the right arm; the other arm follows the {keeps}", keeps=vocabulary_word(keeps)
+                "Moves the right arm; the other arm follows the {keeps}", keeps=get_vocabulary_word(keeps)
             ),
             "both": tr(
-                "Moves both arms; the rest of the body follows the {keeps}", keeps=vocabulary_word(keeps)
+                "Moves both arms; the rest of the body follows the {keeps}", keeps=get_vocabulary_word(keeps)
             ),
         }
-        super().__init__(parent, ((vocabulary_title(x), tips[x]) for x in LIMBS))
+        super().__init__(parent, ((get_vocabulary_title(x), tips[x]) for x in LIMBS))
 
     def show_limb(self, limb: Any) -> None:
         """Show a limb, or the marker `Mixed`."""

@@ -6,7 +6,7 @@ from PySide6.QtCore import QEvent, QObject, QRectF, Qt
 from PySide6.QtGui import QColor, QDropEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.look.theme_choice import ThemeChoice
 
 WIDTH = 2.0  # pixels of the frame
@@ -42,7 +42,7 @@ class DropFrame(QWidget):
         return False
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look, half = theme(self.look.name), WIDTH / 2
+        look, half = get_theme(self.look.name), WIDTH / 2
         color = QColor(look.strong)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)

@@ -25,7 +25,7 @@ class _MixedType:
 Mixed = _MixedType()
 
 
-def common_value(values: Sequence[Any]) -> Any:
+def find_common_value(values: Sequence[Any]) -> Any:
     """Return what all values are, or the marker `Mixed` when they differ."""
     first = values[0]
     return first if all(v == first for v in values) else Mixed

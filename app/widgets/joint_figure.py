@@ -12,7 +12,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.translation import format_number, tr
 from metagraph.motion.skeleton import Skeleton
 from preview.joints import is_control
@@ -33,7 +33,7 @@ class JointFigure(QWidget):
 
     def __init__(self, skeleton: Skeleton, look: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._skeleton, self._look = skeleton, theme(look)
+        self._skeleton, self._look = skeleton, get_theme(look)
         self._seen = measure_front_positions(skeleton)
         self._helpers = [is_control(name) for name in skeleton.names]  # no bone leads to them
         self._weights: Mapping[str, float] = {}

@@ -29,7 +29,7 @@ from app.widgets.joint_figure import JointFigure, format_weight
 from app.widgets.making import make_widget
 from app.widgets.mask_weights import MaskWeights
 from app.widgets.quiet_fields import DoubleSpinBox, Slider, SpinBox
-from app.widgets.tree_items import items_below
+from app.widgets.tree_items import list_items_below
 from metagraph.graph import edits
 from metagraph.graph.manual.machine import State
 from metagraph.graph.model import Action, Project
@@ -243,7 +243,7 @@ class MaskDialog(QDialog):
         while below:
             one = below.pop()
             out.append(one.data(0, JOINT))
-            below += items_below(one)
+            below += list_items_below(one)
         return out
 
     def _chosen(self) -> list[str]:

@@ -15,11 +15,11 @@ from PySide6.QtGui import QFont
 
 from app.look.shortening import measure_font
 from app.stage.playback_source import ShownPlayback
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from app.widgets.request_menu import STAGE, ask_kind, describe_request
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.graph.timeline_edits import lane_of
+from metagraph.graph.timeline_edits import find_lane
 from metagraph.playback.plan import Cue
 from metagraph.playback.planning.extend_performance import AskAnswer
 
@@ -29,7 +29,7 @@ PLAYS = 34.0  # pixels at most for what plays in a lane; the rest is for what wa
 ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
 NAMES = (STAGE, *LAYERS)
-TITLES = lazy_texts(
+TITLES = make_lazy_texts(
     lambda: {
         "cameras": tr("Cameras"),
         STAGE: tr("Speech"),
@@ -141,13 +141,13 @@ def split_lane(lane: QRectF) -> tuple[QRectF, QRectF]:
     )
 
 
-def lane_at(height: float, at: QPointF, sizes: Sizes = EVEN) -> str | None:
+def find_lane_at(height: float, at: QPointF, sizes: Sizes = EVEN) -> str | None:
     """Return the lane under a point."""
     places = place_lanes(height, sizes)
     return next((name for name, lane in places.items() if at.x() >= LEFT and lane.contains(at)), None)
 
 
-def cue_at(
+def find_cue_at(
     shown: ShownPlayback, scale: LaneScale, height: float, at: QPointF, sizes: Sizes = EVEN
 ) -> tuple[Layer, Cue] | None:
     """Return the cue under a point."""
@@ -188,7 +188,7 @@ def is_lost(answer: AskAnswer | None) -> bool:
     return answer is not None and answer.state == "refused"
 
 
-def time_of(ask: AnyRequest, answer: AskAnswer | None) -> float:
+def get_ask_time(ask: AnyRequest, answer: AskAnswer | None) -> float:
     """Return when an ask stands in the timeline: when it was wanted, else when it plays."""
     stroke = getattr(ask, "stroke", None)
     if stroke is not None:
@@ -219,11 +219,14 @@ def place_marks(
     lasts: dict[tuple[str, int], int] = {}  # of each row its last mark, by its place in `out`
     out: list[RequestMark] = []
     timed = sorted(
-        ((time_of(x, answers.get(x.id)) + (shift or {}).get(x.id, 0.0), n, x) for n, x in enumerate(asks)),
+        (
+            (get_ask_time(x, answers.get(x.id)) + (shift or {}).get(x.id, 0.0), n, x)
+            for n, x in enumerate(asks)
+        ),
         key=lambda t: t[:2],
     )
     for at, _, ask in timed:
-        lane, words, left = lane_of(ask, project), describe_request(ask, project), scale.x(at)
+        lane, words, left = find_lane(ask, project), describe_request(ask, project), scale.x(at)
         area, count = areas[lane], counts[lane]
         tall = min(TALLEST, (area.height() + 1) / count - 1)
         ends = [out[lasts[lane, n]].rect.right() if (lane, n) in lasts else -1e9 for n in range(count)]
@@ -239,7 +242,10 @@ def place_marks(
             area.top() + row * (tall + 1),
             max(
                 NARROWEST,
-                min(260.0, text_width(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16),
+                min(
+                    260.0,
+                    measure_text_width(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16,
+                ),
             ),
             tall,
         )
@@ -253,7 +259,7 @@ def mark_at(found: Sequence[RequestMark], at: QPointF) -> RequestMark | None:
     return next((m for m in reversed(found) if m.rect.contains(at) and at.x() >= LEFT), None)
 
 
-VERBS = lazy_texts(
+VERBS = make_lazy_texts(
     lambda: {
         "say": tr("Said"),
         "look": tr("Looks"),
@@ -306,7 +312,7 @@ def describe_mark(mark: RequestMark, editable: bool = True) -> str:
 
 
 @lru_cache(maxsize=8192)
-def text_width(words: str, font: str) -> float:
+def measure_text_width(words: str, font: str) -> float:
     """Return how wide words are in a font, given as `QFont.toString` does."""
     return measure_font(font).horizontalAdvance(words)
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from app.look.names import node_names, plain_action_name
+from app.look.names import make_readable_name, name_node_rows
 from app.look.shortening import shorten_to_font, shorten_to_lines_in_font
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.stage.playback_source import ShownPlayback
@@ -99,7 +99,7 @@ def paint_lane_scene(painter: QPainter, t: WindowTheme, scene: LaneScene) -> Non
             scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height()
         )
         inner = _bar(painter, t, rect, QColor(t.line), False, scene.width)
-        _chip(painter, t.text, inner, "", plain_action_name(entry.name))
+        _chip(painter, t.text, inner, "", make_readable_name(entry.name))
     if scene.ends is not None and (x := scene.scale.x(scene.ends)) < scene.width:
         veil = QColor(t.ground)
         veil.setAlpha(150)
@@ -228,8 +228,8 @@ def _in_the_clear(
 
 def describe_cue(project: Project, action: Action) -> str:
     """Return what tells an action from the others of its node; its stance stands on the band behind it."""
-    names = node_names(project, action.layer, action.stance, action.kind)
-    return names.get(action.id) or plain_action_name(action.name)
+    names = name_node_rows(project, action.layer, action.stance, action.kind)
+    return names.get(action.id) or make_readable_name(action.name)
 
 
 def _bar(

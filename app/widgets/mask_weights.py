@@ -44,10 +44,12 @@ class MaskWeights:
         self.change({name: self._now.get(name, 0.0) + amount for name in joints})
 
     def soften(self, over: int) -> None:
-        """Let weights rise over so many joints where the mask begins (`anatomy.soft_edge`)."""
+        """Let weights rise over so many joints where the mask begins (`anatomy.make_soft_edge`)."""
         skeleton = self._project.skeleton
         if skeleton is not None:
-            self.change(anatomy.soft_edge(skeleton, anatomy.project_parts(self._project), self._now, over))
+            self.change(
+                anatomy.make_soft_edge(skeleton, anatomy.project_parts(self._project), self._now, over)
+            )
 
     def undo(self) -> None:
         if self._done:

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from app.look.shortening import shorten_middle
 from app.project.load import ANNOTATIONS, Load
 from app.project.speech_files import sort_speech_files
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 
 PICTURE, WIDEST = 84, 200.0  # pixels of what is carried: its picture, its name
 CLIPS = "application/x-metagraph-clips"
@@ -34,13 +34,13 @@ def load_of(data: QMimeData) -> Load:
     clips = tuple(bytes(data.data(CLIPS).data()).decode().split("\n")) if data.hasFormat(CLIPS) else ()
     actions = tuple(bytes(data.data(ACTIONS).data()).decode().split("\n")) if data.hasFormat(ACTIONS) else ()
     files = tuple(u.toLocalFile() for u in data.urls() if u.isLocalFile()) if data.hasUrls() else ()
-    ends = (*clip_suffixes(), ANNOTATIONS)
+    ends = (*list_clip_suffixes(), ANNOTATIONS)
     return Load(
         clips, actions, tuple(f for f in files if "." not in f.rsplit("/", 1)[-1] or f.lower().endswith(ends))
     )
 
 
-def sounds_of(data: QMimeData) -> tuple[Path, ...]:
+def read_sound_paths(data: QMimeData) -> tuple[Path, ...]:
     """Return the sounds that mime data carries, and their transcripts after them; nothing if no sound is
     among them.
     """

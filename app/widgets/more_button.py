@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QMenu, QToolButton, QWidget
 
 from app.look import icons
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.look.theme_choice import ThemeChoice
 
 
@@ -42,4 +42,4 @@ class MoreButton(QToolButton):
         self.setToolButtonStyle(beside if words else alone)
 
     def _restyle(self) -> None:
-        self.setIcon(icons.icon(self._mark, theme(self.look.name).text))
+        self.setIcon(icons.make_icon(self._mark, get_theme(self.look.name).text))

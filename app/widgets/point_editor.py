@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
 )
 
 from app.project.document import Document
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from app.widgets.quiet_fields import DoubleSpinBox
 from metagraph.graph.editing import performances as performance_edits
 
-AXES = lazy_texts(
+AXES = make_lazy_texts(
     lambda: (
         (tr("Left"), tr("Metres to the character's left; negative values are to its right")),
         (tr("Up"), tr("Metres above the floor")),

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.stage.performance import StagePerformance
-from app.translation import format_number, lazy_texts, tr, tr_noop
-from app.widgets.vocabulary import vocabulary_title, vocabulary_word
+from app.translation import format_number, make_lazy_texts, tr, tr_noop
+from app.widgets.vocabulary import get_vocabulary_title, get_vocabulary_word
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
 from metagraph.graph.words import FEELINGS
@@ -25,8 +25,8 @@ DIRECTIONS = {
     tr_noop("Up"): (0.0, 2.4, 1.0),
     tr_noop("Down"): (0.0, 0.6, 1.0),
 }
-MOOD_WORDS = {name: vocabulary_title(name) for name in FEELINGS}
-MODE_WORDS = lazy_texts(
+MOOD_WORDS = {name: get_vocabulary_title(name) for name in FEELINGS}
+MODE_WORDS = make_lazy_texts(
     lambda: {
         "idle": tr("Idle"),
         "listening": tr("Listen"),
@@ -35,7 +35,7 @@ MODE_WORDS = lazy_texts(
         "reacting": tr("React"),
     }
 )
-MODE_ASKED = lazy_texts(
+MODE_ASKED = make_lazy_texts(
     lambda: {
         "idle": tr("idle"),
         "listening": tr("listen"),
@@ -60,10 +60,9 @@ def describe_request(ask: a.AnyRequest, project: Project) -> str:
     match ask:
         case a.Gesture() | a.Fidget():
             kind = "gesture" if isinstance(ask, a.Gesture) else "fidget"
-            limb = vocabulary_word(ask.limb) if ask.limb in ("left", "right") else ""
-            return (
-                f"{KIND_MARKS[kind]} {', '.join(x for x in (limb, *ask.tags) if x) or vocabulary_word(kind)}"
-            )
+            limb = get_vocabulary_word(ask.limb) if ask.limb in ("left", "right") else ""
+            words = ", ".join(x for x in (limb, *ask.tags) if x) or get_vocabulary_word(kind)
+            return f"{KIND_MARKS[kind]} {words}"
         case a.Play():
             found = project.action(ask.action)
             return f"{KIND_MARKS[found.kind if found else 'gesture']} {found.name if found else ask.action}"
@@ -101,7 +100,7 @@ def describe_mood(mood: a.MoodPoint, intensity: float | None) -> str:
     """Return a mood in a few words: "sad", "sad × 1.5", "mood 0.3, -0.5"."""
     named = tr("mood")
     if isinstance(mood, str):
-        named = vocabulary_word(mood)
+        named = get_vocabulary_word(mood)
     elif mood:
         values = ", ".join(format_number(x, "g") for x in mood)
         named = f"{named} {values}"
@@ -125,7 +124,7 @@ def make_request_menu(
     for layer in LAYERS:
         if lane not in (None, layer) or not project.graphs[layer].stances:
             continue
-        inner = menu if lane == layer else menu.addMenu(vocabulary_title(layer))
+        inner = menu if lane == layer else menu.addMenu(get_vocabulary_title(layer))
         _layer_items(inner, project, layer, seconds, ask)
     if lane in (None, STAGE) and project.skeleton is not None:
         if lane is None:
@@ -196,7 +195,7 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
     looks = menu.addMenu(tr("Look at"))
     for name in dict.fromkeys(("user", *project.points)):
         looks.addAction(
-            vocabulary_title(name) if name == "user" else name,
+            get_vocabulary_title(name) if name == "user" else name,
             partial(ask, a.Look(to=name, at=at), tr("Ask for a look")),
         )
     looks.addAction(tr("Ahead"), lambda: ask(a.Look(to="ahead", at=at), tr("Ask for a look")))

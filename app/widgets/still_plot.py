@@ -27,7 +27,7 @@ def make_number_axes() -> dict[str, NumberAxis]:
     return {place: NumberAxis(place) for place in AXES}
 
 
-def still_plot(parent: QWidget) -> Any:
+def make_still_plot(parent: QWidget) -> Any:
     """Return an empty plot without menu, zoom or focus, with axes that keep their unit."""
     plot = pg.PlotWidget(parent, axisItems=make_number_axes())
     plot.setMenuEnabled(False)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from PySide6.QtWidgets import QTreeWidget, QTreeWidgetItem
 
 
-def top_items(tree: QTreeWidget) -> list[QTreeWidgetItem]:
+def list_top_items(tree: QTreeWidget) -> list[QTreeWidgetItem]:
     """Return a tree's outermost items, from the top."""
-    return items_below(tree.invisibleRootItem())
+    return list_items_below(tree.invisibleRootItem())
 
 
-def items_below(item: QTreeWidgetItem) -> list[QTreeWidgetItem]:
+def list_items_below(item: QTreeWidgetItem) -> list[QTreeWidgetItem]:
     """Return an item's own children, from the top."""
     return [child for n in range(item.childCount()) if (child := item.child(n)) is not None]

@@ -34,11 +34,11 @@ JOINS = (tr_noop("to"), tr_noop("from"))
 OTHERS = (tr_noop("Likelihood"), tr_noop("Mask"), tr_noop("Stroke"), tr_noop("User"))
 
 
-def vocabulary_word(key: str) -> str:
+def get_vocabulary_word(key: str) -> str:
     """Return how a key is called within a sentence; what is none stays as it is."""
     return tr(key)
 
 
-def vocabulary_title(key: str) -> str:
+def get_vocabulary_title(key: str) -> str:
     """Return how a key is called where it stands alone."""
     return tr(key.capitalize())

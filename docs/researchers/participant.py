@@ -111,7 +111,7 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     from metagraph.research.study.machines.by_hand import Way
     from metagraph.research.study.machines.counted_drops import label_by_drops
     from metagraph.research.study.machines.counted_hand import search_ways, try_way
-    from metagraph.research.study.machines.normal_machine import normal
+    from metagraph.research.study.machines.normal_machine import normalize_machines
     from metagraph.research.study.scores.machines import score
     from tests.app.expert import Expert, Reviewer, hidden, without_times
     from tests.app.participant import Participant, bare, task
@@ -158,7 +158,7 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
         result = Participant(drive, given).do("meta")
     project = drive.document.project
     plain = project if condition == BEST else without_times(project)
-    found = score(normal(plain), normal(given.reference))
+    found = score(normalize_machines(plain), normalize_machines(given.reference))
     drive.shell.document.undo_stack.setClean()
     drive.window.close()
     QTest.qWait(50)
@@ -168,9 +168,9 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
 
 
 def _works(given: Any) -> list[Any]:
-    from metagraph.research.study.machines.by_hand import works
+    from metagraph.research.study.machines.by_hand import list_works
 
-    return works(given.reference)
+    return list_works(given.reference)
 
 
 def told(operators: dict[str, float], looked: float, found: Any) -> dict[str, Any]:

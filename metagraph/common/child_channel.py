@@ -10,7 +10,7 @@ import sys
 from contextlib import suppress
 from typing import IO
 
-from metagraph.common.programs import python_command, start
+from metagraph.common.programs import make_python_command, start
 
 _LENGTH = struct.Struct("<q")
 
@@ -50,7 +50,9 @@ class Child(ChildChannel):
     def __init__(self, module: str, *words: str) -> None:
         import subprocess
 
-        self.process = start(python_command(module, *words), stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.process = start(
+            make_python_command(module, *words), stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
         assert self.process.stdin is not None and self.process.stdout is not None
         super().__init__(self.process.stdout, self.process.stdin)
 

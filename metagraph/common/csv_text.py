@@ -16,7 +16,7 @@ _KEPT = re.compile("'+[=+\\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 
-def csv_text(rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
+def format_csv(rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
     """Return rows of texts and numbers as a table."""
     special = re.compile(f'[{re.escape(separator)}"\r\n]')  # `csv` leaves a lone "\r" without quotes
 

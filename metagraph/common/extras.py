@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from metagraph.common.programs import ROOT, make_own, python_command, run_program
+from metagraph.common.programs import ROOT, make_own, make_python_command, run_program
 from metagraph.common.user_folders import find_user_folder
 from metagraph.common.wording import phrase
 
@@ -85,7 +85,9 @@ def install_extra(name: str) -> None:
     # Into a folder of its own first: what fails half way leaves nothing.
     fresh = place.parent / f"{place.name}-{name}-new"
     shutil.rmtree(fresh, ignore_errors=True)
-    command = python_command("pip", "install", "--quiet", "--target", str(fresh), "--only-binary", ":all:")
+    command = make_python_command(
+        "pip", "install", "--quiet", "--target", str(fresh), "--only-binary", ":all:"
+    )
     try:
         code, words = run_program(
             [*command, *extra.wants], MINUTES * 60, env={"PIP_RETRIES": os.environ.get("PIP_RETRIES", "2")}

@@ -22,7 +22,7 @@ _FORBIDDEN = re.compile(
 )
 
 
-def file_stem(text: str, otherwise: str = "unnamed", most: int = NAME_BYTES) -> str:
+def make_file_stem(text: str, otherwise: str = "unnamed", most: int = NAME_BYTES) -> str:
     """Return a text as the name of a file without its ending: as it is where every system takes it. One that
     is cut to `most` bytes ends in a hash of the whole. otherwise: what an empty one is called.
     """
@@ -47,7 +47,7 @@ def make_file_stems(texts: Iterable[str], otherwise: str = "unnamed") -> list[st
     out: list[str] = []
     taken: set[str] = set()
     for text in texts:
-        stem = file_stem(text, otherwise)
+        stem = make_file_stem(text, otherwise)
         name, number = stem, 1
         while fold_file_name(name) in taken:
             number += 1

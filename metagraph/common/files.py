@@ -147,12 +147,12 @@ def guard_reader(read: Callable[P, R]) -> Callable[P, R]:
             if strict:
                 raise
             path = args[0] if args else kwargs["path"]
-            raise unforeseen_error(path, error) from error  # type: ignore[arg-type]
+            raise make_unforeseen_error(path, error) from error  # type: ignore[arg-type]
 
     return safely
 
 
-def unforeseen_error(path: str | Path, error: Exception) -> FileError:
+def make_unforeseen_error(path: str | Path, error: Exception) -> FileError:
     """Return what to report a file on which a reader failed in a way that nobody foresaw."""
     if isinstance(error, FileError):
         return error

@@ -120,21 +120,21 @@ def find_refusal(name: str, folder: Path | None = None) -> str | None:
 
 def close_path(name: str) -> str:
     """Return a path that a file gives, or one that leads nowhere in its place if that is not allowed."""
-    return path_to_nowhere(name) if find_refusal(name) is not None else name
+    return make_path_to_nowhere(name) if find_refusal(name) is not None else name
 
 
-def path_to_nowhere(name: str) -> str:
+def make_path_to_nowhere(name: str) -> str:
     """Return the path that leads nowhere in a name's place."""
     return f"{FOLDER}/_{quote(name, safe='')}"
 
 
-def original_path(name: str) -> str:
+def recover_original_path(name: str) -> str:
     """Return what a closed path was; any other as it is."""
     if not name.startswith(f"{FOLDER}/_"):
         return name
     was = unquote(name.removeprefix(f"{FOLDER}/_"))
-    return was if path_to_nowhere(was) == name else name
+    return was if make_path_to_nowhere(was) == name else name
 
 
 def is_closed(name: str) -> bool:
-    return original_path(name) != name
+    return recover_original_path(name) != name

@@ -10,7 +10,7 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 _SIZES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}  # JPEG's frames; the three are tables
 
 
-def picture_size(data: bytes) -> tuple[int, int] | None:
+def read_picture_size(data: bytes) -> tuple[int, int] | None:
     """Return width and height in pixels of a PNG or JPEG; None for what is neither, or is damaged."""
     size = _png(data) if data[:8] == _PNG else _jpeg(data) if data[:3] == b"\xff\xd8\xff" else None
     return size if size is not None and min(size) > 0 else None

@@ -1,10 +1,10 @@
 """Starts every program that Metagraph starts, so that no file of a stranger is ever run.
 
-A program is one of the system's own, from a folder that only the administrator writes to (`system_program`),
-or this Python with a module that this process could import, too (`python`), or a file whose digest is known
-(`metagraph.engines.targets.web_tools`). None is looked for along PATH, in the working folder or beside a
-project. Each begins in an empty folder of the user's, with a list of variables that it may need and no
-others.
+A program is one of the system's own, from a folder that only the administrator writes to
+(`find_system_program`), or this Python with a module that this process could import, too (`python`), or a
+file whose digest is known (`metagraph.engines.targets.web_tools`). None is looked for along PATH, in the
+working folder or beside a project. Each begins in an empty folder of the user's, with a list of variables
+that it may need and no others.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def run_program(command: Sequence[str], timeout: float | None = None, **options:
     return process.returncode, said.decode("utf-8", "replace")
 
 
-def python_command(module: str, *words: str) -> list[str]:
+def make_python_command(module: str, *words: str) -> list[str]:
     """Return the command that runs a module of ours with this Python, whatever lies in the working folder or
     is said in PYTHON* variables.
     """
@@ -150,7 +150,7 @@ def _system_places() -> Iterator[Path]:
         )
 
 
-def system_program(name: str) -> str | None:
+def find_system_program(name: str) -> str | None:
     """Return the path of one of the system's programs; None if it has none, or one that others can change."""
     for place in _system_places():
         for ending in (".exe", ".cmd") if sys.platform == "win32" else ("",):

@@ -16,7 +16,8 @@ def format_px(value: float) -> str:
     return f"{value:.1f}".removesuffix(".0")
 
 
-def svg_line(x1: float, y1: float, x2: float, y2: float, css: str = "") -> str:
+def draw_svg_line(x1: float, y1: float, x2: float, y2: float, css: str = "") -> str:
+    """Return a line from (x1, y1) to (x2, y2), pixels. css: its class."""
     named = f" class='{css}'" if css else ""
     return (
         f"<line{named} x1='{format_px(x1)}' y1='{format_px(y1)}' x2='{format_px(x2)}' y2='{format_px(y2)}'/>"
@@ -24,15 +25,19 @@ def svg_line(x1: float, y1: float, x2: float, y2: float, css: str = "") -> str:
 
 
 def draw_svg_dot(x: float, y: float, r: float) -> str:
+    """Return a dot of radius r about (x, y), pixels."""
     return f"<circle cx='{format_px(x)}' cy='{format_px(y)}' r='{format_px(r)}'/>"
 
 
-def svg_text(x: float, y: float, words: str, css: str, anchor: str) -> str:
+def draw_svg_text(x: float, y: float, words: str, css: str, anchor: str) -> str:
+    """Return words at (x, y), pixels. css: their class. anchor: which end of them is there (SVG's
+    text-anchor).
+    """
     place = f"x='{format_px(x)}' y='{format_px(y)}' text-anchor='{anchor}'"
     return f"<text class='{css}' {place}>{escape(words)}</text>"
 
 
-def svg_drawing(height: float, parts: Sequence[str], title: str) -> str:
+def make_svg_drawing(height: float, parts: Sequence[str], title: str) -> str:
     """Return a drawing WIDTH wide."""
     shape = f"viewBox='0 0 {WIDTH} {format_px(height)}' role='img' aria-label='{escape(title, quote=True)}'"
     return f"<svg xmlns='http://www.w3.org/2000/svg' {shape}>{''.join(parts)}</svg>"

@@ -15,14 +15,14 @@ _CANNOT = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 INSTEAD = "\ufffd"
 
 
-def xml_text(text: str) -> str:
+def clean_xml_text(text: str) -> str:
     """Return a text with `INSTEAD` for each character that XML 1.0 cannot hold."""
     return _CANNOT.sub(INSTEAD, text)
 
 
 def escape(text: str, quote: bool = True) -> str:
     """Return a text as it stands in XML, SVG or HTML. quote: also between quotes, of either kind."""
-    return html.escape(xml_text(text), quote)
+    return html.escape(clean_xml_text(text), quote)
 
 
 def quote_xml(text: str) -> str:

@@ -22,7 +22,7 @@ import msgspec
 from metagraph.engines.reading import read_export
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.offered import offered_requests, tools
+from metagraph.graph.offered import list_offered_requests, list_tools
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.line_timing import VisemeMark
@@ -99,13 +99,13 @@ class Character:
 
     def describe(self) -> dict[str, Any]:
         """Return the possible requests as plain data, see `metagraph.graph.offered.offered`."""
-        return offered_requests(self.project, a.WORDS)
+        return list_offered_requests(self.project, a.WORDS)
 
     def tools(self) -> list[dict[str, Any]]:
         """Return the possible requests as tools that a language model can call, see
-        `metagraph.graph.offered.tools`.
+        `metagraph.graph.offered.list_tools`.
         """
-        return tools(self.project)
+        return list_tools(self.project)
 
     def ask(self, request: Mapping[str, Any] | a.AnyRequest) -> str:
         """Send a request; return its id, which is made if it has none. It is planned at the next update.
@@ -127,7 +127,7 @@ class Character:
                 if after is None or after < 0:
                     return self._refuse(ident, "after: should be a number of seconds from now")
                 data["at"] = self.now + after
-            return self._take(a.request_from(data))
+            return self._take(a.make_request(data))
         except a.RequestError as error:
             return self._refuse(ident, str(error))
 

@@ -19,9 +19,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.engines.engine_names import name_apart, number_apart, write_word
+from metagraph.engines.engine_names import assign_numbers, name_apart, write_word
 from metagraph.graph import anatomy
-from metagraph.graph.expand import chain, find_end_stance, list_connections
+from metagraph.graph.expand import find_chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, REACH, Action, ClipEntry, Layer, MetaGraph, Project
 from metagraph.graph.repeating import cycle_of, seconds_played
 from metagraph.motion.character_mesh import CharacterMesh
@@ -80,7 +80,7 @@ class Machine:
 
     def hop(self, here: str, goal: str) -> EngineState | None:
         """Return the first transition of the shortest way between two stances, None if there is none."""
-        way = chain(self.graph, here, goal)
+        way = find_chain(self.graph, here, goal)
         actions = (s for s in self.states if s.action.kind == "transition" and s.action.stance == here)
         return next((s for s in actions if s.action.end_stance == way[0]), None) if way else None
 
@@ -102,7 +102,7 @@ class Machine:
         return {name: tuple(arrows) for name, arrows in out.items()}
 
 
-def machines(project: Project, spell: Callable[[Action, str], str] | None = None) -> tuple[Machine, ...]:
+def list_machines(project: Project, spell: Callable[[Action, str], str] | None = None) -> tuple[Machine, ...]:
     """Return the machines of the layers that have a stance with a loop, in the layers' order. spell: returns
     how an engine spells the name of an action's state.
     """
@@ -128,10 +128,10 @@ def _machine(project: Project, graph: MetaGraph, named: Mapping[str, str]) -> Ma
     begin = graph.start if graph.start in resting else next(iter(resting), None)
     if begin is None or project.skeleton is None:
         return None
-    stances = number_apart(sorted(resting, key=lambda s: s != begin))
+    stances = assign_numbers(sorted(resting, key=lambda s: s != begin))
     playing = {action.id: action for action in _playing(graph)}
     states: dict[str, EngineState] = {}
-    for (ident, number), action in zip(number_apart(playing).items(), playing.values(), strict=True):
+    for (ident, number), action in zip(assign_numbers(playing).items(), playing.values(), strict=True):
         start, end = project.span(action)
         seconds = seconds_played(action.kind, action.timing, start, end)
         states[ident] = EngineState(number, named[ident], action, seconds, action.kind == "stance")
@@ -155,7 +155,7 @@ def _arrows(project: Project, machine: Machine, states: Mapping[str, EngineState
     goals: dict[tuple[str, str], list[int]] = {}  # (stance, next on the way) -> the goals it leads to
     for here in machine.stances:
         for goal, number in machine.stances.items():
-            way = chain(graph, here, goal)
+            way = find_chain(graph, here, goal)
             if way:
                 goals.setdefault((here, way[0]), []).append(number)
     for row in list_connections(project, graph):
@@ -180,7 +180,7 @@ def _arrows(project: Project, machine: Machine, states: Mapping[str, EngineState
         yield Arrow(source, target, leave, row.blend, "action", (target.number,))
 
 
-def animations(project: Project, machines: tuple[Machine, ...]) -> list[Clip]:
+def make_animations(project: Project, machines: tuple[Machine, ...]) -> list[Clip]:
     """Return an animation for every state: the part of its clip that plays; joints that the action does not
     move stand as its stance begins. Actions whose clip is missing stand in it, too.
     """
@@ -200,7 +200,7 @@ def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
     seconds = seconds_played(playing.kind, playing.timing, start, end)
     frames = max(2, round(seconds * clip.fps) + 1)
     rotations, translations = _played(playing, clip, start, end, np.linspace(0.0, seconds, frames))
-    mask = anatomy.action_mask(project, state.action)
+    mask = anatomy.make_action_mask(project, state.action)
     if mask is not None and loop is not None:
         stance = loop.pose_at(project.span(rest)[0])
         shape = rotations.shape[:-1]
@@ -209,7 +209,9 @@ def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
             np.broadcast_to(stance.translations, (*shape, 3)),
         )
         keep_to((rotations, translations), rests, mask)
-    moved = np.flatnonzero(np.abs(translations - anatomy.base_pose(project).translations).max((0, 2)) > 1e-6)
+    moved = np.flatnonzero(
+        np.abs(translations - anatomy.get_base_pose(project).translations).max((0, 2)) > 1e-6
+    )
     translated = tuple(sorted({0, *moved.tolist()}))
     fps = (frames - 1) / max(seconds, 1e-3) if end > start else clip.fps
     return Clip(state.name, project.skeleton, fps, rotations, translations[:, list(translated)], translated)
@@ -230,7 +232,7 @@ def _played(action: Action, clip: Clip, start: float, end: float, times: Array) 
     return sample_cue(cue, times, sample)
 
 
-def clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
+def make_clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
     """Return a clip's motion, with dense keys; where its only action repeats a part of it, that part as often
     as it plays. None if its file is missing.
     """
@@ -252,7 +254,9 @@ def clip_as_played(project: Project, entry: ClipEntry) -> Clip | None:
 
 
 def count_unrepeated(project: Project) -> int:
-    """Return how many clips `clip_as_played` leaves as they are though an action repeats a part of them."""
+    """Return how many clips `make_clip_as_played` leaves as they are though an action repeats a part of
+    them.
+    """
     shared = [some for some in project.uses.values() if len(some) > 1]
     return sum(any(cycle_of(a.kind, a.timing, *project.span(a)) > 0 for a in some) for some in shared)
 
@@ -266,5 +270,5 @@ def write_machine_glb(
     from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     assert project.skeleton is not None
-    engine = ForEngine(stand=anatomy.base_pose(project))
-    write_glb(path, animations(project, machines), character, engine=engine)
+    engine = ForEngine(stand=anatomy.get_base_pose(project))
+    write_glb(path, make_animations(project, machines), character, engine=engine)

@@ -11,8 +11,8 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 
-from metagraph.common.file_names import file_stem, fold_file_name
-from metagraph.graph.ids import derived_id
+from metagraph.common.file_names import fold_file_name, make_file_stem
+from metagraph.graph.ids import derive_id
 
 MOST = 1 << 24  # Unity compares numbers as single precision, which is exact below
 
@@ -47,11 +47,11 @@ def name_apart(texts: Mapping[str, str], key: Callable[[str], str] = str) -> dic
 def name_files(idents: Mapping[str, str]) -> dict[str, str]:
     """Return for each name the stem of a file, apart on every system. idents: the id behind each name."""
     names = {ident: name for name, ident in idents.items()}
-    stems = name_apart({ident: file_stem(name) for ident, name in names.items()}, fold_file_name)
+    stems = name_apart({ident: make_file_stem(name) for ident, name in names.items()}, fold_file_name)
     return {name: stems[ident] for name, ident in idents.items()}
 
 
-def number_apart(idents: Iterable[str]) -> dict[str, int]:
+def assign_numbers(idents: Iterable[str]) -> dict[str, int]:
     """Return for each id a number from 1 on that derives from it, all different."""
     out: dict[str, int] = {}
     taken = {0}
@@ -59,7 +59,7 @@ def number_apart(idents: Iterable[str]) -> dict[str, int]:
         digits = re.fullmatch(r"[a-z]+(\d{1,7})", ident, re.ASCII)
         number, again = int(digits[1]) if digits else 0, 0
         while number in taken:
-            number, again = int(derived_id("n", ident, again)[1:]) % MOST, again + 1
+            number, again = int(derive_id("n", ident, again)[1:]) % MOST, again + 1
         taken.add(number)
         out[ident] = number
     return out

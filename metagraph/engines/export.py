@@ -11,8 +11,8 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.common.budgets import SOUND_FILE
-from metagraph.common.file_names import file_stem, make_file_stems
-from metagraph.common.files import is_inside, read_file, unforeseen_error
+from metagraph.common.file_names import make_file_stem, make_file_stems
+from metagraph.common.files import is_inside, make_unforeseen_error, read_file
 from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
 from metagraph.engines.export_document import list_used_clips, to_document
@@ -21,16 +21,16 @@ from metagraph.engines.targets.placing import Staging
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
-from metagraph.formats.store import writable
+from metagraph.formats.store import make_writable
 from metagraph.graph.check import check_project
 from metagraph.graph.face.curves import fit_curves_to_face
-from metagraph.graph.face.expression_presets import presets_of
+from metagraph.graph.face.expression_presets import make_presets
 from metagraph.graph.model import (
     Project,
 )
 from metagraph.motion.character_mesh import CharacterMesh, bind_character, explain_no_character
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.motion.skeleton import Skeleton, make_names_unique
 from metagraph.speech.sound import guess_sound_ending
 
 # Endings that engines import: of each, the containers that libsndfile names, and codings.
@@ -125,9 +125,9 @@ def require_exportable(project: Project) -> tuple[str, ...]:
     )
 
 
-def stem_of(project: Project) -> str:
+def make_export_stem(project: Project) -> str:
     """Return the stem of a project's exported files."""
-    return file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
+    return make_file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
 
 
 def write_project_files(
@@ -142,13 +142,13 @@ def write_project_files(
     """Write a project that has clips without checking it for errors. The arguments are those of
     `export_project`. `voices` are copied into `lines/`, if they are given.
     """
-    project = writable(project)
+    project = make_writable(project)
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
     used = list_used_clips(project)
-    stem, target = stem_of(project), Path(folder)
+    stem, target = make_export_stem(project), Path(folder)
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
-    names = unique_names([entry.name for entry in used])
+    names = make_names_unique([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = [clip.dense for clip in list_exported_clips(project)]
     notes = _write_glb(glb, clips, project, character, compress)
@@ -183,7 +183,7 @@ def _sounds(document: c.Export, folder: Path, voices: LineSounds) -> tuple[tuple
             inside = f"lines/{name}{ending if as_it_is else '.wav'}"
             content = read_file(source, SOUND_FILE) if as_it_is else _as_wav(source, line.channel)
         except Exception as error:  # one bad sound never spoils an export
-            missing.append(f"the sound of line '{ident}' is left out: {unforeseen_error(source, error)}")
+            missing.append(f"the sound of line '{ident}' is left out: {make_unforeseen_error(source, error)}")
             document.lines[ident] = msgspec.structs.replace(line, audio=None, channel=None)
             continue
         write_atomically(folder / inside, content)
@@ -246,7 +246,7 @@ def _write_glb(
             phrase("Choose a folder that you can write to."),
         ) from None
     shown, notes = place_mesh_on(skeleton, character, project.hidden)
-    presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}
+    presets = make_presets(shown.morphs, project.face.channels) if shown is not None else {}
     write_glb(path, clips, shown, engine=ForEngine(expressions=presets), compress=compress)
     return notes
 
@@ -286,7 +286,7 @@ def list_exported_clips(project: Project) -> list[Clip]:
     project's face.
     """
     used = [e for e in list_used_clips(project) if e.motion is not None]
-    names = unique_names([entry.name for entry in list_used_clips(project)])
+    names = make_names_unique([entry.name for entry in list_used_clips(project)])
     assert project.skeleton is not None
     return [
         replace(fit_curves_to_face(project, e.motion).renamed(name), skeleton=project.skeleton)

@@ -10,8 +10,8 @@ from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import export_contacts
 from metagraph.graph.model import MetaGraph, Project
 from metagraph.graph.repeating import cycle_of
-from metagraph.playback.planning.prominence import prominence
-from metagraph.playback.planning.vigour import mean_speed_within, vigours
+from metagraph.playback.planning.prominence import measure_prominence
+from metagraph.playback.planning.vigour import mean_speed_within, measure_vigours
 from metagraph.playback.timing.phases import find_phases_within
 
 NONE: list[Any] = []  # as most have it: an export is made to be written, and nothing is added to it
@@ -67,11 +67,11 @@ def list_exported_actions(project: Project, graph: MetaGraph) -> list[c.Exported
                 0.0,
                 dict(action.joint_weights) if action.joint_weights else {},
                 timing.repeat if cycle_of(action.kind, timing, start, end) > 0.0 else UNSET,
-                prominence(project, action) if action.kind in ("gesture", "fidget") else 0.0,
+                measure_prominence(project, action) if action.kind in ("gesture", "fidget") else 0.0,
                 action.prominence,
             )
         )
-    found_vigours = vigours(project, graph, speeds)
+    found_vigours = measure_vigours(project, graph, speeds)
     if found_vigours:
         for made in out:
             made.vigour = found_vigours.get(made.id, 0.0)

@@ -12,7 +12,7 @@ from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.posing.contacts import has_contacts
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 
 
 def export_contacts(action: Action) -> list[c.ExportedContact]:
@@ -51,7 +51,7 @@ def read_contacts(contacts: Sequence[c.ExportedContact]) -> tuple[ContactSpan, .
 
 def export_contact_rig(project: Project) -> c.ExportedContactRig | None:
     """Return what runtimes need for contacts and the guard, None if neither does anything."""
-    rig = rigs_of(project).contacts if has_contacts(project) else None
+    rig = get_rigs(project).contacts if has_contacts(project) else None
     if rig is None:
         return None
     return c.ExportedContactRig(

@@ -9,7 +9,7 @@ from metagraph.engines.export_actions import NONE, list_exported_actions
 from metagraph.engines.export_contacts import export_contact_rig
 from metagraph.engines.export_listing import ListedExport, list_machine
 from metagraph.engines.export_rig import export_rig, list_export_voices
-from metagraph.engines.export_weight import export_weight_rig, feet_of, find_arm_rows
+from metagraph.engines.export_weight import export_weight_rig, find_arm_rows, find_planted_feet
 from metagraph.graph import anatomy
 from metagraph.graph.model import KINDS, LAYERS, REACH, ClipEntry, MetaGraph, Project, Settings
 from metagraph.motion.dense_keys import count_steps
@@ -37,7 +37,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
     parts, sides, scales = (
         anatomy.project_parts(project),
         anatomy.project_sides(project),
-        anatomy.scales(project),
+        anatomy.find_joint_scales(project),
     )
     joints = [
         c.Joint(
@@ -51,11 +51,11 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         )
         for i, name in enumerate(skeleton.names)
     ]
-    pose = anatomy.base_pose(project)
+    pose = anatomy.get_base_pose(project)
     steps = {e.id: _steps(e) for e in list_used_clips(project)}
     frame = project.base.frame * steps.get(project.base.clip or "", 1)
     base = c.Base(project.base.clip, frame, pose.rotations.tolist(), pose.translations.tolist())
-    arms, feet = find_arm_rows(project), feet_of(project)
+    arms, feet = find_arm_rows(project), find_planted_feet(project)
     clips = [
         c.ExportedClip(
             e.id,

@@ -14,14 +14,14 @@ from metagraph.graph.face.rig import CHANNELS, FaceRig
 from metagraph.graph.model import Project
 from metagraph.playback.life.body import Body, EyeAt, Looker, Quaternion, Vector
 from metagraph.playback.life.voice import Voice
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 
 STEPS = 1e4  # a mouth shape's weight is written in steps of this part of one
 
 
 def export_rig(project: Project) -> c.Rig | None:
     """Return the resolved body of a project, None if nothing of it can live."""
-    body = rigs_of(project).body
+    body = get_rigs(project).body
     if body.empty:
         return None
     long, face = len(body.chain), body.face

@@ -12,7 +12,7 @@ from metagraph.motion.contact_solve import ContactArm, ContactRig
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import (
     Weight,
     find_arm_track_rows,
@@ -26,7 +26,7 @@ def export_weight_rig(project: Project) -> c.ExportedWeightRig | None:
     """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None if none
     does.
     """
-    weight = rigs_of(project).weight
+    weight = get_rigs(project).weight
     rig = weight.rig
     if rig is None or not (_sways(project, rig) or _plants(project)):
         return None
@@ -48,7 +48,7 @@ def export_weight_rig(project: Project) -> c.ExportedWeightRig | None:
 
 def find_arm_rows(project: Project) -> dict[str, list[list[int]]]:
     """Return the rows of the clips that the arms' layer plays, none where no body answers its arms."""
-    weight = rigs_of(project).weight
+    weight = get_rigs(project).weight
     if weight.rig is None or not _sways(project, weight.rig):
         return {}
     clips = {action.clip for action in project.graphs["arms"].actions.values()}
@@ -57,9 +57,9 @@ def find_arm_rows(project: Project) -> dict[str, list[list[int]]]:
     }
 
 
-def feet_of(project: Project) -> dict[str, list[list[int]]]:
+def find_planted_feet(project: Project) -> dict[str, list[list[int]]]:
     """Return where the feet are in the clips of the layer that moves the legs; none where none is planted."""
-    weight = rigs_of(project).weight
+    weight = get_rigs(project).weight
     if weight.feet_layer is None or not _plants(project):
         return {}
     clips = {action.clip for action in project.graphs[weight.feet_layer].actions.values()}
@@ -71,7 +71,7 @@ def _sways(project: Project, rig: WeightRig) -> bool:
 
 
 def _plants(project: Project) -> bool:
-    return has_planted_feet(project) and rigs_of(project).weight.feet_layer is not None
+    return has_planted_feet(project) and get_rigs(project).weight.feet_layer is not None
 
 
 def read_weight(

@@ -62,7 +62,7 @@ def read_export(path: str | Path, motions: bool = True, resolved: bool = False) 
         raise FileError(path, str(error), error.where, "Export it again.") from None
 
 
-def glb_of(path: Path) -> Path:
+def find_export_glb(path: Path) -> Path:
     """Return the GLB of an export's JSON. Raises FileError as `read_export` and `find_glb_beside`."""
     return find_glb_beside(path, _decoded(path))
 

@@ -22,11 +22,11 @@ from metagraph.engines.script_replaced import list_replaced_cases
 from metagraph.engines.script_shades import list_shade_cases
 from metagraph.engines.script_timely import list_timely_cases
 from metagraph.engines.script_weight import list_weight_cases
-from metagraph.graph.expand import chain
+from metagraph.graph.expand import find_chain
 from metagraph.graph.model import LAYERS, Layer, Project
 
 
-def cases(project: Project) -> Iterator[ScriptCase]:
+def make_script_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield the cases that suit a project."""
     for part in (
         _alone,
@@ -206,7 +206,7 @@ def _stances(project: Project) -> Iterator[ScriptCase]:
         )
         if begin is None:
             continue
-        lost = [s for s in graph.stances if s != begin and chain(graph, begin, s) is None]
+        lost = [s for s in graph.stances if s != begin and find_chain(graph, begin, s) is None]
         lost += [s for s in graph.stances if not graph.of(s, "stance") and s not in lost]
         for stance in lost[:2]:
             there = [a for a in graph.actions.values() if a.stance == stance or a.end_stance == stance]
@@ -215,7 +215,7 @@ def _stances(project: Project) -> Iterator[ScriptCase]:
             yield _once(
                 f"{layer}: no way to {stance}", "what cannot be reached, or could not rest, is refused", asks
             )
-        ways = {s: way for s in graph.stances if s != begin and (way := chain(graph, begin, s))}
+        ways = {s: way for s in graph.stances if s != begin and (way := find_chain(graph, begin, s))}
         if not ways:
             continue
         far = max(ways, key=lambda s: len(ways[s]))

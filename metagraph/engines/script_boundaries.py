@@ -11,7 +11,7 @@ from typing import Any
 from metagraph.engines.script_parts import Ask, ScriptCase, ScriptStep, ask, list_some_actions
 from metagraph.engines.script_parts import make_case as _with_poses
 from metagraph.graph.model import LAYERS, Action, Layer, Project
-from metagraph.graph.requests import request_from
+from metagraph.graph.requests import make_request
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.extend_performance import hear_asks
 
@@ -53,7 +53,7 @@ def make_plan_case(
 
 
 def _planned(project: Project, asks: Sequence[Ask], end: float = 20.0, idle: bool = False) -> Plan:
-    return hear_asks(project, Plan(1, 0.0), 0.0, [request_from(dict(each)) for each in asks], end, {}, idle)
+    return hear_asks(project, Plan(1, 0.0), 0.0, [make_request(dict(each)) for each in asks], end, {}, idle)
 
 
 def _first(project: Project, layer: Layer) -> tuple[Action, Cue]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from metagraph.engines.script_parts import ScriptCase, ask, make_case
 from metagraph.graph.model import Project
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import has_planted_feet
 
 MOST = 6  # actions in a case
@@ -28,7 +28,7 @@ EDGES = (
 def list_feet_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield cases of one of that layer's actions after the other, from stance to stance, and of its loops."""
     planted = has_planted_feet(project) and project.skeleton is not None
-    layer = rigs_of(project).weight.feet_layer if planted else None
+    layer = get_rigs(project).weight.feet_layer if planted else None
     if layer is None:
         return
     body = project.graphs[layer]

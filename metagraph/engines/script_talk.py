@@ -9,7 +9,7 @@ from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.planning.hashing import Bits
 from metagraph.speech import word_gestures
 from metagraph.speech.language_packs import list_language_packs
-from metagraph.speech.text_gestures import words_for_gesture
+from metagraph.speech.text_gestures import load_gesture_words
 from metagraph.speech.word_gestures import GestureAsk, ToldWord, gesture_asks, proposed_for, sentence_end
 
 # Language, text, seconds it takes if that is reported, and whether a synthesiser tells when its words come.
@@ -32,18 +32,18 @@ def list_talks() -> list[dict[str, Any]]:
     """
     out: list[dict[str, Any]] = []
     for n, (language, text, seconds, told) in enumerate(TEXTS):
-        lexicon = words_for_gesture(language)
+        lexicon = load_gesture_words(language)
         every = (lexicon.question, lexicon.exclamation, lexicon.clause, *lexicon.rules)
         arms = ["beat"] if n % 4 == 3 else sorted({tag for rule in every for tag in rule.tags})
         words = word_gestures.words_of(ALPHABET, text)
         times = [[0.25 * k, 0.25 * k + 0.125] for k in range(len(words))][:-1] if told else []
         row: dict[str, Any] = {"language": language, "text": text, "seconds": seconds, "told": times}
         row |= {"seed": 0xFFFFFFFF - 3 * n, "at": 0.5 * n, "arms": arms, "head": n % 3 != 2}
-        out.append({**row, **talk_of(row)})
+        out.append({**row, **analyse_talk(row)})
     return out
 
 
-def talk_of(row: Mapping[str, Any]) -> dict[str, Any]:
+def analyse_talk(row: Mapping[str, Any]) -> dict[str, Any]:
     """Return what comes of a text: "sentences", "words" (each its text, in small letters, start, end, the
     mark behind it) and "asks" (do, layer, tags, at, stroke, late).
     """
@@ -55,7 +55,7 @@ def talk_of(row: Mapping[str, Any]) -> dict[str, Any]:
         words,
         set(row["arms"]),
         row["head"],
-        words_for_gesture(row["language"]),
+        load_gesture_words(row["language"]),
         set(pack.small) if pack is not None else set(),
         Bits(row["seed"]),
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from metagraph.engines.script_parts import ScriptCase, ask, make_case
 from metagraph.graph.model import Project
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import has_weight
 
 MOST = 6  # actions in a case
@@ -16,7 +16,7 @@ MOST = 6  # actions in a case
 
 def list_weight_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield cases of one arms' action after the other, and of some that the body plays, too."""
-    rig = rigs_of(project).weight.rig if has_weight(project) and project.skeleton is not None else None
+    rig = get_rigs(project).weight.rig if has_weight(project) and project.skeleton is not None else None
     arms, body = project.graphs["arms"], project.graphs["body"]
     if rig is None or rig.strength <= 0:
         return

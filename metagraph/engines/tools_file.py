@@ -6,10 +6,10 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.engines.export import stem_of
+from metagraph.engines.export import make_export_stem
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import Project
-from metagraph.graph.offered import tools
+from metagraph.graph.offered import list_tools
 
 
 def name_tools_file(stem: str) -> str:
@@ -18,9 +18,9 @@ def name_tools_file(stem: str) -> str:
 
 
 def write_tools(project: Project, folder: Path) -> Path:
-    """Write `offered.tools` as JSON into a folder; return the file. Raises FileError if it cannot
+    """Write `offered.list_tools` as JSON into a folder; return the file. Raises FileError if it cannot
     be written.
     """
-    path = folder / name_tools_file(stem_of(project))
-    write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
+    path = folder / name_tools_file(make_export_stem(project))
+    write_atomically(path, msgspec.json.format(msgspec.json.encode(list_tools(project)), indent=1))
     return path

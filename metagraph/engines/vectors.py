@@ -19,24 +19,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.engines.reading import read_export
-from metagraph.engines.script import cases
+from metagraph.engines.script import make_script_cases
 from metagraph.engines.script_boundaries import list_boundary_cases
 from metagraph.engines.script_parts import ScriptCase, ScriptStep
 from metagraph.engines.script_sounds import list_heard_marks, list_streams
-from metagraph.engines.script_talk import list_talks, talk_of
+from metagraph.engines.script_talk import analyse_talk, list_talks
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.offered import offered_requests
-from metagraph.graph.requests import AnyRequest, RequestError, request_from
+from metagraph.graph.offered import list_offered_requests
+from metagraph.graph.requests import AnyRequest, RequestError, make_request
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.plan import LayerPlan, Plan, Report
 from metagraph.playback.planning.choice import key32
-from metagraph.playback.planning.extend_performance import hear_asks, since
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.planning.extend_performance import drop_ended, hear_asks
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import has_weight
 
 Array = NDArray[Any]
@@ -63,20 +63,20 @@ def play_case(project: Project, case: ScriptCase) -> Plan:
         refused: list[Report] = []
         for ask in step.asks:
             try:
-                asks.append(request_from(dict(ask)))
+                asks.append(make_request(dict(ask)))
             except RequestError as error:
                 at = step.now + project.settings.lookahead if step.now > 0 else 0.0
                 refused.append(Report(ask.get("id", ""), "not-understood", str(error), "arms", at))
         plan = hear_asks(project, plan, step.now, asks, step.end, case.stances, case.idle)
         plan = replace(plan, reports=(*plan.reports, *refused))
         if step.forget is not None:
-            plan = since(plan, step.forget)
+            plan = drop_ended(plan, step.forget)
     return plan
 
 
 def list_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield all cases that suit a project."""
-    yield from cases(project)
+    yield from make_script_cases(project)
     yield from list_boundary_cases(project)
 
 
@@ -93,7 +93,7 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> P
         "export": export.name,
         "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
-        "described": offered_requests(project),
+        "described": list_offered_requests(project),
         "heard": [
             {"rate": rate, "pieces": pieces, "marks": list_heard_marks(rate, pieces)}
             for rate, pieces in list_streams()
@@ -110,7 +110,7 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> P
 def _expected(project: Project, case: ScriptCase) -> dict[str, Any]:
     plan = play_case(project, case)
     times = case.times or _telling(plan)
-    answers = has_weight(project) and rigs_of(project).weight.rig is not None
+    answers = has_weight(project) and get_rigs(project).weight.rig is not None
     evaluator = Evaluator(plan, project)
     living = (*times, *_living(plan, answers)) if len(case.steps) + case.idle > 1 else times
     return {
@@ -121,7 +121,7 @@ def _expected(project: Project, case: ScriptCase) -> dict[str, Any]:
         "stances": dict(case.stances),
         "steps": [{"now": s.now, "end": s.end, "asks": list(s.asks), "forget": s.forget} for s in case.steps],
         "plan": plan_data(plan),
-        "life": life_data(plan),
+        "life": make_life_data(plan),
         "poses": [
             pose for alive in case.alive for pose in _poses(evaluator, living if alive else times, alive)
         ],
@@ -167,7 +167,7 @@ def _layer(plan: LayerPlan) -> dict[str, Any]:
 LIFE_LANES = ("modes", "breaths", "aversions", "saccades", "blinks", "swells", "emphases")
 
 
-def life_data(plan: Plan) -> dict[str, Any]:
+def make_life_data(plan: Plan) -> dict[str, Any]:
     """Return what the life layers were drawn to do, as plain data."""
     life = plan.life
     targets = [
@@ -319,13 +319,15 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
     for seed, words, expected in data["hashes"]:
         if key32(seed, *words) != expected:
             out.failures.append(("hashes", f"{seed} {words}"))
-    wrong = _unlike(offered_requests(project), data["described"], "described") if "described" in data else []
+    wrong = (
+        _unlike(list_offered_requests(project), data["described"], "described") if "described" in data else []
+    )
     out.failures += [("described", what) for what in wrong]
     for n, sound in enumerate(data.get("heard", ())):
         wrong = _unlike(list_heard_marks(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")
         out.failures += [("heard", what) for what in wrong]
     for n, row in enumerate(data.get("talked", ())):
-        found = talk_of(row)
+        found = analyse_talk(row)
         wrong = _unlike(found, {name: row[name] for name in found}, f"talked[{n}]")
         out.failures += [("talked", what) for what in wrong]
     for case in data["cases"]:
@@ -341,7 +343,10 @@ def find_case_differences(project: Project, case: Mapping[str, Any]) -> list[str
     plan = play_case(
         project, ScriptCase(case["name"], "", steps, case["seed"], case["idle"], case["stances"])
     )
-    out = [*_unlike(plan_data(plan), case["plan"], "plan"), *_unlike(life_data(plan), case["life"], "life")]
+    out = [
+        *_unlike(plan_data(plan), case["plan"], "plan"),
+        *_unlike(make_life_data(plan), case["life"], "life"),
+    ]
     if out:
         return out
     evaluator = Evaluator(plan, project)
@@ -369,7 +374,9 @@ def _unlike(ours: Any, theirs: Any, where: str) -> list[str]:
 def _apart(ours: Mapping[str, Any], expected: Mapping[str, Any]) -> list[str]:
     far = float(np.linalg.norm(np.array(ours["positions"]) - np.array(expected["positions"]), axis=-1).max())
     turn = float(
-        degrees(rotation.angle_between(np.array(ours["rotations"]), np.array(expected["rotations"])).max())
+        degrees(
+            rotation.measure_angle_between(np.array(ours["rotations"]), np.array(expected["rotations"])).max()
+        )
     )
     names = ours["morphs"].keys() | expected["morphs"].keys()
     weight = max(

@@ -10,12 +10,12 @@ from pathlib import Path
 import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
-from metagraph.common.files import is_file, is_inside, open_file, read_file, unforeseen_error
+from metagraph.common.files import is_file, is_inside, make_unforeseen_error, open_file, read_file
 from metagraph.common.network_paths import explain_refusal
 from metagraph.engines import contract as c
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets.placing import RECORD, ExportRecord, find_forsaken_staging, read_record
-from metagraph.engines.targets.registry import targets
+from metagraph.engines.targets.registry import list_targets
 from metagraph.errors import FileError, clean_text
 from metagraph.formats.clips import digest
 from metagraph.formats.gltf.file import open_gltf
@@ -26,7 +26,7 @@ from metagraph.formats.project.verified import (
     VerifiedPart,
     count_in_words,
     describe_whole,
-    fault_of,
+    make_fault,
 )
 from metagraph.formats.project.verifying import BROKEN, find_unfinished_files, verify_project
 from metagraph.formats.store import SUFFIX
@@ -169,7 +169,7 @@ def _record(record: ExportRecord, jsons: Sequence[Path]) -> VerifiedPart:
                 "Export it again: that replaces the old files and the new ones.",
             )
         )
-    if record.target not in targets():
+    if record.target not in list_targets():
         faults.append(
             VerificationFault(
                 RECORD, f"names a target that there is not: '{clean_text(record.target)}'.", AGAIN
@@ -203,7 +203,7 @@ def _file_faults(folder: Path, record: ExportRecord) -> Iterator[VerificationFau
         try:
             found = digest(folder / name)
         except Exception as error:  # one bad file never hides the others
-            yield fault_of(unforeseen_error(folder / name, error), clean_text(name))
+            yield make_fault(make_unforeseen_error(folder / name, error), clean_text(name))
             continue
         if found == wanted:
             continue
@@ -246,7 +246,7 @@ def _pair(path: Path) -> list[VerifiedPart]:
     try:
         project = read_export(path, motions=False)
     except FileError as error:
-        parts = [VerifiedPart("JSON", "not whole", (fault_of(error),))]
+        parts = [VerifiedPart("JSON", "not whole", (make_fault(error),))]
         glb = path.with_suffix(".glb")
         return [*parts, _readable(glb)] if document is None and is_file(glb) else parts
     assert document is not None
@@ -283,7 +283,7 @@ def _readable(glb: Path) -> VerifiedPart:
     try:
         takes = read_gltf_clips(glb)
     except FileError as error:
-        return VerifiedPart("GLB", "not whole", (fault_of(error),))
+        return VerifiedPart("GLB", "not whole", (make_fault(error),))
     return VerifiedPart(
         "GLB", f"can be read, {count_in_words(len(takes), 'animation')}; nothing to compare it with"
     )
@@ -310,7 +310,7 @@ def _glb(path: Path, document: c.Export) -> list[VerifiedPart]:
             return [pair, VerifiedPart("animations", "not compared, since the GLB is another")]
         faults = list(_content_faults(document, glb))
     except Exception as error:  # whatever a damaged file does to its reader
-        return [VerifiedPart("GLB", "not whole", (fault_of(unforeseen_error(glb, error)),))]
+        return [VerifiedPart("GLB", "not whole", (make_fault(make_unforeseen_error(glb, error)),))]
     animations = count_in_words(len(document.clips), "animation")
     words = f"{animations} and {count_in_words(len(document.joints), 'joint')} are there"
     return [pair, VerifiedPart("animations", "not whole" if faults else words, tuple(faults))]
@@ -365,5 +365,5 @@ def _sounds(path: Path, document: c.Export) -> VerifiedPart:
             try:
                 read_head(place)
             except FileError as error:
-                faults.append(fault_of(error, clean_text(name)))
+                faults.append(make_fault(error, clean_text(name)))
     return VerifiedPart("sounds", describe_whole(len(names), faults, "are there"), tuple(faults))

@@ -40,7 +40,7 @@ class _Bone:
     name: str
     direction: Array = field(default_factory=lambda: np.zeros(3))
     length: float = 0.0
-    axis: Array = field(default_factory=lambda: rotation.identity_rotations())
+    axis: Array = field(default_factory=lambda: rotation.make_identity_rotations())
     dof: tuple[str, ...] = ()
     parent: str = "root"
 
@@ -67,7 +67,7 @@ def read_amc(path: str | Path) -> Clip:
         raise FileError(path, phrase("it has no frames"), "", _AGAIN)
     unit = math.pi / 180 if figure.degrees else 1.0
     metres = figure.scale * _INCH
-    rotations = rotation.identity_rotations((len(frames), len(names)))
+    rotations = rotation.make_identity_rotations((len(frames), len(names)))
     places = np.zeros((len(frames), 3))
     for joint, name in enumerate(names):
         bone = figure.bones.get(name, _Bone(name))
@@ -75,7 +75,7 @@ def read_amc(path: str | Path) -> Clip:
         if not dof:
             continue
         table = np.array([f.get(name, [0.0] * len(dof)) for f in frames], float)
-        turn = rotation.identity_rotations((len(frames),))
+        turn = rotation.make_identity_rotations((len(frames),))
         for column, kind in zip(table.T, dof, strict=True):
             if kind[:1] == "r" and kind[1:] in _AXES:
                 about = rotation.from_axis_angle(np.array(_AXES[kind[1:]]), column * unit)
@@ -91,13 +91,15 @@ def read_amc(path: str | Path) -> Clip:
         for p in (figure.bones[n].parent for n in names[1:])
     ]
     skeleton = Skeleton(
-        names, np.array(parents), rotation.identity_rotations((len(names),)), np.array(rest, float)
+        names, np.array(parents), rotation.make_identity_rotations((len(names),)), np.array(rest, float)
     )
     notes = (
         phrase("on the skeleton of {name}", name=skeleton_file.name),
         phrase("it does not say its frames a second: {rate:g} were taken", rate=RATE),
     )
-    return Clip(path.stem, skeleton, RATE, rotation.continuous(rotations), places[:, None], (0,), notes=notes)
+    return Clip(
+        path.stem, skeleton, RATE, rotation.make_continuous(rotations), places[:, None], (0,), notes=notes
+    )
 
 
 def _skeleton_of(path: Path) -> Path:

@@ -134,7 +134,7 @@ def find_reader_for(suffix: str) -> ClipReader | None:
     return next((reader for reader in READERS if suffix in reader.suffixes), None)
 
 
-def clip_suffixes() -> tuple[str, ...]:
+def list_clip_suffixes() -> tuple[str, ...]:
     """Return the extensions of clip files, in lower case; without .json, which most often is something else:
     there only the content tells.
     """

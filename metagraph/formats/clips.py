@@ -11,16 +11,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.common.budgets import MOTION_FILE, SOUND_FILE
-from metagraph.common.files import guard_reader, open_file, unforeseen_error
+from metagraph.common.files import guard_reader, make_unforeseen_error, open_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.clip_readers import (
     FACE_READERS,
     HEAD,
     ClipReader,
-    clip_suffixes,
     find_reader,
     find_reader_for,
+    list_clip_suffixes,
 )
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, note_repair
@@ -53,7 +53,7 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """
     path = Path(path)
     wanted, found = find_reader_for(path.suffix.lower()), _reader(path)
-    remedy = phrase("Clips are read from {endings}.", endings=", ".join(clip_suffixes()))
+    remedy = phrase("Clips are read from {endings}.", endings=", ".join(list_clip_suffixes()))
     if wanted is None:
         raise FileError(
             path,
@@ -140,7 +140,7 @@ def find_clip_files(folder: str | Path) -> list[Path]:
     """Return every clip file in a folder and below, sorted by path ignoring case. Hidden files and folders
     are skipped.
     """
-    folder, endings = Path(folder), (*clip_suffixes(), ".json")
+    folder, endings = Path(folder), (*list_clip_suffixes(), ".json")
     found = [
         p
         for p in folder.rglob("*")
@@ -209,7 +209,7 @@ def _import_clips(
         try:
             takes = begun[path].result() if path in begun else read_clips(path)
         except Exception as error:  # readers may raise any kind of error
-            failures.append(unforeseen_error(path, error))
+            failures.append(make_unforeseen_error(path, error))
             continue
         for number, clip in enumerate(takes):
             if clip.face_of:

@@ -21,7 +21,7 @@ from typing import Any, Literal
 
 from numpy.typing import NDArray
 
-from metagraph.common.files import unforeseen_error
+from metagraph.common.files import make_unforeseen_error
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
@@ -131,7 +131,7 @@ def read_corpus(
         except FileError as error:
             failures.append(f"{name}: {error}")
         except Exception as error:  # one bad conversation spoils no other
-            failures.append(str(unforeseen_error(next(iter(files.files)), error)))
+            failures.append(str(make_unforeseen_error(next(iter(files.files)), error)))
         else:
             recorded.append(one)
             notes += [f"{name}: {told}" for told in one.notes]

@@ -77,7 +77,7 @@ def read_face_export(path: str | Path) -> Clip:
     if not (np.abs(weights) <= MOST).all():  # also what is no number
         raise FileError(path, phrase("a weight is not from 0 to 1"), "", _REMEDY)
     shapes = tuple(name for _, name in order)
-    still = rotation.identity_rotations((len(rows), len(FACE_SKELETON)))
+    still = rotation.make_identity_rotations((len(rows), len(FACE_SKELETON)))
     return Clip(
         path.stem,
         FACE_SKELETON,

@@ -40,7 +40,7 @@ class Remedy:
     strangers: tuple[Strangers, ...] = ()
 
 
-def remedies(result: Imported) -> tuple[Remedy, ...]:
+def list_remedies(result: Imported) -> tuple[Remedy, ...]:
     """Return what can be done about what an import left, the most useful first."""
     out: list[Remedy] = []
     sure = tuple(s for s in result.apart if not s.joint_map.missing)
@@ -106,7 +106,7 @@ def describe_import(result: Imported, window: bool = True) -> str:
         left.append(plural_phrase("{count:,} unusable file", "{count:,} unusable files", broken))
     if left:
         parts.append(phrase("Skipped: {left}", left=join_phrases(left, ", ")))
-    to_do = remedies(result)
+    to_do = list_remedies(result)
     if to_do:
         steps = [_STEPS[r.do](r) if window else r.command for r in to_do]
         parts.append(phrase("To do: {steps}", steps=join_phrases(steps, ", ")))

@@ -7,19 +7,19 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from metagraph.common.files import unforeseen_error
+from metagraph.common.files import make_unforeseen_error
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError, describe_error
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.store import make_path_for_project, relative
+from metagraph.formats.store import make_path_for_project, make_path_relative
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import add_clips
 from metagraph.graph.face.curves import describe_unused_curves
 from metagraph.graph.face.takes import is_face_take, put_on_body
 from metagraph.graph.model import Project
-from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
+from metagraph.motion.adopt import SkeletonMismatchError, adopt, describe_difference, measure_bone_difference
 from metagraph.motion.clip import Clip, ClipError
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
+from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint
 from metagraph.motion.roles import find_roles, is_humanoid
 from metagraph.motion.skeleton import Skeleton
 
@@ -58,7 +58,7 @@ class Strangers:
 
     @property
     def fingerprint(self) -> str:
-        return fingerprint(self.skeleton)
+        return make_fingerprint(self.skeleton)
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -175,10 +175,10 @@ def import_files(
             lost.append((path, take, replace(own, notes=own.notes[len(clip.notes) :])))
             key = clip.skeleton.fingerprint
             if key not in apart:
-                apart[key] = (bone_difference(clip.skeleton, skeleton), [])
+                apart[key] = (measure_bone_difference(clip.skeleton, skeleton), [])
             apart[key][1].append(clip.name)
         except SkeletonMismatchError as error:
-            key = fingerprint(clip.skeleton)
+            key = make_fingerprint(clip.skeleton)
             foreign.setdefault(key, []).append((name, take, digests[path], clip))
             reasons.setdefault(key, str(error))
     for name, take, content, clip in faces:
@@ -219,7 +219,7 @@ def _map(
     source = clips[0][3].skeleton
     assert bringing.project.skeleton is not None
     found = (
-        remembered(fingerprint(source), fingerprint(bringing.project.skeleton))
+        remembered(make_fingerprint(source), make_fingerprint(bringing.project.skeleton))
         if remembered is not None
         else None
     )
@@ -296,7 +296,7 @@ def bring_over(
             why = describe_error(error)
             failures.append(phrase("{file}: {why}. {remedy}", file=Path(path).name, why=why, remedy=_ALONE))
         except Exception as error:  # one bad clip never spoils the others
-            failures.append(unforeseen_error(path, error).words)
+            failures.append(make_unforeseen_error(path, error).words)
     maps = {strangers.fingerprint: joint_map} if loaded else {}
     return Imported(
         tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded)
@@ -318,7 +318,7 @@ def find_strangers(project: Project, folder: Path | None, clips: Iterable[str] =
                 takes = read_clips((folder or Path()) / entry.path, entry.as_is)
             except FileError:
                 continue  # a missing or broken file is reported elsewhere
-            if entry.take < len(takes) and fingerprint(takes[entry.take].skeleton) == entry.brought_from:
+            if entry.take < len(takes) and make_fingerprint(takes[entry.take].skeleton) == entry.brought_from:
                 found = takes[entry.take].renamed(entry.name)
                 groups.setdefault(entry.brought_from, []).append(
                     (entry.path, entry.take, entry.digest, found)
@@ -327,7 +327,7 @@ def find_strangers(project: Project, folder: Path | None, clips: Iterable[str] =
 
 
 def _name(path: Path, folder: Path | None) -> str:
-    return relative(path, folder) if folder is not None else path.as_posix()
+    return make_path_relative(path, folder) if folder is not None else path.as_posix()
 
 
 def _as_known(
@@ -411,7 +411,9 @@ def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:
     for group in groups.values():
         skeleton = group[0].skeleton
         fitting = sum(
-            len(g) for g in groups.values() if g is group or difference(g[0].skeleton, skeleton) is None
+            len(g)
+            for g in groups.values()
+            if g is group or describe_difference(g[0].skeleton, skeleton) is None
         )
         if len(groups) > 1 and is_humanoid(find_roles(skeleton)):
             fitting *= PERSON

@@ -16,8 +16,8 @@ from metagraph.speech.language_packs import (
     LanguagePack,
     PackError,
     PackFile,
-    language_of,
     list_language_packs,
+    make_language,
 )
 
 REMEDY = (
@@ -38,7 +38,7 @@ def read_pack(path: str | Path) -> LanguagePack:
     if not isinstance(data, dict):
         raise FileError(path, "holds no fields", "its beginning", REMEDY)
     try:
-        return language_of(msgspec.convert(data, PackFile), list_language_packs())
+        return make_language(msgspec.convert(data, PackFile), list_language_packs())
     except msgspec.ValidationError as error:
         field, _, cause = explain_invalid_ask(error).rpartition(": ")
         raise FileError(path, cause, _place(field, lines), REMEDY) from None
@@ -52,7 +52,7 @@ def _place(field: str, lines: Mapping[str, int]) -> str:
     return f"line {lines[field]}, '{field}'" if field in lines else f"'{field}'"
 
 
-def packs_with(paths: Iterable[str | Path]) -> dict[str, LanguagePack]:
+def gather_packs(paths: Iterable[str | Path]) -> dict[str, LanguagePack]:
     """Return the packs that come with the program and those of files, which take the place of one of the same
     code. Raises FileError.
     """

@@ -235,7 +235,7 @@ def _clip(
     still = np.zeros((len(grid), 1, 3))
     weights = np.stack([of[name] for name in shapes], 1)
     return Clip(
-        path.stem, FACE_SKELETON, rate, rotation.continuous(rotations), still, (0,), shapes, weights,
+        path.stem, FACE_SKELETON, rate, rotation.make_continuous(rotations), still, (0,), shapes, weights,
         (*notes, *more),
     )  # fmt: skip
 
@@ -265,7 +265,7 @@ def _turned(of: dict[str, Array], turns: dict[str, Array]) -> tuple[Array, list[
             signs[way] = float(np.sign(agree))
         else:
             eyes = False
-    out = rotation.identity_rotations((len(next(iter(turns.values()))), 3))
+    out = rotation.make_identity_rotations((len(next(iter(turns.values()))), 3))
     for n, name in enumerate(("Head", "LeftEye", "RightEye")):
         if n and not eyes:
             break

@@ -23,7 +23,7 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.common.programs import run_program, system_program
+from metagraph.common.programs import find_system_program, run_program
 from metagraph.formats.new_file import Access, access_of, open_new
 
 REFRESH = 30.0  # seconds
@@ -47,7 +47,7 @@ class Owner(msgspec.Struct, frozen=True):
     since: float
 
 
-def new_owner() -> Owner:
+def make_owner() -> Owner:
     """Return a new sitting of this process."""
     pid = os.getpid()
     return Owner(platform.node(), _machine(), _user(), pid, _started(pid), uuid.uuid4().hex[:12], time.time())
@@ -95,7 +95,7 @@ def _started(pid: int) -> str:
                 raise ProcessLookupError(pid)
             return fields[19].decode()
         return ""
-    ps = system_program("ps")
+    ps = find_system_program("ps")
     if ps is not None:
         with contextlib.suppress(OSError):  # TimeoutError is one
             return run_program([ps, "-o", "lstart=", "-p", str(pid)], 5.0)[1].strip()
@@ -217,7 +217,7 @@ def lock_path(saved: Path) -> Path:
     return saved.with_name(f".{saved.name}.lock")
 
 
-def holder(path: Path, look_only: bool = False) -> Holder | None:
+def find_holder(path: Path, look_only: bool = False) -> Holder | None:
     """Return who has the lock file at `path`, None if nobody. `look_only` is as in `is_gone`."""
     try:
         content = path.read_bytes()
@@ -258,7 +258,7 @@ class Lock:
             try:
                 handle = open_new(self.path, access_of(self.saved) or self.like)
             except FileExistsError:
-                found = holder(self.path)
+                found = find_holder(self.path)
                 if found is None:
                     continue  # released just now
                 if found.content == self._content:

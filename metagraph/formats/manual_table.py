@@ -16,13 +16,19 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from metagraph.common.csv_text import csv_text, restore_cell
+from metagraph.common.csv_text import format_csv, restore_cell
 from metagraph.common.files import guard_reader, read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import groups as manual_groups
-from metagraph.graph.manual.edits import add_link, get_machine, link_refusal, manual_name, update_links
+from metagraph.graph.manual.edits import (
+    add_link,
+    explain_link_refusal,
+    get_machine,
+    get_manual_name,
+    update_links,
+)
 from metagraph.graph.manual.machine import ANY, WHENS, Alias, Link, Manual, State
 from metagraph.graph.model import Layer, Project
 
@@ -144,7 +150,7 @@ def _linked(
 ) -> tuple[Project, int, int]:
     """Return the project with links drawn and set, how many are new, and how many were changed."""
     for a, b in pairs:
-        if (why := link_refusal(project, layer, a, b)) is not None:
+        if (why := explain_link_refusal(project, layer, a, b)) is not None:
             raise EditError(why)
     there = {(x.source, x.target): x.id for x in get_machine(project, layer).links.values()}
     new = 0
@@ -253,11 +259,14 @@ def encode_machine_as_table(manual: Manual) -> str:
     """Return a machine's links as a table with commas, which `parse_manual_table` reads."""
     rows: list[Sequence[str]] = [COLUMNS]
     for x in manual.links.values():
-        ends = ("any" if x.source == ANY else manual_name(manual, x.source), manual_name(manual, x.target))
+        ends = (
+            "any" if x.source == ANY else get_manual_name(manual, x.source),
+            get_manual_name(manual, x.target),
+        )
         c = x.condition
         numbers = (f"{c.weight:g}", _exit_word(x), f"{x.blend:g}")
         rows.append((*ends, c.when, c.trigger if c.when == "request" else "", *numbers))
-    return csv_text(rows)
+    return format_csv(rows)
 
 
 def _exit_word(link: Link) -> str:

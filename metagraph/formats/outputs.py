@@ -1,8 +1,8 @@
 """Decide which files a command may overwrite: none that somebody else made, that it reads, or that is open
 elsewhere.
 
-While a command runs (`writing`), each writer of files asks first (`claim_output`). An existing file may be
-replaced if this user's Metagraph wrote it and nobody has changed it since, which a note in the user's data
+While a command runs (`check_outputs`), each writer of files asks first (`claim_output`). An existing file may
+be replaced if this user's Metagraph wrote it and nobody has changed it since, which a note in the user's data
 folder shows (path and SHA-256), or with `--overwrite`. What the command reads, and a project that a window
 has open, is never replaced. Outside commands nothing is checked; the window asks on its own.
 """
@@ -23,7 +23,7 @@ from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import read_file
 from metagraph.common.user_folders import find_user_folder
 from metagraph.errors import FileError
-from metagraph.formats.locking import holder, lock_path
+from metagraph.formats.locking import find_holder, lock_path
 from metagraph.formats.replacing import replace_file
 
 STAGED = ".exporting-"  # beginning of the names of folders in which an export is staged
@@ -195,13 +195,13 @@ def refuse_locked(path: Path) -> None:
     """Raise FileError if a window, or another command, has a project file open."""
     if path.suffix.lower() not in (".yaml", ".yml"):
         return
-    found = holder(lock_path(_whole(path)))
+    found = find_holder(lock_path(_whole(path)))
     if found is None or found.sure:
         return
-    raise locked_error(path, found)
+    raise make_locked_error(path, found)
 
 
-def locked_error(path: Path, found: object) -> FileError:
+def make_locked_error(path: Path, found: object) -> FileError:
     """Return the error that says who has a project file open. `found` is a `Holder`."""
     owner = getattr(found, "owner", None)
     whose = f" by {owner.user} on {owner.host} (process {owner.pid})" if owner is not None else ""
@@ -217,7 +217,7 @@ _now: Outputs | None = None
 
 
 @contextmanager
-def writing(outputs: Outputs) -> Iterator[Outputs]:
+def check_outputs(outputs: Outputs) -> Iterator[Outputs]:
     """Check all files that are written inside the `with` block."""
     try:
         with _outputs_are(outputs):
@@ -236,7 +236,7 @@ def _outputs_are(outputs: Outputs | None) -> Iterator[None]:
         _now = before
 
 
-def writing_freely() -> AbstractContextManager[None]:
+def allow_all_outputs() -> AbstractContextManager[None]:
     """Check nothing inside the `with` block: for a window, which asks the user itself."""
     return _outputs_are(None)
 
@@ -281,7 +281,7 @@ def refuse_inputs(paths: Iterable[Path]) -> None:
             _now.refuse_input(path)
 
 
-def wrote(*paths: Path) -> None:
+def note_written(*paths: Path) -> None:
     """Remember files that were written without `claim_output`."""
     if _now is not None:
         for path in paths:

@@ -19,12 +19,12 @@ from metagraph.errors import FileError
 from metagraph.formats.clip_identity import remove_clip_identities
 from metagraph.formats.locking import Owner, is_gone
 from metagraph.formats.project.appended_file import Identity
-from metagraph.formats.project.canonical_text import canonical
+from metagraph.formats.project.canonical_text import read_canonical
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.formats.project.journal_records import JournalRecord, LostEdit, Records, read_records
 from metagraph.formats.project.replay import Replay
-from metagraph.formats.store import content_digest, file_digest, parse_project, read_project
+from metagraph.formats.store import compute_content_digest, compute_file_digest, parse_project, read_project
 from metagraph.graph.model import Project
 
 JOURNAL = 1 << 33  # bytes of a journal that are read: as many as a person can fill
@@ -108,7 +108,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     if begun is None:
         raise FileError(journal, "is damaged", "line 1", _KEPT)
     head, rest = begun
-    now = file_digest(saved)
+    now = compute_file_digest(saved)
     kept = rest[_settled(rest, now) :]
     all_of_it = len(kept) == len(rest)
     base = head.get("base") if all_of_it else None
@@ -175,7 +175,7 @@ def _begun(records: Records, journal: Path) -> tuple[Data, tuple[JournalRecord |
     if records.foundation:
         head |= _repaired(records.foundation, journal)
     if records.head and isinstance(head.get("text"), str) and not records.foundation:
-        head["saved"] = content_digest(head["text"].encode())
+        head["saved"] = compute_content_digest(head["text"].encode())
     return head, entries
 
 
@@ -238,7 +238,7 @@ def _saved_data(saved: Path | None, as_opened: bool) -> Data:
         return to_data(Project())
     if as_opened:
         with suppress(UnicodeDecodeError, KeyError, TypeError, AttributeError):
-            data = canonical(read_file(saved, TEXT_FILE).decode("utf-8-sig"))
+            data = read_canonical(read_file(saved, TEXT_FILE).decode("utf-8-sig"))
             if data is not None and data["metagraph"] == FORMAT:
                 data = remove_clip_identities(data)
                 Replay(data)  # has all that edits change, even if written by hand

@@ -11,7 +11,7 @@ from pathlib import Path
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.store import load_motions
 from metagraph.formats.takes import NAME, ONE_FRAME
-from metagraph.graph.clip_source import source_of, with_source
+from metagraph.graph.clip_source import get_source_clip, with_source
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import add_clips, remove_clips
 from metagraph.graph.model import ClipEntry, Project
@@ -72,7 +72,7 @@ class Reread:
         return remove_clips(replace(project, clips=clips), self.gone)
 
 
-def repairs_of(project: Project, clips: Iterable[str]) -> list[Repaired]:
+def list_repairs(project: Project, clips: Iterable[str]) -> list[Repaired]:
     """Return the repairs of clips, made or left out, each skipped take once."""
     out: list[Repaired] = []
     skipped: set[tuple[str, int]] = set()
@@ -171,7 +171,7 @@ def _fitting(
         skeleton = odd[0].motion.skeleton
         try:
             return {
-                i: with_source(e, adopt(source_of(e) or e.motion, skeleton))
+                i: with_source(e, adopt(get_source_clip(e) or e.motion, skeleton))
                 for i, e in entries.items()
                 if e.motion is not None
             }, skeleton

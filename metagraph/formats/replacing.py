@@ -17,7 +17,7 @@ def replace_file(path: Path, content: bytes, sync: bool = True, like: Access | N
 
     sync: wait until it is safely on the disk; before what is there goes. like: see `atomic.write_atomically`.
     """
-    temporary: Path | None = path.with_name(unfinished_name())
+    temporary: Path | None = path.with_name(make_unfinished_name())
     assert temporary is not None
     try:
         handle = open_new(temporary, access_of(path) or like)
@@ -61,6 +61,6 @@ def sync_folder(folder: Path) -> None:
             os.close(handle)
 
 
-def unfinished_name() -> str:
+def make_unfinished_name() -> str:
     """Return a name for a file that is being written by this process."""
     return f".saving-{process_mark()}-{uuid.uuid4().hex[:12]}"

@@ -75,7 +75,7 @@ def read_smpl(path: str | Path) -> Clip:
         notes.append(phrase("left out: {names}", names=", ".join(left)))
     places = places - [places[0, 0], 0.0, places[0, 2]]
     clip = Clip(
-        path.stem, skeleton, rate, rotation.continuous(turned), places[:, None], (0,), notes=tuple(notes)
+        path.stem, skeleton, rate, rotation.make_continuous(turned), places[:, None], (0,), notes=tuple(notes)
     )
     return _on_floor(clip, places)
 
@@ -254,7 +254,7 @@ def _skeleton(joints: int) -> Skeleton:
     place *= h
     order = np.array(parents)
     rest = place - np.where(order[:, None] < 0, 0.0, place[np.maximum(order, 0)])
-    return Skeleton(tuple(names), order, rotation.identity_rotations((len(names),)), rest)
+    return Skeleton(tuple(names), order, rotation.make_identity_rotations((len(names),)), rest)
 
 
 def _on_floor(clip: Clip, places: Array) -> Clip:

@@ -19,15 +19,15 @@ from typing import Any
 import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
-from metagraph.common.files import is_file, is_text, read_file, unforeseen_error
+from metagraph.common.files import is_file, is_text, make_unforeseen_error, read_file
 from metagraph.common.network_paths import (
     ANOTHER,
     explain_refusal,
     is_allowed,
     is_closed,
     make_escape_check,
-    original_path,
-    path_to_nowhere,
+    make_path_to_nowhere,
+    recover_original_path,
 )
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError, clean_text
@@ -40,7 +40,7 @@ from metagraph.formats.new_file import Access
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.formats.project.text import TextError, as_text, read_text_data, to_text
-from metagraph.graph.clip_source import source_of, with_changed_file, with_source
+from metagraph.graph.clip_source import get_source_clip, with_changed_file, with_source
 from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.face.takes import FACE_TAKE, is_face_take, put_on_body
@@ -197,7 +197,7 @@ def _parsed(text: str, path: Path) -> Data:
     return data
 
 
-def writable(project: Project) -> Project:
+def make_writable(project: Project) -> Project:
     """Return the project with only texts that can be written to any file; usually the project itself."""
     try:
         data = to_data(project)
@@ -213,16 +213,17 @@ def writable(project: Project) -> Project:
     return replace(clean, clips=clips, skeleton=project.skeleton, voices=project.voices)
 
 
-def file_digest(path: Path | None) -> str | None:
+def compute_file_digest(path: Path | None) -> str | None:
     """Return the SHA-256 of a project file in hex, to detect changes; None if there is no file. Raises
     FileError.
     """
     if path is None or not is_file(path):
         return None
-    return content_digest(read_file(path, TEXT_FILE))
+    return compute_content_digest(read_file(path, TEXT_FILE))
 
 
-def content_digest(content: bytes) -> str:
+def compute_content_digest(content: bytes) -> str:
+    """Return the SHA-256 of a content in hex."""
     return hashlib.sha256(content).hexdigest()
 
 
@@ -241,7 +242,7 @@ def move_projects(projects: Sequence[Project], old: Path | None, new: Path) -> l
     @cache
     def renew(text: str) -> str:
         whole = Path(text) if source is None else source / text
-        return text if is_closed(text) else relative(whole, new.parent)
+        return text if is_closed(text) else make_path_relative(whole, new.parent)
 
     def once(part: Any, move: Callable[[Any], Any]) -> Any:
         if id(part) not in moved:
@@ -279,7 +280,7 @@ def _closed_below(project: Project, folder: Path) -> Project:
         if is_closed(name) or not away(name):
             return name
         found = True
-        return path_to_nowhere(name)
+        return make_path_to_nowhere(name)
 
     made = _each_path(project, close)
     return made if found else project
@@ -333,7 +334,7 @@ def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
     }
 
 
-def absolute(project: Project, folder: Path) -> Project:
+def make_paths_absolute(project: Project, folder: Path) -> Project:
     """Return the project with its paths, relative to `folder`, made absolute, for a project without
     a file.
     """
@@ -356,13 +357,13 @@ def make_path_for_project(path: Path, folder: Path | None) -> str:
     for a name that is not text, because it could not be written.
     """
     whole = path.parent.resolve() / path.name  # a linked file keeps its name
-    name = relative(path, folder) if folder is not None else whole.as_posix()
+    name = make_path_relative(path, folder) if folder is not None else whole.as_posix()
     if not is_text(name):
         raise FileError(path, phrase("has a name that is not text"), phrase("its name"), phrase("Rename it."))
     return name
 
 
-def relative(path: Path, folder: Path) -> str:
+def make_path_relative(path: Path, folder: Path) -> str:
     """Return `path` relative to `folder` with `/` between parts; absolute if that is impossible (another
     drive).
 
@@ -403,7 +404,7 @@ def read_with_digest(path: Path, notes: list[str] | None = None) -> tuple[Projec
     read. Raises FileError.
     """
     content = _content(path)
-    return _decoded(content, path, notes), content_digest(content)
+    return _decoded(content, path, notes), compute_content_digest(content)
 
 
 def open_project(path: str | Path, progress: Callable[[int, int], None] | None = None) -> Opened:
@@ -425,7 +426,7 @@ def list_closed_paths(project: Project) -> tuple[str, ...]:
 
     def see(name: str) -> str:
         if is_closed(name):
-            found[original_path(name)] = None
+            found[recover_original_path(name)] = None
         return name
 
     _each_path(project, see)
@@ -434,7 +435,7 @@ def list_closed_paths(project: Project) -> tuple[str, ...]:
 
 def reopen_paths(project: Project) -> Project:
     """Return a project whose closed paths are as in its file, to be opened."""
-    return _each_path(project, original_path)
+    return _each_path(project, recover_original_path)
 
 
 def describe_closed_paths(names: Sequence[str]) -> str:
@@ -554,7 +555,7 @@ class _Loading:
         place = self.found.get(name) or find_clip_place(entries[0], self.folder)
         path = self._path(name, place)
         if name in self.found:
-            self.notes.append(f"'{original_path(name)}' has moved to '{path}'")
+            self.notes.append(f"'{recover_original_path(name)}' has moved to '{path}'")
         if is_closed(name) and name not in self.found:
             return  # one note says so for all of them
         if not is_file(place):
@@ -564,7 +565,7 @@ class _Loading:
             now = digest(place)
             read = {a: read_or_kept(place, now, a) for a in dict.fromkeys(e.as_is for e in entries)}
         except Exception as error:  # one bad file never spoils a project
-            self.notes.append(str(unforeseen_error(place, error)))
+            self.notes.append(str(make_unforeseen_error(place, error)))
             return
         if any(e.digest and now != e.digest for e in entries):
             self.notes.append(f"'{path}' has changed since it was imported")
@@ -582,7 +583,7 @@ class _Loading:
             return name
         if self.folder is None or Path(name).is_absolute():
             return place.resolve().as_posix()
-        return relative(place, self.folder)
+        return make_path_relative(place, self.folder)
 
     def _fitted(self, entry: ClipEntry, motion: Clip) -> Clip:
         """Return motion on the project's skeleton. If the project has none, it takes that of the first clip
@@ -608,7 +609,7 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
     clips = dict(project.clips)
     for ident in strangers:
         entry = clips[ident]
-        motion: Clip = source_of(entry)  # type: ignore[assignment]
+        motion: Clip = get_source_clip(entry)  # type: ignore[assignment]
         joint_map = bringing.known(motion)
         if is_face_take(motion):
             try:

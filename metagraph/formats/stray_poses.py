@@ -231,7 +231,7 @@ def _bones(skeleton: Skeleton) -> tuple[Array, Array, Array]:
     return lengths, inner, skeleton.parents[inner]
 
 
-def stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[StrayPoses]:
+def find_stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[StrayPoses]:
     """Return the frames of each clip that do not belong to it. `bound` are other poses besides the rest pose
     that a tool may have left there.
     """
@@ -357,16 +357,16 @@ def _straight(clip: Clip, frames: Array) -> bool:
     between those.
     """
     turns = clip.rotations[frames].astype(float)
-    far = rotation.angle_between(turns[-1], turns[0])
+    far = rotation.measure_angle_between(turns[-1], turns[0])
     moving = far > np.radians(5)
     if not moving.any():
         return True
     far = np.where(moving, far, 1.0)
-    parts = rotation.angle_between(turns[1:-1], turns[0]) / far
+    parts = rotation.measure_angle_between(turns[1:-1], turns[0]) / far
     for pose, part in zip(turns[1:-1], parts, strict=True):
         share = float(np.median(part[moving]))
         between = rotation.slerp(turns[0], turns[-1], np.full(len(far), share))
-        off = rotation.angle_between(pose, between)[moving] / far[moving]
+        off = rotation.measure_angle_between(pose, between)[moving] / far[moving]
         if share > 1.05 or float(np.median(off)) > 0.03:
             return False
     return True

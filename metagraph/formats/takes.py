@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.formats.stray_poses import StrayPoses, stray_poses
+from metagraph.formats.stray_poses import StrayPoses, find_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.skeleton import Pose
@@ -123,7 +123,7 @@ def drop_stray_poses(
 
     `bound` are other poses besides the rest pose that a tool may have left there.
     """
-    found = stray_poses(clips, bound)
+    found = find_stray_poses(clips, bound)
     return [_without(clip, some, as_is) for clip, some in zip(clips, found, strict=True)]
 
 
@@ -162,7 +162,9 @@ def _mended(clip: Clip, frames: Sequence[int]) -> Clip:
     weights = None if clip.weights is None else clip.weights.copy()
     if weights is not None:
         weights[at] = (weights[at - 1] + weights[at + 1]) / 2
-    return replace(clip, rotations=rotation.continuous(rotations), translations=translations, weights=weights)
+    return replace(
+        clip, rotations=rotation.make_continuous(rotations), translations=translations, weights=weights
+    )
 
 
 def make_takes_unique(clips: Sequence[Clip]) -> list[Clip]:

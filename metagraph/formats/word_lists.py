@@ -7,7 +7,7 @@ from pathlib import Path
 from metagraph.common.files import guard_reader
 from metagraph.errors import FileError
 from metagraph.formats.transcripts.words import read_text_file
-from metagraph.synthesis.iconic_words import WordWish, word_wish
+from metagraph.synthesis.iconic_words import WordWish, parse_word_wish
 
 REMEDY = "Write a line for each: big, or big = huge, tall, or big, huge where each may stand for the other."
 
@@ -21,7 +21,7 @@ def read_word_lists(path: str | Path) -> tuple[WordWish, ...]:
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         try:
-            out.append(word_wish(line))
+            out.append(parse_word_wish(line))
         except ValueError:
             raise FileError(path, f"'{line.strip()[:60]}' names no word", f"line {number}", REMEDY) from None
     if not out:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import Standardisation
-from metagraph.graph.conversation.model import Conversation, others_of
-from metagraph.speech.activity import activity as spoken
-from metagraph.speech.pitch import pitch
+from metagraph.graph.conversation.model import Conversation, list_other_sides
+from metagraph.speech.activity import find_activity as spoken
+from metagraph.speech.pitch import measure_pitch
 from metagraph.speech.sound import analyse_sound
 from metagraph.speech.soundtrack import resample_sound
 
@@ -229,7 +229,7 @@ def conversation_activity(conversation: Conversation, side: int, frames: int) ->
     """Return activity `[T, 4]` of a conversation as one side lives it: all of its segments are own speech."""
     found = [
         speaking([(s.start, s.end) for s in conversation.sides[n].segments], frames)
-        for n in (side, *others_of(conversation, side))
+        for n in (side, *list_other_sides(conversation, side))
     ]
     return one_hot(found[0], np.any(found[1:], axis=0))  # of several, whoever answers is the partner
 
@@ -239,7 +239,7 @@ def detect_voice_activity(own: Array, partner: Array | None, rate: int, frames: 
     answers.
     """
     heard = [analyse_sound(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
-    tones = [pitch(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
+    tones = [measure_pitch(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
     found = []
     for n in range(2):
         other = heard[1 - n] if len(heard) == 2 else None

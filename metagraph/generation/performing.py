@@ -27,7 +27,7 @@ from metagraph.generation.poses import PoseError, PoseRig, find_rig
 from metagraph.generation.sampler import TakeSampler, clip_of, hear_activity
 from metagraph.generation.stored import Model
 from metagraph.graph import anatomy
-from metagraph.graph.conversation.model import Conversation, others_of, side_name
+from metagraph.graph.conversation.model import Conversation, get_side_name, list_other_sides
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -59,7 +59,7 @@ def project_rig(project: Project) -> PoseRig:
     """
     if project.skeleton is None:
         raise PoseError("the project has no clips, so there is nobody to move: import some first")
-    base = anatomy.base_pose(project).rotations
+    base = anatomy.get_base_pose(project).rotations
     return find_rig(project.skeleton, anatomy.project_roles(project), base)
 
 
@@ -72,7 +72,11 @@ def find_first_pose(model: Model, project: Project) -> Array | None:
     """Return the pose `[J, 4]` that a model goes on from: the project's base pose, None on another
     skeleton.
     """
-    return anatomy.base_pose(project).rotations.astype(np.float64) if moves_skeleton(model, project) else None
+    return (
+        anatomy.get_base_pose(project).rotations.astype(np.float64)
+        if moves_skeleton(model, project)
+        else None
+    )
 
 
 def as_project_clip(project: Project, clip: Clip) -> tuple[Clip, tuple[str, ...]]:
@@ -91,7 +95,7 @@ def as_project_clip(project: Project, clip: Clip) -> tuple[Clip, tuple[str, ...]
                 f"the model was made for another skeleton, and its motion cannot be retargeted: {error}"
             ) from None
         notes = ("The model was made for another skeleton: its motion is retargeted.",)
-    base = anatomy.base_pose(project)
+    base = anatomy.get_base_pose(project)
     moved = sorted({joint for line in rig.lines for joint in line})
     rotations = np.repeat(base.rotations[None], clip.frames, 0)
     rotations[:, moved] = clip.rotations[:, moved]
@@ -110,13 +114,13 @@ def read_side_sound(conversation: Conversation, side: int, folder: Path) -> tupl
     count = max(1, round(conversation.length * SOUND_RATE))
     out, notes = np.zeros((2, count), np.float32), []
     heard_once: set[tuple[int, str | None, int | None]] = set()  # several may share one sound
-    for n in (side, *others_of(conversation, side)):
+    for n in (side, *list_other_sides(conversation, side)):
         of = conversation.sides[n]
         if of.audio is None:
             notes.append(
                 phrase(
                     "{side_name} has no sound: only the speech times are used.",
-                    side_name=side_name(conversation, n),
+                    side_name=get_side_name(conversation, n),
                 )
             )
             continue

@@ -254,7 +254,7 @@ def clip_of(
         name,
         rig.skeleton,
         FPS,
-        rotation.continuous(rotation.normalize(rotations)).astype(np.float32),
+        rotation.make_continuous(rotation.normalize(rotations)).astype(np.float32),
         root.astype(np.float32),
         notes=(f"generated {made} ({model.card.kind})",),
     )

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
-from metagraph.common.files import unforeseen_error
+from metagraph.common.files import make_unforeseen_error
 from metagraph.errors import FileError
 from metagraph.formats.clips import digest, find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
@@ -147,7 +147,7 @@ def read_take_batch(
         try:
             there = read_clips(each.clip)
         except Exception as error:  # one bad file spoils no other
-            failures.append(str(unforeseen_error(each.clip, error)))
+            failures.append(str(make_unforeseen_error(each.clip, error)))
             continue
         clip = max(there, key=lambda c: c.frames)
         read.append((each, clip))
@@ -176,7 +176,7 @@ def read_take_batch(
             failures.append(str(error))
             continue
         except Exception as error:
-            failures.append(str(unforeseen_error(each.clip, error)))
+            failures.append(str(make_unforeseen_error(each.clip, error)))
             continue
         takes.append(take)
         clips.append(clip)

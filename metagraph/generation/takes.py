@@ -34,9 +34,9 @@ from metagraph.generation.poses import (
     gram_schmidt,
     scale_of,
 )
-from metagraph.graph.conversation.model import Conversation, segments_heard_by
+from metagraph.graph.conversation.model import Conversation, list_segments_heard_by
 from metagraph.motion.clip import Clip
-from metagraph.motion.mirror import mirror, pairs_of
+from metagraph.motion.mirror import find_joint_twins, mirror
 
 Array = NDArray[Any]
 
@@ -241,7 +241,7 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
 
 
 def _marks(conversation: Conversation, side: int) -> TakeMarks:
-    segments = segments_heard_by(conversation, side)
+    segments = list_segments_heard_by(conversation, side)
     return TakeMarks(
         tuple(s.peak for s in segments if s.kind == "clause" and s.peak is not None),
         tuple(s.start for s in segments if s.kind == "response"),
@@ -254,7 +254,7 @@ def mirror_take(rig: PoseRig, clip: Clip, take: Take) -> Take:
     if the skeleton is not the same on both sides.
     """
     try:
-        poses = encode_clip(rig, mirror(clip, pairs_of(clip.skeleton)), FPS)
+        poses = encode_clip(rig, mirror(clip, find_joint_twins(clip.skeleton)), FPS)
     except ValueError as error:
         raise TakeError(str(error)) from None
     first = round(take.source.start * FPS)

@@ -16,7 +16,7 @@ from time import monotonic
 import msgspec
 from msgspec import Struct
 
-from metagraph.common.programs import python_command, start
+from metagraph.common.programs import make_python_command, start
 from metagraph.common.wording import phrase
 from metagraph.generation.train_plan import STOP, folder_of
 
@@ -85,7 +85,7 @@ class TrainingProcess:
         self._heard, self._said, self.last = heard, list[str](), TrainingEvent(event="none")
         self.error, self.path = "", ""
         self._process = start(
-            python_command("metagraph.generation.training", *words),
+            make_python_command("metagraph.generation.training", *words),
             stdin=subprocess.PIPE,  # closed when this process ends, however that comes about
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.manual.machine import State
 from metagraph.graph.model import Action, Part, Project
-from metagraph.motion.roles import body_parts, find_roles, joint_sides
+from metagraph.motion.roles import assign_body_parts, find_joint_sides, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
@@ -34,7 +34,7 @@ def _roles(skeleton: Skeleton, corrections: tuple[tuple[str, str], ...]) -> Mapp
 def _parts(
     skeleton: Skeleton, roles: tuple[tuple[str, str], ...], corrections: tuple[tuple[str, Part], ...]
 ) -> tuple[Part, ...]:
-    found = list(body_parts(skeleton, dict(_roles(skeleton, roles))))
+    found = list(assign_body_parts(skeleton, dict(_roles(skeleton, roles))))
     for joint, part in corrections:
         if joint in skeleton:
             found[skeleton.index(joint)] = part
@@ -43,7 +43,7 @@ def _parts(
 
 @lru_cache(maxsize=32)
 def _sides(skeleton: Skeleton, roles: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
-    return tuple(joint_sides(skeleton, dict(_roles(skeleton, roles))))
+    return tuple(find_joint_sides(skeleton, dict(_roles(skeleton, roles))))
 
 
 def project_roles(project: Project) -> Mapping[str, int]:
@@ -65,7 +65,7 @@ def project_sides(project: Project) -> tuple[str, ...]:
     return _sides(project.skeleton, tuple(sorted(project.roles.items()))) if project.skeleton else ()
 
 
-def action_mask(project: Project, action: Action) -> Array | None:
+def make_action_mask(project: Project, action: Action) -> Array | None:
     """Return `[J]` float32, 1 where the action moves a joint, 0 where its stance shows, and between where it
     moves it in part; None when it moves all of all.
 
@@ -95,7 +95,7 @@ def as_joint_mask(skeleton: Skeleton, weights: Mapping[str, float]) -> dict[str,
     }
 
 
-def soft_edge(
+def make_soft_edge(
     skeleton: Skeleton, part: Sequence[Part], weights: Mapping[str, float], over: int
 ) -> dict[str, float]:
     """Return weights of joints 0..1 that rise evenly over so many joints, 1 or more, where a mask begins: at
@@ -153,7 +153,7 @@ def _mask(
     return out
 
 
-def scales(project: Project) -> Array:
+def find_joint_scales(project: Project) -> Array:
     """Return `[2, J]` float32: which joints turn farther from the stance, and which less far, where an
     action is played larger or smaller than made (`Cue.extent`), 1 or 0. Hands keep their shape, and elbows,
     which bend one way, are not bent on.
@@ -178,7 +178,7 @@ def _scales(skeleton: Skeleton, corrections: tuple[tuple[str, str], ...]) -> Arr
     return out
 
 
-def base_pose(project: Project) -> Pose:
+def get_base_pose(project: Project) -> Pose:
     """Return the base pose `[J, ...]`, float32; the rest pose while its clip is missing. Raises ValueError
     without a skeleton.
     """

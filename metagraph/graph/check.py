@@ -10,12 +10,12 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from metagraph.common.network_paths import ANOTHER, explain_refusal, original_path
+from metagraph.common.network_paths import ANOTHER, explain_refusal, recover_original_path
 from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
-from metagraph.graph.checks.base import check_base, stance_name
-from metagraph.graph.expand import reachable
+from metagraph.graph.checks.base import check_base, get_stance_name
+from metagraph.graph.expand import find_reachable
 from metagraph.graph.manual.check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
@@ -50,7 +50,7 @@ def check_project(project: Project) -> list[Problem]:
     return sorted(found, key=lambda p: order[p.severity])
 
 
-def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
+def list_grave_problems(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
     """Return the problems for which a command fails: errors and unreachable stances; also warnings if
     `strict`.
     """
@@ -63,7 +63,7 @@ def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
 
 def _why_missing(entry: ClipEntry) -> tuple[str, str]:
     """Return the reason why a clip has no motion, and the remedy."""
-    path = original_path(entry.path)
+    path = recover_original_path(entry.path)
     if path != entry.path:
         return (
             phrase("the file of clip '{name}' was not opened: {why} ({path})",
@@ -118,7 +118,7 @@ def _character(project: Project) -> Iterator[Problem]:
 
 def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
     layer = graph.layer
-    led_to = reachable(graph, graph.start or "")
+    led_to = find_reachable(graph, graph.start or "")
     for stance in graph.stances.values():
 
         def at(
@@ -441,7 +441,7 @@ class _ActionCheck:
 
     def travel(self) -> Iterator[Problem]:
         """Yield a problem if its hips end elsewhere over the ground, so that the character slides back."""
-        motion = end_gaps.motion_of(self.project, self.action)
+        motion = end_gaps.get_action_motion(self.project, self.action)
         if motion is None or self.project.skeleton is None or self.graph.weight("legs") <= 0:
             return
         hips = anatomy.project_roles(self.project).get("hips", 0)
@@ -483,7 +483,7 @@ class _ActionCheck:
                 yield self.at(
                     "warning",
                     "far-start" if gap.edge == "begins" else "far-end",
-                    end_gaps.describe_gap(gap, stance_name(project, gap.stance)),
+                    end_gaps.describe_gap(gap, get_stance_name(project, gap.stance)),
                     phrase("Trim it, lengthen its blend, or move it to a stance that it fits."),
                 )
 

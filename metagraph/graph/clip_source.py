@@ -10,14 +10,14 @@ from metagraph.motion.in_place import keep_in_place
 from metagraph.motion.retime import Course, apply_retiming
 
 
-def source_of(entry: ClipEntry) -> Clip | None:
+def get_source_clip(entry: ClipEntry) -> Clip | None:
     """Return a clip as it was read, None while its file is missing."""
     return entry.source if entry.source is not None else entry.motion
 
 
-def course_of(entry: ClipEntry) -> Course | None:
+def get_clip_course(entry: ClipEntry) -> Course | None:
     """Return which moment of the clip as it was read plays when; None while its file is missing."""
-    source = source_of(entry)
+    source = get_source_clip(entry)
     return None if source is None else Course(entry.retime, source.duration, source.fps)
 
 

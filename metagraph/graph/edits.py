@@ -32,7 +32,7 @@ from metagraph.graph.model import (
     Timing,
 )
 from metagraph.motion.clip import Clip
-from metagraph.motion.features import loop_error
+from metagraph.motion.features import measure_loop_error
 
 SEAM = 0.01  # metres a loop may be open before its seam is blended
 _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
@@ -72,7 +72,7 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
             skeleton = clip.skeleton
         there = known.get((path, take), [])
         if not there:
-            there = [ids.new_id(project, "c", path, take, more=clips)]
+            there = [ids.make_id(project, "c", path, take, more=clips)]
             clips[there[0]] = ClipEntry(there[0], clip.name, path, take)
         for entry in [clips[i] for i in there]:
             entry = replace(entry, brought_from=clip.brought_from)
@@ -116,7 +116,7 @@ def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] =
     """Make a stance with `clips` as its loops. Performances start in the first stance of a layer."""
     graph = project.graphs[layer]
     name = find_free_name(_clean(name), {s.name for s in graph.stances.values()})
-    stance = Stance(ids.new_id(project, "s", layer, name), layer, name)
+    stance = Stance(ids.make_id(project, "s", layer, name), layer, name)
     graph = graph.but(stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
     project = project.with_graph(graph)
     return place_clips(project, clips, layer, "stance", stance.id) if clips else project
@@ -211,7 +211,7 @@ def place_clips(
     changes: dict[str, Action | None] = {}
     for clip in clips:
         entry = project.clips[clip]
-        ident = ids.new_id(project, "a", layer, kind, stance, end_stance or "", clip, more=changes)
+        ident = ids.make_id(project, "a", layer, kind, stance, end_stance or "", clip, more=changes)
         changes[ident] = Action(
             id=ident,
             clip=clip,
@@ -244,7 +244,7 @@ def make_default_timing(entry: ClipEntry, kind: Kind) -> Timing:
     """
     quarter = round(entry.duration / 4, 3)
     if kind == "stance":
-        open_by = loop_error(entry.motion) if entry.motion is not None and entry.frames > 1 else 0.0
+        open_by = measure_loop_error(entry.motion) if entry.motion is not None and entry.frames > 1 else 0.0
         return Timing(blend_in=min(0.4, quarter) if open_by > SEAM else 0.0, blend_out=0.0, loop=True)
     return Timing(blend_in=min(0.2, quarter), blend_out=min(0.25, quarter))
 

@@ -146,7 +146,7 @@ def list_connections(project: Project, graph: MetaGraph) -> Iterator[Connection]
                 yield Connection(source, idents[target], leave, blend)
 
 
-def chain(graph: MetaGraph, start: str, goal: str) -> tuple[str, ...] | None:
+def find_chain(graph: MetaGraph, start: str, goal: str) -> tuple[str, ...] | None:
     """Return the stances after `start` on the shortest way of transitions to `goal`; () if already there,
     None if there is no way.
 
@@ -171,7 +171,7 @@ def chain(graph: MetaGraph, start: str, goal: str) -> tuple[str, ...] | None:
     return None
 
 
-def reachable(graph: MetaGraph, start: str) -> frozenset[str]:
+def find_reachable(graph: MetaGraph, start: str) -> frozenset[str]:
     """Return the stances that transitions lead to from `start`, itself included."""
     seen = {start}
     queue = [start]

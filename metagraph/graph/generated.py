@@ -26,6 +26,6 @@ def add_generated(
     return replace(project, clips=clips)
 
 
-def origin(entry: ClipEntry) -> str:
+def describe_origin(entry: ClipEntry) -> str:
     """Return who made a clip, in words; "" for one that was not generated."""
     return f"made by the model '{entry.made_by}', seed {entry.made_seed}" if entry.made_by else ""

@@ -18,19 +18,19 @@ DIGITS = 9
 _LOWEST = 10 ** (DIGITS - 1)
 
 
-def new_id(project: Project, letter: str, *made_of: object, more: Collection[str] = ()) -> str:
+def make_id(project: Project, letter: str, *made_of: object, more: Collection[str] = ()) -> str:
     """Return an id that nothing in the project has.
 
     letter: what kind of thing it is, as in other ids of its kind. made_of: what tells this thing from others
     of its kind. more: ids taken by what is being added to the project just now.
     """
-    ident, number = derived_id(letter, *made_of), len(more) + project.size
+    ident, number = derive_id(letter, *made_of), len(more) + project.size
     while ident in more or project.has(ident):  # the same thing once more
-        ident, number = derived_id(letter, *made_of, number), number + 1
+        ident, number = derive_id(letter, *made_of, number), number + 1
     return ident
 
 
-def derived_id(letter: str, *made_of: object) -> str:
+def derive_id(letter: str, *made_of: object) -> str:
     """Return the letter and nine digits that derive from what a thing is made of."""
     text = repr([str(x) for x in made_of])
     number = int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "big")

@@ -359,7 +359,7 @@ MANNER_DIALS: tuple[Dial, ...] = (
 )
 
 
-def manner(life: Life, mode: Mode) -> Manner:
+def get_manner(life: Life, mode: Mode) -> Manner:
     """Return what a mode makes of the amounts: the project's own, else the default."""
     return life.modes.get(mode, MANNERS[mode])
 
@@ -383,12 +383,12 @@ def scaled(
     )
 
 
-def same_life(one: Life | None, other: Life) -> bool:
-    """Whether two are the same settings."""
+def is_same_life(one: Life | None, other: Life) -> bool:
+    """Return whether two are the same settings."""
     return one is other or one == other
 
 
-def limits(kind: type[Struct]) -> dict[str, tuple[float, float]]:
+def list_limits(kind: type[Struct]) -> dict[str, tuple[float, float]]:
     """Return the range of each number of `Life` or `Manner`."""
     out = {}
     for name, hint in get_type_hints(kind, include_extras=True).items():
@@ -408,7 +408,9 @@ def with_life(life: Life, mode: Mode | None = None, **changes: Any) -> Life:
         return out
     if mode not in MODES:
         raise ValueError(f"there is no mode '{mode}'; modes are {', '.join(MODES)}")
-    return msgspec.structs.replace(life, modes={**life.modes, mode: _checked(manner(life, mode), changes)})
+    return msgspec.structs.replace(
+        life, modes={**life.modes, mode: _checked(get_manner(life, mode), changes)}
+    )
 
 
 def _checked(value: Any, changes: Mapping[str, Any]) -> Any:

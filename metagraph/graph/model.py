@@ -414,10 +414,10 @@ class Project:
     markers and other notes by the same ids. `tiers` says for each annotation tier what it was last read as.
     `notes` are texts by the id of their action, "" for the project's own. `marks` identify clips so that they
     are found again, by clip id. `joint_maps` say how clips of other skeletons are retargeted, by the
-    `joint_map.fingerprint` of those. `language` is the code of the language that conversations are read in
-    ("de"), or "auto" to detect it from their words. `manual` has the state machines drawn by hand, by layer.
-    `voices` has the analysed sound of each line (`playback.life.voice.Voice`) that was read so far; it is
-    never saved. `touch` says whether contacts hold and hands stay outside the body.
+    `joint_map.make_fingerprint` of those. `language` is the code of the language that conversations are read
+    in ("de"), or "auto" to detect it from their words. `manual` has the state machines drawn by hand, by
+    layer. `voices` has the analysed sound of each line (`playback.life.voice.Voice`) that was read so far; it
+    is never saved. `touch` says whether contacts hold and hands stay outside the body.
     """
 
     name: str = "untitled"

@@ -23,7 +23,7 @@ _NEVER = ("do", "told")  # fields of requests that are no matter of an agent's
 _AFTER = {"type": "number", "minimum": 0, "maximum": 1e6, "description": "seconds from now; wins over `at`"}
 
 
-def offered_requests(
+def list_offered_requests(
     project: Project, words: Sequence[str] = ENGINES, most: Mapping[str, int] = EVERYTHING
 ) -> dict[str, Any]:
     """Return what may be asked for, as plain data. words: of requests that are understood. most: of actions
@@ -80,7 +80,7 @@ def _action(project: Project, action: Action) -> dict[str, Any]:
     return out
 
 
-def tools(project: Project, words: Sequence[str] = ENGINES) -> list[dict[str, Any]]:
+def list_tools(project: Project, words: Sequence[str] = ENGINES) -> list[dict[str, Any]]:
     """Return a tool for each word of requests: `name`, the word; `description`; `input_schema`, a JSON Schema
     (draft 2020-12) of the request's other fields, in which tags, stances, actions, lines and points are those
     of this character. What a model gives for tool `gesture` is asked for as `{"do": "gesture", **given}`.

@@ -31,7 +31,7 @@ class Pasted:
     left_out: tuple[str, ...]
 
 
-def request_text(project: Project, performance: str, idents: Collection[str]) -> str:
+def write_request_text(project: Project, performance: str, idents: Collection[str]) -> str:
     """Return some requests of a performance as a text, with the names of what they speak of."""
     chosen = [x for x in project.performances[performance].asks if x.id in idents]
     names = {x.id: name for x in chosen if (name := _name(project, x)) is not None}
@@ -66,7 +66,7 @@ def paste_requests(project: Project, performance: str, text: str, at: float) -> 
         data = json.loads(text)
         if data["metagraph"] != KIND or data["version"] > VERSION or len(data["requests"]) > MOST:
             raise ValueError
-        asks = [a.request_from(x) for x in data["requests"]]
+        asks = [a.make_request(x) for x in data["requests"]]
         names: dict[str, Any] = dict(data.get("names", {}))
     except (a.RequestError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise EditError(phrase("the clipboard contains no requests")) from None

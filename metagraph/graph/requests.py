@@ -287,7 +287,7 @@ def read_request(text: bytes | str) -> AnyRequest:
         raise RequestError(explain_invalid_ask(error)) from None
 
 
-def request_from(data: Any) -> AnyRequest:
+def make_request(data: Any) -> AnyRequest:
     """Make a request from plain data. Raises RequestError naming the field."""
     try:
         out: AnyRequest = msgspec.convert(data, AnyRequest)

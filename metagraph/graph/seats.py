@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from metagraph.graph import anatomy
-from metagraph.graph.checks.end_gaps import motion_of
-from metagraph.graph.face.rig import parts_for_face
+from metagraph.graph.checks.end_gaps import get_action_motion
+from metagraph.graph.face.rig import gather_face_parts
 from metagraph.graph.model import Action, Project
 from metagraph.graph.remembered import Remembered
 
@@ -26,10 +26,10 @@ class Seat:
     radius: float
 
 
-_known: Remembered[Seat | None] = Remembered(parts_for_face)
+_known: Remembered[Seat | None] = Remembered(gather_face_parts)
 
 
-def seat_of(project: Project) -> Seat | None:
+def find_seat(project: Project) -> Seat | None:
     """Return the seat a project's body sits on in its first stance that sits, None if it never does."""
     if project.skeleton is None:
         return None
@@ -43,9 +43,9 @@ def _found(project: Project, loops: list[Action]) -> Seat | None:
     if skeleton is None or not {"hips", *names} <= roles.keys():
         return None
     hips, *legs = (roles[name] for name in ("hips", *names))
-    _, standing = skeleton.globals(anatomy.base_pose(project))
+    _, standing = skeleton.globals(anatomy.get_base_pose(project))
     for loop in loops:
-        motion = motion_of(project, loop)
+        motion = get_action_motion(project, loop)
         if motion is None:
             continue
         _, at = skeleton.globals(motion.pose_at(project.span(loop)[0]))

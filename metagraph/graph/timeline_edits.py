@@ -16,7 +16,7 @@ from metagraph.graph.timeline import Lane, Marker, Timeline
 from metagraph.graph.words import LAYERS
 
 
-def timeline_of(project: Project, key: str) -> Timeline:
+def get_timeline(project: Project, key: str) -> Timeline:
     """Return the timeline of a performance or conversation, by its id; an empty one if nothing is noted."""
     return project.timelines.get(key) or Timeline()
 
@@ -25,7 +25,7 @@ def change_timeline(project: Project, key: str, **changes: Any) -> Project:
     """Set fields of a timeline. One that has only defaults is removed. Raises EditError for values out of
     range.
     """
-    before = timeline_of(project, key)
+    before = get_timeline(project, key)
     if "markers" in changes:
         changes["markers"] = tuple(sorted(changes["markers"], key=lambda m: m.at))
     if "cuts" in changes:
@@ -46,12 +46,12 @@ def add_marker(project: Project, key: str, at: float, name: str = "") -> tuple[P
     """Add a marker at a time, in seconds; return the project and the marker's id. A marker that is less than
     5 ms away is returned instead.
     """
-    before = timeline_of(project, key).markers
+    before = get_timeline(project, key).markers
     there = next((m for m in before if abs(m.at - at) < 0.005), None)
     if there is not None:
         return project, there.id
     at = round(max(0.0, at), 3)
-    marker = Marker(id=ids.new_id(project, "m", key, at), at=at, name=name)
+    marker = Marker(id=ids.make_id(project, "m", key, at), at=at, name=name)
     return change_timeline(project, key, markers=(*before, marker)), marker.id
 
 
@@ -59,13 +59,13 @@ def change_marker(project: Project, key: str, ident: str, **changes: Any) -> Pro
     """Set a marker's name or time."""
     markers = tuple(
         msgspec.structs.replace(m, **changes) if m.id == ident else m
-        for m in timeline_of(project, key).markers
+        for m in get_timeline(project, key).markers
     )
     return change_timeline(project, key, markers=markers)
 
 
 def remove_markers(project: Project, key: str, idents: Collection[str]) -> Project:
-    markers = tuple(m for m in timeline_of(project, key).markers if m.id not in idents)
+    markers = tuple(m for m in get_timeline(project, key).markers if m.id not in idents)
     return change_timeline(project, key, markers=markers)
 
 
@@ -84,7 +84,7 @@ def differs_only_in_timeline(before: Project, after: Project) -> bool:
     )
 
 
-def lane_of(ask: a.AnyRequest, project: Project) -> Lane:
+def find_lane(ask: a.AnyRequest, project: Project) -> Lane:
     """Return the lane that a request is in: its layer, or the stage."""
     match ask:
         case a.Gesture() | a.Fidget() | a.Change():

@@ -159,7 +159,7 @@ def _ends(words: Sequence[tuple[str, ...]]) -> Iterator[tuple[int, int]]:
 
 
 @lru_cache(maxsize=64)
-def kinds_of_words(
+def make_word_vocabularies(
     responses: tuple[str, ...], hesitations: tuple[str, ...]
 ) -> tuple[Vocabulary, Vocabulary, Vocabulary, Vocabulary]:
     """Return responses, hesitations, those that are either, and those that are both, to find; left without

@@ -33,7 +33,7 @@ def see(
     be, and where the project has nobody who could mimic.
     """
     from metagraph.mimicry.mimic import Mimic  # only sessions that have a camera pay for it
-    from metagraph.mimicry.performing import goals
+    from metagraph.mimicry.performing import find_goal_stances
 
     wish = (message.mirror, message.gaze, message.layers)
     if camera is None or camera.wish != wish or camera.project is not project:
@@ -47,7 +47,7 @@ def see(
         raise ValueError("points: give two numbers for every point, or three for every point")
     # Pictures and pose estimators count y downwards and z away from the camera.
     points = [(x, -y, *(-z for z in rest)) for x, y, *rest in message.points]
-    asks = camera.mimic.feed(now, points, message.confidence, goals(plan, now, prefix))
+    asks = camera.mimic.feed(now, points, message.confidence, find_goal_stances(plan, now, prefix))
     seen = {
         layer: found.name
         for layer, ident in camera.mimic.seen.items()

@@ -9,7 +9,7 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.offered import offered_requests
+from metagraph.graph.offered import list_offered_requests
 from metagraph.live import limits, messages
 from metagraph.live.generating import Generating
 from metagraph.live.ledger import Ledger
@@ -40,7 +40,7 @@ def with_id(data: bytes, ident: str) -> bytes:
     return b'{"id":' + messages.encode(ident) + b"," + data[1:] if ident else data
 
 
-def greeting(session: DescribedSession, stream: Stream | None, ident: str) -> bytes:
+def make_greeting(session: DescribedSession, stream: Stream | None, ident: str) -> bytes:
     """Return the reply to hello: what is spoken here, and in which order a stream's numbers come."""
     out: dict[str, Any] = {
         "state": "done",
@@ -64,7 +64,7 @@ def greeting(session: DescribedSession, stream: Stream | None, ident: str) -> by
     return with_id(messages.encode(out), ident)
 
 
-def status(session: DescribedSession) -> bytes:
+def describe_status(session: DescribedSession) -> bytes:
     """Return what plays at this moment."""
     now, plan = session.now, session.plan
     playing: dict[str, dict[str, Any]] = {}
@@ -100,7 +100,7 @@ def describe(project: Project, models: Sequence[str] = (), graphs: Sequence[str]
     """
     out = {
         "state": "done",
-        **offered_requests(project, messages.WORDS),
+        **list_offered_requests(project, messages.WORDS),
         "models": list(models),
         "graphs": list(graphs),
     }

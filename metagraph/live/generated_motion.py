@@ -164,7 +164,7 @@ class GeneratedMotion(LaidMotion):
     def _place(self, project: Project) -> None:
         """Find out what the joints that the model leaves alone are like, and what all are relative to."""
         super()._place(project)
-        rig, base = self.model.rig, anatomy.base_pose(project).rotations.astype(np.float64)
+        rig, base = self.model.rig, anatomy.get_base_pose(project).rotations.astype(np.float64)
         self._held = np.array(base)
         between = sorted({joint for line in rig.lines for joint in line[:-1]})
         self._held[between] = rig.base[between]

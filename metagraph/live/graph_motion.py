@@ -17,7 +17,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation.model import Segment, segments_heard_by
+from metagraph.graph.conversation.model import Segment, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.live.heard_voice import RATE as SAMPLES
 from metagraph.live.heard_voice import SIZE, HeardVoice
@@ -26,13 +26,13 @@ from metagraph.live.messages import Comes, Generate, Hear
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.voice import voice_for_speech
+from metagraph.playback.life.voice import choose_voice
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import Reach, find_composer
 from metagraph.playback.posing.layers import sample_offsets
 from metagraph.playback.posing.overlay import find_overlaid_joints
 from metagraph.suggest.tracks import RATE, track_seconds
-from metagraph.synthesis.extending.path import FADE, DriverGraph, PathExtender, Told, driver_graph
+from metagraph.synthesis.extending.path import FADE, DriverGraph, PathExtender, Told, make_driver_graph
 from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
 Array = NDArray[Any]
@@ -103,7 +103,7 @@ class LiveGraph:
         return known[2]
 
 
-def live_graph(
+def make_live_graph(
     takes: Sequence[Clip],
     speech: Sequence[Sequence[Segment]],
     k: int | None = None,
@@ -111,20 +111,20 @@ def live_graph(
     keys: float | None = None,
     most: int | None = None,
 ) -> LiveGraph:
-    """Return the graph of takes, made ready to drive. Arguments as for `graph.threshold`, `states.key_states`
-    and `graph.build`. Raises SynthesisError.
+    """Return the graph of takes, made ready to drive. Arguments as for `graph.find_threshold`,
+    `states.key_states` and `graph.build`. Raises SynthesisError.
     """
     from metagraph.synthesis.constraints import find_change_states, find_heard_at
-    from metagraph.synthesis.graph import build_graph, threshold
+    from metagraph.synthesis.graph import build_graph, find_threshold
     from metagraph.synthesis.states import KEYS, LEVEL, STEP, key_states, read_states
 
     states = read_states(takes)
     pairs = [(c, s) for c, s in zip(takes, speech, strict=True) if c.frames >= 2]
     told = [s for _, s in pairs]
-    limit = threshold(states, STEP if k is None else k, LEVEL if level is None else level)
+    limit = find_threshold(states, STEP if k is None else k, LEVEL if level is None else level)
     places = key_states(states, KEYS if keys is None else keys, find_change_states(states, told))
     graph = build_graph(states, limit, places, most)
-    return LiveGraph(tuple(c for c, _ in pairs), driver_graph(graph, find_heard_at(states, told)))
+    return LiveGraph(tuple(c for c, _ in pairs), make_driver_graph(graph, find_heard_at(states, told)))
 
 
 def list_recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
@@ -139,7 +139,7 @@ def list_recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segmen
             clip = None if entry is None else entry.motion
             if clip is None or clip.skeleton != project.skeleton or clip.frames < 2:
                 continue
-            said = [s for s in segments_heard_by(conversation, number) if s.start < clip.duration]
+            said = [s for s in list_segments_heard_by(conversation, number) if s.start < clip.duration]
             if said:
                 clips.append(clip)
                 speech.append(tuple(said))
@@ -320,7 +320,7 @@ class GraphMotion(LaidMotion):
 
 def as_clauses(speech: Speech, project: Project, begun: float) -> list[SpeechNews]:
     """Return a speech of the character as clauses that come, one round each of its accents."""
-    accents = [speech.start + float(x) for x in voice_for_speech(project.voices, speech).accents]
+    accents = [speech.start + float(x) for x in choose_voice(project.voices, speech).accents]
     accents = [x for x in accents if speech.start < x < speech.end]
     edges = [speech.start, *((a + b) / 2 for a, b in pairwise(accents)), speech.end]
     peaks: list[float | None] = [*accents] or [None]

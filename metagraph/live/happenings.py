@@ -14,7 +14,7 @@ from metagraph.graph.model import LAYERS, Layer
 from metagraph.live.ledger import Ledger, OpenAsk, reword_for_client
 from metagraph.live.limits import ADDED
 from metagraph.live.messages import Event, Reason, round_seconds
-from metagraph.live.spoken_so_far import spoken_until
+from metagraph.live.spoken_so_far import split_spoken_text
 from metagraph.playback.life.track import Speech
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.extend_performance import find_served
@@ -182,7 +182,7 @@ class Happenings:
         if speech is not None:
             event = _event_of_speech(speech, "ended", event.t)
             if speech.length is not None:
-                spoken, word = spoken_until(plan.track.speeches, speech, speech.end)
+                spoken, word = split_spoken_text(plan.track.speeches, speech, speech.end)
                 reason = reason or ("replaced" if _said_again(plan, speech) else "interrupted")
                 why = WHY.get(reason, "something else is said")
         elif cue is not None and one.layer is not None:

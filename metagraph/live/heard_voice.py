@@ -1,8 +1,8 @@
 """What a voice tells while it is heard: when somebody begins to speak and ends, and where they are stressed.
 
-A stress is a local maximum of F0, as in `speech.pitch.peaks`; it is known when the voice has fallen again, a
-tenth of a second later. So what answers to it comes later than the stress: only a caller that announces it
-can be in time.
+A stress is a local maximum of F0, as in `speech.pitch.find_pitch_peaks`; it is known when the voice has
+fallen again, a tenth of a second later. So what answers to it comes later than the stress: only a caller that
+announces it can be in time.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.live.voice_detector import GOES_ON, VoiceDetector
 from metagraph.speech.pitch import HIGHEST, JUMP, LOWEST, REPEATS
-from metagraph.speech.yin import yin
+from metagraph.speech.yin import measure_f0_by_yin
 from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
 Array = NDArray[Any]
@@ -89,7 +89,7 @@ class HeardVoice:
         frames -= frames.mean(1, keepdims=True)
         out: list[SpeechNews] = []
         own = RATE / EVERY
-        hertz = yin(frames, own, LOWEST, HIGHEST)
+        hertz = measure_f0_by_yin(frames, own, LOWEST, HIGHEST)
         for n, end in enumerate(ends.tolist()):
             at = begun + (end - PIECE * EVERY - PIECE * EVERY / 2) / RATE
             if self._repeats(frames[n], own / hertz[n]) and hertz[n] < 0.98 * HIGHEST:

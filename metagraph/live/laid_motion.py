@@ -111,7 +111,7 @@ class LaidMotion(ABC):
         weight = float(ease_blend(np.array([(now - self._shown) / BLEND]))[0])
         if self._ends is not None:
             weight *= 1 - float(ease_blend(np.array([(now - self._ends) / BLEND]))[0])
-        shown = (np.array([asked_weight(plan.layers[layer], now)]) for layer in ("arms", "head"))
+        shown = (np.array([compute_asked_weight(plan.layers[layer], now)]) for layer in ("arms", "head"))
         return Overlay(self.joints, offsets[None].astype(np.float32), np.array([weight]), *shown)
 
     def status(self) -> dict[str, Any]:
@@ -124,7 +124,7 @@ class LaidMotion(ABC):
         }
 
 
-def asked_weight(lane: LayerPlan, now: float) -> float:
+def compute_asked_weight(lane: LayerPlan, now: float) -> float:
     """Return how much of what clients asked of a layer shows at a time, 0..1; between two actions that follow
     each other it does not dip.
     """

@@ -254,7 +254,7 @@ class Limits:
         return ""
 
 
-def beyond(ask: Any, now: float) -> str:
+def explain_too_far(ask: Any, now: float) -> str:
     """Say which time of an ask is too far ahead, or too long; "" where none is."""
     for name in ("at", "stroke", "duration"):
         value = getattr(ask, name, None)
@@ -295,7 +295,7 @@ def set_start_now(ask: Any, now: float, wait: float) -> Timed:
     return Timed(ask, missed)
 
 
-def unknown(project: Project, ask: Any, limits: Limits) -> str:
+def explain_unknown(project: Project, ask: Any, limits: Limits) -> str:
     """Say that there is nothing of a name that an ask has; for a few asks a tick, which names there are."""
     limits.hints += 1
     what, name = (

@@ -36,9 +36,9 @@ from metagraph.live.limits import (
     SPEECH,
     TAG,
     RequestWords,
-    beyond,
+    explain_too_far,
+    explain_unknown,
     set_start_now,
-    unknown,
 )
 from metagraph.live.messages import (
     Describe,
@@ -58,10 +58,10 @@ from metagraph.live.messages import (
     round_seconds,
     split_message,
 )
-from metagraph.live.partner_mood import LAUGH, MOOD, partner_feel
-from metagraph.live.pose_stream import Stream, due
+from metagraph.live.partner_mood import LAUGH, MOOD, find_partner_feel
+from metagraph.live.pose_stream import Stream, collect_due_frames
 from metagraph.live.said_sound import SaidSounds, join_asks
-from metagraph.live.spoken_so_far import spoken_until
+from metagraph.live.spoken_so_far import split_spoken_text
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Agent, Client, Open, Out, TickWork, order_requests, thin_track
 from metagraph.motion.skeleton import Pose
@@ -75,7 +75,7 @@ from metagraph.playback.planning.plan_head import RECENT
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
 from metagraph.playback.posing.overlay import Overlay
 from metagraph.playback.posing.weight import LOOKS_BACK
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.word_gestures import telling
 
@@ -164,7 +164,7 @@ class LiveSession:
         limits how many; None prepares all. Each tick prepares one.
         """
         while self._cold and most != 0:
-            phases(self.project, self._cold.pop())
+            find_phases(self.project, self._cold.pop())
             most = None if most is None else most - 1
 
     def change(self, project: Project) -> None:
@@ -210,7 +210,7 @@ class LiveSession:
         )
         out.events += ((client.number, event) for client, event in told)
         self.warm(1)
-        out.frames = due(
+        out.frames = collect_due_frames(
             self.now,
             self.evaluator,
             [(c.number, c.stream) for c in self.clients.values() if c.stream],
@@ -268,7 +268,7 @@ class LiveSession:
         """Take up what the partner feels, or laugh along."""
         ident = message.id or (MOOD if message.laughs is None else LAUGH)
         key = plan_key(client.owner, ident)
-        feel = partner_feel(message, ident, key, self.project, self.plan.track, self.now)
+        feel = find_partner_feel(message, ident, key, self.project, self.plan.track, self.now)
         if feel is None:
             return Reply(id=message.id or None, state="done", why="it does not laugh along")
         return self._take(client, HeardMessage(feel), work, place)
@@ -277,7 +277,7 @@ class LiveSession:
         """Answer requests about the session itself."""
         if isinstance(message, Status):
             if "status" not in self._told:
-                self._told["status"] = describe.status(self)
+                self._told["status"] = describe.describe_status(self)
             return describe.with_id(self._told["status"], message.id)
         if isinstance(message, Describe):
             if self.ledger.limits.characters >= BML_PER_TICK:
@@ -298,7 +298,7 @@ class LiveSession:
                 )
             except a.RequestError as error:
                 return Reply(id=message.id or None, error=str(error))
-        return describe.greeting(self, client.stream, message.id)
+        return describe.make_greeting(self, client.stream, message.id)
 
     def _name(self, client: Client, name: str) -> None:
         """Take note of a client's name: what was asked for under it is that client's from now on."""
@@ -314,7 +314,7 @@ class LiveSession:
     def _admit(self, client: Client, ident: str, key: str, ask: Any, work: TickWork) -> str:
         """Accept a request; return the reason if it is refused."""
         wait = self.project.settings.wait
-        why = beyond(ask, self.now)
+        why = explain_too_far(ask, self.now)
         if why:
             return why
         goes_on = isinstance(ask, a.Say) and self._goes_on(key, work)
@@ -329,7 +329,7 @@ class LiveSession:
         ask = in_time.ask
         lane = self._words.lane(ask)
         if lane is None:
-            return unknown(self.project, ask, self.ledger.limits)
+            return explain_unknown(self.project, ask, self.ledger.limits)
         lane = ADDED if goes_on else lane
         why = self._without_name(ask) or self._without_room(client, key)
         if why:
@@ -415,7 +415,7 @@ class LiveSession:
         speech = next((s for s in self.plan.track.speeches if s.id in keys and s.end > until), None)
         spoken, word = None, None
         if speech is not None:
-            spoken, word = spoken_until(self.plan.track.speeches, speech, until)
+            spoken, word = split_spoken_text(self.plan.track.speeches, speech, until)
         self._take_back([target, *keys] if ask.what else keys, work)
         why = f"{len(keys)} taken back; what has begun stops or goes back to its stance"
         return Reply(id=ident, state="done", why=why, spoken=spoken, last_word=word or None)

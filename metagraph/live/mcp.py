@@ -16,7 +16,7 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.graph.model import Project
-from metagraph.graph.offered import ENGINES, tools
+from metagraph.graph.offered import ENGINES, list_tools
 from metagraph.live.stdio import StdioLine
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.text_gestures import (
@@ -35,11 +35,11 @@ _LOOKS = {
 }
 
 
-def mcp_tools(project: Project) -> list[dict[str, Any]]:
+def list_mcp_tools(project: Project) -> list[dict[str, Any]]:
     """Return the tools as `tools/list` tells them."""
     made = [
         {"name": tool["name"], "description": tool["description"], "inputSchema": tool["input_schema"]}
-        for tool in tools(project, ENGINES)
+        for tool in list_tools(project, ENGINES)
     ]
     for name, words in _LOOKS.items():
         schema = {"type": "object", "properties": {}, "additionalProperties": False}
@@ -152,7 +152,7 @@ class McpLine(StdioLine):
         elif method == "ping":
             self._answer(ident, {})
         elif method == "tools/list":
-            self._answer(ident, {"tools": mcp_tools(self._project)})
+            self._answer(ident, {"tools": list_mcp_tools(self._project)})
         elif method == "tools/call":
             return self._tool(ident, parameters.get("name"), parameters.get("arguments") or {})
         else:

@@ -304,7 +304,7 @@ def _words(error: Exception) -> str:
     return text
 
 
-def live_schema() -> dict[str, Any]:
+def make_live_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of the live session: requests, lists of them, replies and
     events.
     """

@@ -13,7 +13,7 @@ from typing import Any
 from metagraph.graph.words import LAYERS
 from metagraph.live.hub import BACKLOG, Hub
 from metagraph.live.messages import LONGEST_MESSAGE, Reply, encode
-from metagraph.live.osc_bytes import OscError, messages_of, pad_osc, seconds_ahead
+from metagraph.live.osc_bytes import OscError, measure_seconds_ahead, pad_osc, read_osc_messages
 
 ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
@@ -25,7 +25,7 @@ LET_GO = "a value of 0 means a released button; send another number"
 LARGEST = 60_000  # bytes of one datagram that is sent
 
 
-def request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
+def read_osc_request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
     """Return the request an OSC message says. Raises OscError with what would be right.
 
     Texts like `priority=3` or `in=0.5` set fields of any request; the other values mean what the address
@@ -131,7 +131,7 @@ def _field(text: str) -> tuple[str, Any]:
         return name, {"true": True, "false": False}.get(value, value)
 
 
-def texts_of(
+def read_osc_texts(
     datagram: bytes, now: float | None = None
 ) -> Iterator[tuple[str, bytes | str | OscError | Reply | bool]]:
     """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, the reply if
@@ -139,8 +139,8 @@ def texts_of(
     says. `now` is in seconds since 1970, the system's if None.
     """
     try:
-        messages = list(messages_of(datagram))
-        ahead = seconds_ahead(datagram, time.time() if now is None else now)
+        messages = list(read_osc_messages(datagram))
+        ahead = measure_seconds_ahead(datagram, time.time() if now is None else now)
     except OscError as error:
         yield "", OscError(f"not OSC: {error}")
         return
@@ -153,7 +153,7 @@ def texts_of(
             elif _is_let_go(address, values):
                 yield address, Reply(state="done", why=LET_GO)
             else:
-                asked = dict(request(address, values))
+                asked = dict(read_osc_request(address, values))
                 if ahead > 0 and asked["do"] not in AT_ONCE and not {"in", "at"} & asked.keys():
                     asked["in"] = round(ahead, 3)
                 yield address, encode(asked)
@@ -214,7 +214,7 @@ class OscLine(asyncio.DatagramProtocol):
         sender = self._sender(address)
         if sender is None:
             return
-        for _, text in texts_of(data[:LONGEST_MESSAGE]):
+        for _, text in read_osc_texts(data[:LONGEST_MESSAGE]):
             if isinstance(text, bool):
                 sender.wants = text
             elif isinstance(text, OscError):

@@ -27,7 +27,7 @@ def pad_osc(text: str) -> bytes:
     return data + b"\0" * (-len(data) % 4)
 
 
-def messages_of(datagram: bytes, depth: int = 0) -> Iterator[tuple[str, list[Any]]]:
+def read_osc_messages(datagram: bytes, depth: int = 0) -> Iterator[tuple[str, list[Any]]]:
     """Yield address and values of each message. Raises OscError with the place, never with the bytes."""
     if not datagram.startswith(_BUNDLE):
         yield _message(datagram)
@@ -41,7 +41,7 @@ def messages_of(datagram: bytes, depth: int = 0) -> Iterator[tuple[str, list[Any
         part = datagram[at + 4 : at + 4 + size]
         if not size or size % 4 or len(part) < size:
             raise OscError(f"the part at byte {at} of a bundle is larger than the bundle")
-        for found in messages_of(part, depth + 1):
+        for found in read_osc_messages(part, depth + 1):
             count += 1
             if count > MOST:
                 raise OscError(f"the bundle has more than {MOST} messages")
@@ -49,7 +49,7 @@ def messages_of(datagram: bytes, depth: int = 0) -> Iterator[tuple[str, list[Any
         at += 4 + size
 
 
-def seconds_ahead(datagram: bytes, now: float) -> float:
+def measure_seconds_ahead(datagram: bytes, now: float) -> float:
     """Return in how many seconds a bundle is to be heard, by its time tag; 0 for at once, for what is past,
     and for a message by itself. `now` is in seconds since 1970. Raises OscError for more than
     `LONGEST_AHEAD`.

@@ -17,7 +17,7 @@ MOOD, LAUGH = "partner", "partner laugh"  # ids, where the client gives none
 MOOD_SHARE, LAUGH_SHARE = Rates().mood, Rates().laugh
 
 
-def partner_feel(
+def find_partner_feel(
     message: Partner, ident: str, key: str, project: Project, track: Track, now: float
 ) -> Feel | None:
     """Return what a character feels that is reported about its partner; None if it does not laugh along.

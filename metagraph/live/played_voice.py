@@ -76,13 +76,13 @@ def read_played_voice(path: Path, graph: str, announce: float | None = None) -> 
     """Read a voice from a sound file, all channels mixed; where it is announced, its clauses are given by
     sound. Raises FileError.
     """
-    from metagraph.speech.clauses import segment_by_sound
-    from metagraph.speech.pitch import pitch
+    from metagraph.speech.clauses import find_segments_by_sound
+    from metagraph.speech.pitch import measure_pitch
     from metagraph.speech.sound import analyse_sound, read_sound
     from metagraph.speech.soundtrack import resample_sound
 
     samples, rate = read_sound(path)
     found: tuple[Segment, ...] = ()
     if announce is not None:
-        found = segment_by_sound((), pitch(samples, rate), analyse_sound(samples, rate), None)
+        found = find_segments_by_sound((), measure_pitch(samples, rate), analyse_sound(samples, rate), None)
     return PlayedVoice(resample_sound(samples, rate, RATE), found, graph, announce)

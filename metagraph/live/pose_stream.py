@@ -84,7 +84,7 @@ class Stream:
         return self.wish.format, self.wish.space, self.wish.translations, self.names
 
 
-def due(
+def collect_due_frames(
     now: float,
     evaluator: Evaluator | None,
     streams: Sequence[tuple[int, Stream]],
@@ -114,12 +114,12 @@ def due(
     out = []
     for group in groups.values():
         stream = group[0][1]
-        data = frame(stream, now, pose, turned, weights)
+        data = encode_pose_frame(stream, now, pose, turned, weights)
         out.append(PoseFrame(tuple(client for client, _ in group), data, stream.wish.format != "json"))
     return out
 
 
-def frame(
+def encode_pose_frame(
     stream: Stream, now: float, pose: Pose, turned: tuple[Array, Array] | None, weights: dict[str, float]
 ) -> bytes:
     """Return one pose as a client wants it. turned: rotations and positions in the character's space, where

@@ -20,7 +20,7 @@ def make_schema_texts() -> dict[Path, bytes]:
     """Return the files: one request as in performances, lines and agents' messages; all messages of a live
     session.
     """
-    return {GRAPH: _text(requests.ask_schema()), LIVE: _text(messages.live_schema())}
+    return {GRAPH: _text(requests.ask_schema()), LIVE: _text(messages.make_live_schema())}
 
 
 def _text(schema: dict[str, Any]) -> bytes:

@@ -10,7 +10,7 @@ from metagraph.speech.text_gestures import timed_words
 TOGETHER = 1e-3  # seconds between two pieces of one utterance, at most
 
 
-def spoken_until(said: Sequence[Speech], speech: Speech, seconds: float) -> tuple[str, str]:
+def split_spoken_text(said: Sequence[Speech], speech: Speech, seconds: float) -> tuple[str, str]:
     """Return what of an utterance was spoken until `seconds` of the session, up to the word that was begun,
     and that word. said: everything; speech: its last piece that has begun.
     """

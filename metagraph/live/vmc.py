@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.engines.targets.vrm import humanoid
+from metagraph.engines.targets.vrm import find_vrm_bones
 from metagraph.graph import anatomy
-from metagraph.graph.face.expression_presets import measure_presets, presets_of
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.face.expression_presets import make_presets, measure_presets
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.osc_bytes import pad_osc
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.t_pose import t_pose
+from metagraph.motion.t_pose import make_t_pose
 
 Array = NDArray[Any]
 
@@ -73,12 +73,12 @@ class VmcBody:
         """
         skeleton = project.skeleton
         roles = anatomy.project_roles(project)
-        bones = humanoid(skeleton, roles) if skeleton is not None else {}
+        bones = find_vrm_bones(skeleton, roles) if skeleton is not None else {}
         if skeleton is None or "hips" not in bones or "head" not in bones:
             raise RequestError("VMC needs a humanoid character: assign its joints in 'Skeleton'")
         _, at = skeleton.globals(skeleton.rest)
-        axes = axes_of(skeleton, roles, at)
-        stand, _ = skeleton.globals(t_pose(skeleton, roles, axes[0]))
+        axes = find_body_axes(skeleton, roles, at)
+        stand, _ = skeleton.globals(make_t_pose(skeleton, roles, axes[0]))
         order = sorted(bones.items(), key=lambda item: item[1])  # parents come before what hangs on them
         places = {joint: n for n, (_, joint) in enumerate(order)}
 
@@ -94,8 +94,8 @@ class VmcBody:
             np.array([joint for _, joint in order]),
             tuple(nearest(joint) for _, joint in order),
             stand,
-            rotation.rotation_between(axes[2], np.array([0.0, 0.0, 1.0])),
-            presets_of(morphs, project.face.channels),
+            rotation.find_rotation_between(axes[2], np.array([0.0, 0.0, 1.0])),
+            make_presets(morphs, project.face.channels),
         )
 
     def bones_of(self, pose: Pose) -> tuple[Array, Array]:

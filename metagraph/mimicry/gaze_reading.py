@@ -35,7 +35,7 @@ class HeadFollower:
         """Return the point to look at from now on, metres; None while the head stays as it was, or is not
         seen.
         """
-        found = head_turn(points, trust, dims)
+        found = measure_head_turn(points, trust, dims)
         if found is None:
             return None
         turn, pitch = found
@@ -49,7 +49,7 @@ class HeadFollower:
         return x, y, z
 
 
-def head_turn(points: Array, trust: Array, dims: int) -> tuple[float, float] | None:
+def measure_head_turn(points: Array, trust: Array, dims: int) -> tuple[float, float] | None:
     """Return how far a head is turned to the picture's right and upwards, radians; None if ears or nose are
     not seen.
     """

@@ -19,11 +19,11 @@ from metagraph.mimicry.pose_measures import (
     SCALE,
     SHARP,
     MeasuredFrame,
-    frame_of,
+    measure_body_frame,
     measure_pose,
     measure_trust,
-    sharp_in_a_picture,
     turn_about_y,
+    weigh_in_picture,
 )
 from metagraph.mimicry.signatures import Signature
 from metagraph.mimicry.tuning import Tuning
@@ -126,7 +126,7 @@ class Judge:
     def view(self, dims: int) -> PersonView | None:
         """Return the person as they are now; None if they cannot be made out or show the back."""
         points, trust = self.mean.points(), self.mean.trust
-        frame = frame_of(points, trust, dims, self.width)
+        frame = measure_body_frame(points, trust, dims, self.width)
         if frame is None or (dims == 2 and frame.width < AWAY):
             return None
         return PersonView(
@@ -187,7 +187,7 @@ class Judge:
             return None
         sharp, usual, extra = SHARP[self.layer], self.signature.measures, self.signature.extra
         if dims == 2:
-            sharp, usual = sharp_in_a_picture(self.layer, heading), usual[..., :2] * [cos(heading), 1.0]
+            sharp, usual = weigh_in_picture(self.layer, heading), usual[..., :2] * [cos(heading), 1.0]
             usual[..., 0] += sin(heading) * self.signature.measures[..., 2]
             extra = extra + self._alike[int(np.abs(TURNS - heading).argmin())]
         apart = view.measures[:, :dims] - usual

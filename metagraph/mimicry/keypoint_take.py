@@ -67,7 +67,7 @@ def make_clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name:
     root = _placed(skeleton, roles, local, seen)
     translations = np.repeat(rest.translations[None, :1], len(times), 0)
     translations[:, 0] = root
-    return Clip(name, skeleton, FPS, rotation.continuous(local), translations)
+    return Clip(name, skeleton, FPS, rotation.make_continuous(local), translations)
 
 
 def _even(keypoints: KeypointTrack) -> tuple[Array, Array]:
@@ -159,7 +159,7 @@ def _turned(skeleton: Skeleton, roles: Mapping[str, int], seen: Mapping[str, Arr
             turn = np.arctan2(ahead[:, 0], ahead[:, 2])
             away[roles[f"{side}_foot"]] = rotation.from_axis_angle(np.array([0.0, 1.0, 0.0]), turn)
     out = np.empty((len(hips), len(skeleton), 4))
-    whole = rotation.identity_rotations((len(hips),))
+    whole = rotation.make_identity_rotations((len(hips),))
     turned: list[Array] = []
     for joint, parent in enumerate(skeleton.parents.tolist()):
         turned.append(away.get(joint, turned[parent] if parent >= 0 else whole))
@@ -175,7 +175,9 @@ def _pointed(base: Array, bone: Array, wanted: Array) -> Array:
     """Return a joint's turn from rest `[F, 4]`: its parent's, and the least more that points its bone
     there.
     """
-    return rotation.multiply(rotation.rotation_between(rotation.rotate_vectors(base, bone), wanted), base)
+    return rotation.multiply(
+        rotation.find_rotation_between(rotation.rotate_vectors(base, bone), wanted), base
+    )
 
 
 def _bent(

@@ -20,7 +20,7 @@ from metagraph.graph.requests import AnyRequest, Go, Look
 from metagraph.mimicry.gaze_reading import HeadFollower
 from metagraph.mimicry.judge import TURNS, Judge, Mean, PersonView
 from metagraph.mimicry.keypoint_layouts import POINTS, choose_points, swap
-from metagraph.mimicry.signatures import BodySignature, signatures
+from metagraph.mimicry.signatures import BodySignature, compute_signatures
 from metagraph.mimicry.tuning import Tuning
 
 Array = NDArray[Any]
@@ -65,7 +65,7 @@ class Mimic:
     ) -> None:
         self.mirror, self.priority, self.prefix, self.tuning = mirror, priority, prefix, tuning or Tuning()
         body = BodySignature(project)
-        found, self.width = signatures(project, body, layers)
+        found, self.width = compute_signatures(project, body, layers)
         if not found:
             raise ValueError("the project has no stance that could be mimicked: no layer has one with a loop")
         self.judges = {
@@ -73,7 +73,7 @@ class Mimic:
         }
         self.sightings: list[Sighting] = []
         self.heading = 0.0  # how far the person is turned to the picture's right, radians
-        self._gaze = HeadFollower(body.points(anatomy.base_pose(project))) if gaze else None
+        self._gaze = HeadFollower(body.points(anatomy.get_base_pose(project))) if gaze else None
         self._asked: dict[
             Layer, tuple[float, float]
         ] = {}  # when each layer's stance was asked for, and how long until it may be again

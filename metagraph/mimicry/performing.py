@@ -94,7 +94,7 @@ def _steps(
             waiting = [ask for ask in waiting if (ask.told or 0.0) > told]
         if now > plan.end - AHEAD / 2:
             plan = heard(now, [])
-        some = mimic.feed(now, where[:, : keypoints.dims], sure, goals(plan, now, mimic.prefix))
+        some = mimic.feed(now, where[:, : keypoints.dims], sure, find_goal_stances(plan, now, mimic.prefix))
         if some:
             plan = heard(now, some)
             yield some
@@ -102,7 +102,7 @@ def _steps(
             progress(n, len(keypoints))
 
 
-def goals(plan: Plan, now: float, mine: str) -> dict[Layer, str]:
+def find_goal_stances(plan: Plan, now: float, mine: str) -> dict[Layer, str]:
     """Return which stance each layer is in or on its way to, and will be in when requests of ids that begin
     with `mine` have played.
     """

@@ -121,7 +121,7 @@ _SLANT: Mapping[Layer, Array] = {
 }
 
 
-def sharp_in_a_picture(layer: Layer, turn: float) -> Array:
+def weigh_in_picture(layer: Layer, turn: float) -> Array:
     """Return `[N, 2]` weight / scale^2 of measures in a picture of somebody turned by an angle from the
     camera.
     """
@@ -181,7 +181,9 @@ def straighten(vectors: Array, up: Array) -> Array:
     return np.asarray(vectors @ m.T)
 
 
-def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) -> MeasuredFrame | None:
+def measure_body_frame(
+    points: Array, confidence: Array, dims: int, usual_width: float
+) -> MeasuredFrame | None:
     """Return how a person stands whose POINTS are `points [17, 3]`; None if the shoulders do not say.
 
     Without hips, as at a desk, the torso is taken to be upright, and its length is given from the shoulders'

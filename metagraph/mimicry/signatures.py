@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.mimicry.keypoint_layouts import PLACE, POINTS, swap
-from metagraph.mimicry.pose_measures import frame_of, measure_pose
+from metagraph.mimicry.pose_measures import measure_body_frame, measure_pose
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import LayerPlan, Plan, Rest
-from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.composer import find_playable_motion
 
 Array = NDArray[Any]
 
@@ -86,7 +86,7 @@ class BodySignature:
                 *(n for n, name in enumerate(POINTS) if name == "nose" or name.endswith(("_eye", "_ear"))),
             ]
         ] = 1.0
-        self._face = self._in_the_head(anatomy.base_pose(project), roles)
+        self._face = self._in_the_head(anatomy.get_base_pose(project), roles)
 
     def _in_the_head(self, base: Pose, roles: Mapping[str, int]) -> dict[int, Array]:
         """Return where the points of the face are in the space of the head's joint, from a pose that looks
@@ -134,13 +134,13 @@ class BodySignature:
         return out
 
 
-def signatures(
+def compute_signatures(
     project: Project, body: BodySignature, layers: Collection[Layer] = LAYERS
 ) -> tuple[dict[Layer, Signature], float]:
     """Return what the stances of each layer look like, and the shoulders' width in torso lengths. Stances
     whose clips are missing are not among them, nor layers without any.
     """
-    width = _width(body, anatomy.base_pose(project))
+    width = _width(body, anatomy.get_base_pose(project))
     out = {}
     for layer in LAYERS:
         if layer not in layers:
@@ -149,7 +149,9 @@ def signatures(
         rows, of, extra = [], [], []
         for stance in project.graphs[layer].stances.values():
             loops = [
-                x for x in project.graphs[layer].of(stance.id, "stance") if playable(project, x) is not None
+                x
+                for x in project.graphs[layer].of(stance.id, "stance")
+                if find_playable_motion(project, x) is not None
             ]
             seen = [
                 s
@@ -161,7 +163,7 @@ def signatures(
                     if other and layer != "arms":
                         continue
                     shown, sure = swap(points, body.confidence) if other else (points, body.confidence)
-                    frame = frame_of(shown, sure, 3, width)
+                    frame = measure_body_frame(shown, sure, 3, width)
                     if frame is not None:
                         rows.append(measure_pose(layer, shown, frame))
                         of.append(len(stances))
@@ -174,7 +176,7 @@ def signatures(
 
 
 def _width(body: BodySignature, pose: Pose) -> float:
-    frame = frame_of(body.points(pose), body.confidence, 3, 0.7)
+    frame = measure_body_frame(body.points(pose), body.confidence, 3, 0.7)
     return frame.width if frame is not None else 0.7
 
 

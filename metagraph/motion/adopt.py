@@ -16,7 +16,7 @@ from metagraph.common.wording import phrase
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import find_known_roles
-from metagraph.motion.roles import missing_roles
+from metagraph.motion.roles import find_missing_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
@@ -32,7 +32,7 @@ class SkeletonMismatchError(ValueError):
     """The clip belongs to another skeleton; the message says how they differ."""
 
 
-def difference(clip: Skeleton, project: Skeleton) -> str | None:
+def describe_difference(clip: Skeleton, project: Skeleton) -> str | None:
     """Return in words why a clip on skeleton `clip` cannot play on `project`, or None when it can.
 
     A clip may lack joints (a face-only file), bring ends of its own (a jaw, finger tips), and have up to
@@ -44,9 +44,9 @@ def difference(clip: Skeleton, project: Skeleton) -> str | None:
     return _Match(clip, project).difference()
 
 
-def bone_difference(clip: Skeleton, project: Skeleton) -> float:
+def measure_bone_difference(clip: Skeleton, project: Skeleton) -> float:
     """Return by which share, 0 or more, the longer bones of a clip's skeleton differ most from the project's,
-    for skeletons between which there is no `difference`.
+    for skeletons between which `describe_difference` finds none.
     """
     return _Match(clip, project).bone_difference()
 
@@ -63,7 +63,7 @@ class _Match:
         self.own, self.ours = _chains(self.clip, project), _chains(project, self.clip)
 
     def difference(self) -> str | None:
-        """Return what `difference` returns."""
+        """Return what `describe_difference` returns."""
         clip, project = self.clip, self.project
         if len(self.own) < max(1, len(clip) // 2):
             extra = next(name for name in clip.names if name not in project)
@@ -94,7 +94,7 @@ class _Match:
         return None
 
     def bone_difference(self) -> float:
-        """Return what `bone_difference` returns."""
+        """Return what `measure_bone_difference` returns."""
         theirs, mine = self._lengths()
         below = np.array([len(self.clip.descendants(chain[-1])) for chain in self.own.values()])
         bones = self._inner() & (mine > _NOTABLE * self.project.height) & (below <= len(self.clip) / 2)
@@ -164,7 +164,7 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     return replace(
         clip,
         skeleton=skeleton,
-        rotations=rotation.continuous(rotations),
+        rotations=rotation.make_continuous(rotations),
         translations=translations[:, list(translated)],
         translated=translated,
         notes=(*clip.notes, *match.note_lost()),
@@ -217,12 +217,12 @@ def _called_by_roles(clip: Skeleton, project: Skeleton) -> Skeleton:
     """
     theirs, ours = find_known_roles(clip, None), find_known_roles(project, None)
     shared = [role for role in theirs if role in ours]
-    if missing_roles(theirs) or missing_roles(ours):
+    if find_missing_roles(theirs) or find_missing_roles(ours):
         return clip
     one, other = [theirs[role] for role in shared], [ours[role] for role in shared]
     (turns, places), (our_turns, our_places) = clip.globals(clip.rest), project.globals(project.rest)
     apart = (places[one] - places[theirs["hips"]]) - (our_places[other] - our_places[ours["hips"]])
-    turned = rotation.angle_between(turns[one], our_turns[other])
+    turned = rotation.measure_angle_between(turns[one], our_turns[other])
     if np.linalg.norm(apart, axis=-1).max() > _APART * project.height or turned.max() > _TURNED:
         return clip
     known = dict(zip(one, (project.names[joint] for joint in other), strict=True))

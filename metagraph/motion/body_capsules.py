@@ -63,7 +63,7 @@ class _Standing:
         return BodyPart(names[joint], names[to], tuple(ends[0]), tuple(ends[1]), round(radius, 5))
 
 
-def body_capsules(
+def make_body_capsules(
     skeleton: Skeleton,
     roles: Mapping[str, int],
     pose: Pose,

@@ -144,7 +144,7 @@ def explain_no_character(body: CharacterMesh, skeleton: Skeleton | None = None) 
     return None
 
 
-def followers(own: Skeleton, skeleton: Skeleton) -> tuple[Array, Array]:
+def find_followers(own: Skeleton, skeleton: Skeleton) -> tuple[Array, Array]:
     """Return which of its own joints each joint of a mesh moves with `[J]`, and that one's place in a
     skeleton `[J]`: the joint of its name, or of its nearest ancestor that there is one for, else of the first
     that there is one for; -1 where none is.
@@ -159,10 +159,10 @@ def followers(own: Skeleton, skeleton: Skeleton) -> tuple[Array, Array]:
 
 
 def bind_character(body: CharacterMesh, skeleton: Skeleton) -> CharacterMesh:
-    """Return a character on a skeleton that is not its own, its joints matched by name as `followers` says,
-    and its surface as that skeleton's rest pose moves it. Raises ValueError if no joint matches.
+    """Return a character on a skeleton that is not its own, its joints matched by name as `find_followers`
+    says, and its surface as that skeleton's rest pose moves it. Raises ValueError if no joint matches.
     """
-    follow, places = followers(body.skeleton, skeleton)
+    follow, places = find_followers(body.skeleton, skeleton)
     if places.min() < 0:
         raise ValueError(f"character '{body.name}' has no joint of the skeleton")
     own_r, own_p = body.skeleton.globals(body.skeleton.rest)

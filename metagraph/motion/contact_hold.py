@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.limbs import unit_directions
+from metagraph.motion.limbs import normalize_directions
 
 Array = NDArray[Any]
 
@@ -88,14 +88,14 @@ def _held(clip: Clip, contact: Contact) -> Clip:
     goal = places[:, hand] + weight[:, None] * (stays - places[:, hand])
     wanted = rotation.multiply(turns[:, to], np.broadcast_to(turn, turns[:, to].shape))
     turned = rotation.nlerp(turns[:, hand], wanted, weight)
-    rotations = brought(clip, turns, places, (upper, lower, hand), goal, turned)
+    rotations = bring_limb(clip, turns, places, (upper, lower, hand), goal, turned)
     out, moved = clip.rotations.copy(), weight > 0
     for joint in (upper, lower, hand):
         out[moved, joint] = _continuous(rotations[moved, joint], clip.rotations[moved, joint])
     return replace(clip, rotations=out)
 
 
-def brought(
+def bring_limb(
     clip: Clip, turns: Array, places: Array, limb: tuple[int, int, int], goal: Array, turned: Array
 ) -> Array:
     """Return a clip's local rotations `[F, J, 4]` with the end of a limb of two bones where it should be, or
@@ -147,17 +147,19 @@ def _bent(root: Array, middle: Array, end: Array, goal: Array, turn: Array) -> t
     one, two = (np.linalg.norm(v, axis=-1) for v in (middle - root, end - middle))
     way = goal - root
     far = np.clip(np.linalg.norm(way, axis=-1), np.abs(one - two) + 1e-4, REACHED * (one + two))
-    ahead, now = unit_directions(way), unit_directions(end - root)
+    ahead, now = normalize_directions(way), normalize_directions(end - root)
     aside = middle - root - now * np.einsum("fi,fi->f", middle - root, now)[:, None]
     # A straight limb has no side: then one that goes with the bone.
     spare = rotation.rotate_vectors(turn, np.broadcast_to(np.array([0.31, 0.52, 0.8]), now.shape))
     straight = np.linalg.norm(aside, axis=-1) < 1e-3 * (one + two)
     aside = np.where(straight[:, None], spare - now * np.einsum("fi,fi->f", spare, now)[:, None], aside)
-    aside = rotation.rotate_vectors(rotation.rotation_between(now, ahead), aside)
+    aside = rotation.rotate_vectors(rotation.find_rotation_between(now, ahead), aside)
     along = (one**2 + far**2 - two**2) / (2 * far)
     high = np.sqrt(np.maximum(0, one**2 - along**2))
-    knee = ahead * along[:, None] + unit_directions(aside) * high[:, None]
-    swing = rotation.rotation_between(unit_directions(middle - root), unit_directions(knee))
+    knee = ahead * along[:, None] + normalize_directions(aside) * high[:, None]
+    swing = rotation.find_rotation_between(normalize_directions(middle - root), normalize_directions(knee))
     carried = rotation.rotate_vectors(swing, end - middle)
-    fold = rotation.rotation_between(unit_directions(carried), unit_directions(ahead * far[:, None] - knee))
+    fold = rotation.find_rotation_between(
+        normalize_directions(carried), normalize_directions(ahead * far[:, None] - knee)
+    )
     return swing, fold

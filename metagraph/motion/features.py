@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.motion.rig_controls import rig_controls
+from metagraph.motion.rig_controls import find_rig_controls
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
 
-def positions(clip: Clip, reference: int = 0) -> Array:
+def measure_positions(clip: Clip, reference: int = 0) -> Array:
     """Return joint positions `[F, J, 3]` in metres, with the first frame's `reference` joint above the
     origin.
     """
@@ -25,7 +25,7 @@ def positions(clip: Clip, reference: int = 0) -> Array:
     return np.asarray(out - out[:1, reference : reference + 1] * np.array([1, 0, 1], np.float32))
 
 
-def speed(clip: Clip, joints: Sequence[int], frame_of: int | None = None) -> Array:
+def measure_speed(clip: Clip, joints: Sequence[int], frame_of: int | None = None) -> Array:
     """Return `[F]` the fastest of `joints`' speeds, metres a second, relative to joint `frame_of` (the
     shoulders' parent, say).
 
@@ -41,12 +41,12 @@ def speed(clip: Clip, joints: Sequence[int], frame_of: int | None = None) -> Arr
     return np.asarray(np.linalg.norm(velocity, axis=-1).max(axis=-1))
 
 
-def stroke(speeds: Array, fps: float) -> float:
+def find_stroke(speeds: Array, fps: float) -> float:
     """Return the time in seconds of the largest speed: a gesture's most telling moment."""
     return float(np.argmax(speeds)) / fps if len(speeds) else 0.0
 
 
-def pose_distance(skeleton: Skeleton, a: Pose, b: Pose, joints: Sequence[int] | None = None) -> Array:
+def measure_pose_distance(skeleton: Skeleton, a: Pose, b: Pose, joints: Sequence[int] | None = None) -> Array:
     """Return `[...]` the largest distance in metres of any of `joints` between poses, both with joint 0 at
     the origin. joints: all but a rig's controls where it is left out.
     """
@@ -55,7 +55,9 @@ def pose_distance(skeleton: Skeleton, a: Pose, b: Pose, joints: Sequence[int] | 
         pa, pb = skeleton.globals(both)[1]
     else:
         pa, pb = skeleton.globals(a)[1], skeleton.globals(b)[1]
-    chosen = sorted(set(range(len(skeleton))) - rig_controls(skeleton)) if joints is None else list(joints)
+    chosen = (
+        sorted(set(range(len(skeleton))) - find_rig_controls(skeleton)) if joints is None else list(joints)
+    )
     if not chosen:
         return np.zeros(pa.shape[:-2])
     d = (pa - pa[..., :1, :])[..., chosen, :] - (pb - pb[..., :1, :])[..., chosen, :]
@@ -70,7 +72,7 @@ def _alike(a: Pose, b: Pose) -> bool:
     )
 
 
-def loop_error(clip: Clip, start: float = 0.0, end: float | None = None) -> float:
+def measure_loop_error(clip: Clip, start: float = 0.0, end: float | None = None) -> float:
     """Return in metres how far the pose at `end` is from the pose at `start` (seconds)."""
     ends = clip.pose_at(np.array([start, clip.duration if end is None else end]))
-    return float(pose_distance(clip.skeleton, ends[0], ends[1]))
+    return float(measure_pose_distance(clip.skeleton, ends[0], ends[1]))

@@ -49,7 +49,7 @@ def keep_in_place(clip: Clip) -> Clip:
         translations[:, root] = from_centre + centre - part[:, None] * way
     return replace(
         clip,
-        rotations=rotation.continuous(rotations),
+        rotations=rotation.make_continuous(rotations),
         translations=translations[:, list(translated)].astype(np.float32),
         translated=translated,
     )

@@ -43,7 +43,7 @@ class RetargetError(ValueError):
     """Raised if a clip cannot be retargeted to a skeleton; the message says why."""
 
 
-def fingerprint(skeleton: Skeleton) -> str:
+def make_fingerprint(skeleton: Skeleton) -> str:
     """Return a short text that identifies a rig in every file and size, to remember maps by.
 
     It is made of the joints' names and parents, in any order, because a map does not depend on lengths or
@@ -107,7 +107,7 @@ class JointMap:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Return `missing_roles` in words."""
+        """Return `find_missing_roles` in words."""
         return tuple(f"no {role.replace('_', ' ')} in both" for role in self.missing_roles)
 
     @property
@@ -195,7 +195,7 @@ def propose_joint_map(
         j = target.index(name) if exact else found[0] if len(found) == 1 and words.words else -1
         if j >= 0:
             add(i, j, "", 0.9 if exact else 0.6, "same name" if exact else "same words in the name")
-    return JointMap(fingerprint(source), fingerprint(target), tuple(pairs.values()))
+    return JointMap(make_fingerprint(source), make_fingerprint(target), tuple(pairs.values()))
 
 
 def find_known_roles(skeleton: Skeleton, roles: Mapping[str, int] | None) -> dict[str, int]:

@@ -15,7 +15,7 @@ STRAIGHT = 0.02  # of the upper bone: a joint less than this beside the line of 
 # further bends to its pole
 
 
-def bent(
+def solve_limb(
     goal: Array, one: float, two: float, start: Array, source: tuple[Array, Array, Array], pole: Array
 ) -> tuple[Array, Array]:
     """Return where the middle joint and the end come to, `[F, 3]` from the limb's root.
@@ -28,21 +28,21 @@ def bent(
     far = np.linalg.norm(goal, axis=-1, keepdims=True)
     ahead = goal / far
     root, middle, end = (p.astype(np.float64) for p in source)
-    way, knee = unit_directions(end - root), unit_directions(middle - root)
+    way, knee = normalize_directions(end - root), normalize_directions(middle - root)
     aside = knee - way * np.einsum("fi,fi->f", knee, way)[:, None]
-    aside = rotation.rotate_vectors(rotation.conjugate(rotation.rotation_between(start, way)), aside)
-    aside = rotation.rotate_vectors(rotation.rotation_between(start, ahead), aside)
+    aside = rotation.rotate_vectors(rotation.conjugate(rotation.find_rotation_between(start, way)), aside)
+    aside = rotation.rotate_vectors(rotation.find_rotation_between(start, ahead), aside)
     pole = pole - ahead * np.einsum("fi,fi->f", pole, ahead)[:, None]
     along = (one**2 + far**2 - two**2) / (2 * far)
     out = np.sqrt(np.maximum(0, one**2 - along**2))
     # Where it bends more than the source, a hardly bent source's side is no guide.
     size = np.linalg.norm(aside, axis=-1, keepdims=True)
     more = np.clip((out / one - size) / STRAIGHT, 0, 1)
-    aside = unit_directions(aside + np.maximum(0, STRAIGHT - size) * more * pole)
+    aside = normalize_directions(aside + np.maximum(0, STRAIGHT - size) * more * pole)
     return ahead * along + aside * out, goal
 
 
-def unit_directions(v: Array) -> Array:
+def normalize_directions(v: Array) -> Array:
     """Return directions `[..., 3]`."""
     return np.asarray(v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9))
 

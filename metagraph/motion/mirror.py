@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_names import HELPERS, split_joint_name
-from metagraph.motion.roles import find_roles, joint_sides
+from metagraph.motion.roles import find_joint_sides, find_roles
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -57,7 +57,7 @@ def swap_sides(text: str) -> str:
     return "".join(out)
 
 
-def pairs_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[int, ...]:
+def find_joint_twins(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[int, ...]:
     """Return each joint's twin on the other side, its own place for joints on the middle; -1 for a sided
     joint that has none.
 
@@ -110,7 +110,7 @@ class _Pairing:
     def by_places(self) -> None:
         """Pair joints that stand opposite each other at rest; those in the middle are their own twins."""
         skeleton, words, twins = self.skeleton, self.words, self.twins
-        sides = joint_sides(skeleton, self.roles)
+        sides = find_joint_sides(skeleton, self.roles)
         _, positions = skeleton.globals(skeleton.rest)
         lateral, middle = _plane(skeleton, twins)
         mirrored = _reflect(positions, lateral, middle)
@@ -146,8 +146,8 @@ class _Pairing:
 
 
 def mirror(clip: Clip, pairs: Sequence[int]) -> Clip:
-    """Return the clip with left and right exchanged. `pairs` are those of `pairs_of`; mirrored twice it is
-    itself.
+    """Return the clip with left and right exchanged. `pairs` are those of `find_joint_twins`; mirrored twice
+    it is itself.
 
     Turns are reflected relative to the rest pose, so bones may have any axes. Raises ValueError, in words,
     where the skeleton is not the same on both sides.
@@ -179,7 +179,7 @@ def mirror(clip: Clip, pairs: Sequence[int]) -> Clip:
     order = _face_order(clip.morphs)
     return replace(
         clip,
-        rotations=rotation.continuous(rotation.normalize(rotations).astype(np.float32)),
+        rotations=rotation.make_continuous(rotation.normalize(rotations).astype(np.float32)),
         translations=(rest.translations + shift)[:, translated],
         translated=tuple(translated),
         weights=None if clip.weights is None else clip.weights[:, order],
@@ -194,7 +194,10 @@ def _checked(clip: Clip, pairs: Sequence[int]) -> Array:
     twins = np.array(pairs, int)
     if twins.shape != (len(skeleton),) or twins.min() < -1 or twins.max() >= len(skeleton):
         raise ValueError(f"'{clip.name}' cannot be mirrored: the pairs are those of another skeleton")
-    still = rotation.angle_between(clip.rotations, skeleton.rest_rotations.astype(np.float32)).max(0) < STILL
+    still = (
+        rotation.measure_angle_between(clip.rotations, skeleton.rest_rotations.astype(np.float32)).max(0)
+        < STILL
+    )
     still[list(clip.translated)] &= (
         np.abs(clip.translations - skeleton.rest_translations[list(clip.translated)]).max((0, 2)) < 1e-4
     )
@@ -219,7 +222,7 @@ def _checked(clip: Clip, pairs: Sequence[int]) -> Array:
     off = np.where(middling & ~alone, np.abs(positions @ lateral - middle), 0.0)
     length = np.linalg.norm(skeleton.rest_translations, axis=-1) * (skeleton.parents >= 0)
     uneven = np.abs(length - length[twins])
-    skewed = rotation.angle_between(_held(skeleton, positions, twins, lateral), rotation.IDENTITY)
+    skewed = rotation.measure_angle_between(_held(skeleton, positions, twins, lateral), rotation.IDENTITY)
     for j, name in enumerate(names):
         if alone[j] or HELPERS & set(
             split_joint_name(name).words
@@ -253,14 +256,14 @@ def _held(skeleton: Skeleton, positions: Array, twins: Array, lateral: Array) ->
     np.add.at(children, skeleton.parents[skeleton.parents >= 0], positions[skeleton.parents >= 0])
     bone = children / np.maximum(count, 1)[:, None] - positions
     wanted = _reflect(bone, lateral, 0.0)[twins]
-    out = rotation.identity_rotations((len(skeleton),))
+    out = rotation.make_identity_rotations((len(skeleton),))
     for j in range(len(skeleton)):
         if twins[j] == j:
             continue
         out[j] = out[skeleton.parents[j]] if skeleton.parents[j] >= 0 else rotation.IDENTITY
         if count[j] and count[twins[j]] and min(np.linalg.norm(bone[j]), np.linalg.norm(wanted[j])) > 1e-3:
             out[j] = rotation.multiply(
-                rotation.rotation_between(rotation.rotate_vectors(out[j], bone[j]), wanted[j]), out[j]
+                rotation.find_rotation_between(rotation.rotate_vectors(out[j], bone[j]), wanted[j]), out[j]
             )
     return out
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.motion.roles import body_parts
+from metagraph.motion.roles import assign_body_parts
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -52,7 +52,7 @@ def _turned(rotations: Array) -> Array:
 
 @lru_cache(maxsize=32)
 def _parts(skeleton: Skeleton) -> tuple[str, ...]:
-    return body_parts(skeleton)
+    return assign_body_parts(skeleton)
 
 
 @lru_cache(maxsize=32)

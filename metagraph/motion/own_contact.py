@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import SIDES
-from metagraph.motion.limbs import ease_reach, fade_above_half, unit_directions
+from metagraph.motion.limbs import ease_reach, fade_above_half, normalize_directions
 from metagraph.motion.standing import StandingFigure
 
 Array = NDArray[Any]
@@ -78,7 +78,7 @@ class ContactBody:
         return out
 
 
-def body_of(figure: StandingFigure) -> ContactBody:
+def make_contact_body(figure: StandingFigure) -> ContactBody:
     """Return the body of a figure as it stands."""
     skeleton, roles = figure.skeleton, figure.roles
     tall = max(1e-3, float(np.ptp(figure.positions[:, 1])))
@@ -93,7 +93,7 @@ def body_of(figure: StandingFigure) -> ContactBody:
         ends = [figure.positions[j] - hand for j in skeleton.descendants(roles[f"{side}_hand"])]
         tip = max(ends, key=lambda v: float(np.linalg.norm(v)))
         if not 0.1 * arm < np.linalg.norm(tip) < 0.6 * arm:  # none, or a thing held
-            tip = HAND * arm * unit_directions(hand - figure.at(f"{side}_lower_arm"))
+            tip = HAND * arm * normalize_directions(hand - figure.at(f"{side}_lower_arm"))
         tips[side] = tip
     above = [figure.positions[j, 1] - figure.at("head")[1] for j in skeleton.descendants(roles["head"])]
     size = float(np.clip(max(above), SKULL * tall, 2 * SKULL * tall))
@@ -121,7 +121,7 @@ def _line(part: str, p: Points) -> tuple[Array, Array]:
 
 
 def _across(p: Points) -> Array:
-    return unit_directions(p["left_upper_arm"] - p["right_upper_arm"])
+    return normalize_directions(p["left_upper_arm"] - p["right_upper_arm"])
 
 
 def _touching(side: str, p: Points) -> list[Array]:
@@ -150,7 +150,7 @@ class OwnContact:
     """
 
     def __init__(self, source: StandingFigure, target: StandingFigure, turns: Array, places: Array) -> None:
-        self.source, self.target = body_of(source), body_of(target)
+        self.source, self.target = make_contact_body(source), make_contact_body(target)
         self.points = self.source.points(turns, places)
         self.near: dict[str, Array] = {}
         self.places: dict[str, list[_Place]] = {}
@@ -215,7 +215,7 @@ class OwnContact:
         scale = self.target.radius[place.part] / self.source.radius[place.part]
         if place.part != "head":
             beside = rotation.rotate_vectors(
-                rotation.rotation_between(ours[1] - ours[0], theirs[1] - theirs[0]), beside
+                rotation.find_rotation_between(ours[1] - ours[0], theirs[1] - theirs[0]), beside
             )
         return np.asarray(theirs[0] + place.share[:, None] * (theirs[1] - theirs[0]) + scale * beside)
 

@@ -27,13 +27,13 @@ from metagraph.motion.joint_map import (
     JointMap,
     JointPair,
     RetargetError,
-    fingerprint,
+    make_fingerprint,
 )
 from metagraph.motion.limb_goals import LimbGoals
-from metagraph.motion.limbs import bent
+from metagraph.motion.limbs import solve_limb
 from metagraph.motion.own_contact import OwnContact, meet
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import StandingFigure, is_standing, standing_pose
+from metagraph.motion.standing import StandingFigure, find_standing_pose, is_standing
 
 Array = NDArray[Any]
 
@@ -67,7 +67,7 @@ def retarget(
             "does"
         )
     source = StandingFigure(
-        clip.skeleton, ours, standing_pose(clip, ours) if source_pose is None else source_pose
+        clip.skeleton, ours, find_standing_pose(clip, ours) if source_pose is None else source_pose
     )
     figure = StandingFigure(target, theirs, target.rest if target_pose is None else target_pose)
     work = _Work(clip, source, figure, joint_map, roles)
@@ -269,10 +269,12 @@ class _Work(LimbGoals):
         knee, tip = self.places[:, lower] - root, self.places[:, end] - root
         one, two = (self.target.length(*pair) for pair in pairwise(names))
         pole = rotation.rotate_vectors(self.turned(names[0]), side)
-        new, goal = bent(goal - root, one, two, self.outwards(names[0]), (above[0], above[1], above[2]), pole)
+        new, goal = solve_limb(
+            goal - root, one, two, self.outwards(names[0]), (above[0], above[1], above[2]), pole
+        )
         first, second = (
-            rotation.rotation_between(knee, new),
-            rotation.rotation_between(tip - knee, goal - new),
+            rotation.find_rotation_between(knee, new),
+            rotation.find_rotation_between(tip - knee, goal - new),
         )
         self.turns[:, upper] = rotation.multiply(first, self.turns[:, upper])
         self.turns[:, lower] = rotation.multiply(second, self.turns[:, lower])
@@ -339,11 +341,11 @@ class _Work(LimbGoals):
         return replace(
             self.clip,
             skeleton=target,
-            rotations=rotation.continuous(rotation.normalize(rotations)),
+            rotations=rotation.make_continuous(rotation.normalize(rotations)),
             translations=moves[:, kept],
             translated=tuple(joints[n] for n in kept),
             notes=(*self.clip.notes, note + (f", {idle} follow their parents" if idle else "")),
-            brought_from=fingerprint(self.clip.skeleton),
+            brought_from=make_fingerprint(self.clip.skeleton),
         )
 
 

@@ -16,7 +16,7 @@ _WORDS = frozenset(("ik", "fk", "pole", "poletarget", "target", "ctrl", "control
 
 
 @lru_cache(maxsize=64)
-def rig_controls(skeleton: Skeleton) -> frozenset[int]:
+def find_rig_controls(skeleton: Skeleton) -> frozenset[int]:
     """Return the joints that are a rig's controls by their names. What the body hangs on is none, whatever it
     is called.
     """

@@ -3,7 +3,7 @@
 Names say what a joint is about, the hierarchy decides between them: an arm is the line of joints above a
 hand, so `LeftShoulder` is a collar bone in one skeleton and an upper arm in the next, and a twist or IK
 helper beside that line never wins. Where names leave out what a figure needs, or contradict the tree, the
-shape of the rest pose decides (`roles_by_shape`).
+shape of the rest pose decides (`find_roles_by_shape`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 
 from metagraph.motion.joint_names import ARM, FACE, HELPERS, guess_joint_kind, split_joint_name
-from metagraph.motion.roles_by_shape import roles_by_shape
+from metagraph.motion.roles_by_shape import find_roles_by_shape
 from metagraph.motion.skeleton import Skeleton
 
 _CENTRE = ("hips", "spine", "chest", "upper_chest", "neck", "head", "jaw")
@@ -175,7 +175,7 @@ class _Reader:
         """Name head and neck by what joints are called, the head by the rest pose where none is called so."""
         roles = self.roles
         heads, necks = self.called("head") or self.called("skull", "cranium"), self.called("neck")
-        shaped = roles_by_shape(self.skeleton).get("head") if not heads else None
+        shaped = find_roles_by_shape(self.skeleton).get("head") if not heads else None
         if heads:
             roles["head"] = self.biggest(heads)
         elif shaped is not None and (not necks or self.biggest(necks) in self.above(shaped)):
@@ -307,9 +307,11 @@ def find_roles(skeleton: Skeleton) -> dict[str, int]:
         reader.toes(side)
     reader.trunk()
     reader.face()
-    if missing_roles(reader.roles) or not reader.sound():
-        shaped = roles_by_shape(skeleton)
-        if len(missing_roles(shaped)) < len(missing_roles(reader.roles)) or (shaped and not reader.sound()):
+    if find_missing_roles(reader.roles) or not reader.sound():
+        shaped = find_roles_by_shape(skeleton)
+        if len(find_missing_roles(shaped)) < len(find_missing_roles(reader.roles)) or (
+            shaped and not reader.sound()
+        ):
             reader.roles = shaped
             reader.face()
     return _ordered(reader.roles)
@@ -319,17 +321,19 @@ def _ordered(roles: Mapping[str, int]) -> dict[str, int]:
     return {role: roles[role] for role in ROLES if role in roles}
 
 
-def missing_roles(roles: Mapping[str, int]) -> tuple[str, ...]:
+def find_missing_roles(roles: Mapping[str, int]) -> tuple[str, ...]:
     """Return which of the REQUIRED roles are missing: the reasons why a skeleton is no humanoid."""
     return tuple(role for role in REQUIRED if role not in roles)
 
 
 def is_humanoid(roles: Mapping[str, int]) -> bool:
-    """Whether a skeleton with these roles can gesture, stand and look; `missing_roles` says what it lacks."""
-    return not missing_roles(roles)
+    """Whether a skeleton with these roles can gesture, stand and look; `find_missing_roles` says what it
+    lacks.
+    """
+    return not find_missing_roles(roles)
 
 
-def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:
+def assign_body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:
     """Return for each joint one of PARTS.
 
     Hips and what is above them are "legs", the line from there to the neck is "spine", neck and head are
@@ -384,7 +388,7 @@ def body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tu
     return tuple(out)
 
 
-def joint_sides(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:
+def find_joint_sides(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:
     """Return for each joint "left", "right" or "centre": by role, by name, else as its parent."""
     reader = _Reader(skeleton)
     roles = find_roles(skeleton) if roles is None else roles

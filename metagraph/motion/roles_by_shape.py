@@ -174,7 +174,7 @@ class _Shape:
         return [c for c in self.skeleton.children[joint] if self.reach[c] > 0.01 * self.size()]
 
 
-def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
+def find_roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
     """Return role -> joint for a figure in a rest pose that stands: two legs, two arms, a head; {} for
     anything else. Sides are given by where the toes point, without toes as if it faced +Z.
     """

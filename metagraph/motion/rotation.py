@@ -17,7 +17,7 @@ Numbers = Any  # anything that numpy.asarray takes: arrays, nested sequences, nu
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
 
 
-def identity_rotations(shape: tuple[int, ...] = (), dtype: Any = np.float64) -> Array:
+def make_identity_rotations(shape: tuple[int, ...] = (), dtype: Any = np.float64) -> Array:
     """Return unit rotations `[*shape, 4]`."""
     out = np.zeros((*shape, 4), dtype)
     out[..., 3] = 1
@@ -184,13 +184,13 @@ def slerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
     return multiply(a, scale_rotation(multiply(conjugate(a), b), weight))
 
 
-def angle_between(a: Numbers, b: Numbers) -> Array:
+def measure_angle_between(a: Numbers, b: Numbers) -> Array:
     """Return the angle `[...]` in radians, 0..pi, between two rotations."""
     d = multiply(conjugate(a), b)
     return np.asarray(2 * np.arctan2(np.linalg.norm(d[..., :3], axis=-1), np.abs(d[..., 3])))
 
 
-def continuous(q: Numbers) -> Array:
+def make_continuous(q: Numbers) -> Array:
     """Flip signs along the first axis of `q [F, ..., 4]` so that neighbours are on the same side."""
     q = np.asarray(q)
     if len(q) < 2:
@@ -200,7 +200,7 @@ def continuous(q: Numbers) -> Array:
     return np.asarray(np.where(odd[..., None], -q, q))
 
 
-def rotation_between(a: Numbers, b: Numbers) -> Array:
+def find_rotation_between(a: Numbers, b: Numbers) -> Array:
     """Return the shortest rotation `[..., 4]` from direction `a [..., 3]` to direction `b [..., 3]`."""
     a, b = np.asarray(a, float), np.asarray(b, float)
     a = a / np.maximum(np.linalg.norm(a, axis=-1, keepdims=True), 1e-12)

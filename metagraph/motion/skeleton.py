@@ -25,7 +25,7 @@ class Skeleton:
 
     `names` are unique. `parents` is `[J]` int, -1 for a root; joint 0 is a root. `rest_rotations` is `[J, 4]`
     local, xyzw. `rest_translations` is `[J, 3]` local, in metres, Y up. Scale found in a file is applied to
-    the translations. Two skeletons are equal if their `fingerprint`s are.
+    the translations. Two skeletons are equal if their fingerprints (`joint_map.make_fingerprint`) are.
     """
 
     names: tuple[str, ...]
@@ -176,7 +176,7 @@ class Pose:
         return np.asarray(self.translations[..., 0, :])
 
 
-def unique_names(names: Sequence[str]) -> tuple[str, ...]:
+def make_names_unique(names: Sequence[str]) -> tuple[str, ...]:
     """Return the names with `_2`, `_3` ... appended to repeated ones. Empty names become `joint`."""
     seen: set[str] = set()
     last: dict[str, int] = {}

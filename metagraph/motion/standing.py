@@ -42,7 +42,7 @@ def _upright(p: Array, roles: Mapping[str, int]) -> Array:
     return np.asarray(np.min([v[:, 1] / np.maximum(np.linalg.norm(v, axis=-1), 1e-6) for v in lines], 0))
 
 
-def standing_pose(clip: Clip, roles: Mapping[str, int] | None = None) -> Pose:
+def find_standing_pose(clip: Clip, roles: Mapping[str, int] | None = None) -> Pose:
     """Return the rest pose where it stands and looks ahead, else the clip's frame that stands best: upright,
     limbs straight, feet down.
 
@@ -54,7 +54,7 @@ def standing_pose(clip: Clip, roles: Mapping[str, int] | None = None) -> Pose:
         return skeleton.rest
     if is_standing(skeleton, roles):
         trunk = [roles[r] for r in TRUNK[1:] if r in roles]
-        turned = rotation.angle_between(
+        turned = rotation.measure_angle_between(
             clip.rotations[:, trunk], skeleton.rest_rotations[trunk].astype(np.float32)
         ).min(0)
         return _faced(skeleton, [j for j, angle in zip(trunk, turned, strict=True) if angle > BACKWARD])
@@ -100,7 +100,7 @@ class StandingFigure:
         )
         limbs = [roles[f"{s}_{part}"] for s in SIDES for part in (*ARM, *LEG)]
         self.natural = bool(
-            (rotation.angle_between(pose.rotations, skeleton.rest_rotations)[limbs] < 1e-3).all()
+            (rotation.measure_angle_between(pose.rotations, skeleton.rest_rotations)[limbs] < 1e-3).all()
         ) and is_standing(skeleton, roles)
         # Axes are those of the file, turned by quarters: a figure that looks a little aside does look aside.
         quarter = np.round(np.arctan2(across[2], across[0]) / (np.pi / 2)) * np.pi / 2
@@ -164,7 +164,7 @@ def align_standing(source: StandingFigure, target: StandingFigure, roles: Sequen
             wanted, own = bone(source, role, *tips), bone(target, role, *tips)
             if min(np.linalg.norm(wanted), np.linalg.norm(own)) > 1e-4:
                 out[role] = rotation.multiply(
-                    rotation.rotation_between(rotation.rotate_vectors(before, own), wanted), before
+                    rotation.find_rotation_between(rotation.rotate_vectors(before, own), wanted), before
                 )
         return out[role]
 

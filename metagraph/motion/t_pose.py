@@ -14,7 +14,7 @@ from metagraph.motion.skeleton import Pose, Skeleton
 _ARM, _LEG = ("upper_arm", "lower_arm", "hand"), ("upper_leg", "lower_leg", "foot")
 
 
-def t_pose(skeleton: Skeleton, roles: Mapping[str, int], left: NDArray[np.float64]) -> Pose:
+def make_t_pose(skeleton: Skeleton, roles: Mapping[str, int], left: NDArray[np.float64]) -> Pose:
     """Return the T `[J]`. left: the direction to the figure's left `[3]`. Limbs that have no roles stay."""
     rotations = np.array(skeleton.rest_rotations)
     translations = np.array(skeleton.rest_translations)
@@ -25,7 +25,7 @@ def t_pose(skeleton: Skeleton, roles: Mapping[str, int], left: NDArray[np.float6
                 if joint is None or end is None:
                     continue
                 turned, at = skeleton.globals(Pose(rotations, translations))
-                swing = rotation.rotation_between(at[end] - at[joint], towards)
+                swing = rotation.find_rotation_between(at[end] - at[joint], towards)
                 parent = int(skeleton.parents[joint])
                 above = turned[parent] if parent >= 0 else rotation.IDENTITY
                 made = rotation.multiply(swing, turned[joint])

@@ -21,7 +21,7 @@ from metagraph.graph.editing.half_labels import (
     set_half_labels,
 )
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Kind, Layer, Project
-from metagraph.playback.planning.prominence import prominence
+from metagraph.playback.planning.prominence import measure_prominence
 from metagraph.playback.timing.handles import FIELDS, move_handle
 
 Column = Literal[
@@ -117,7 +117,7 @@ def read_cell(project: Project, row: ActionRow, column: Column) -> str:
         return f"{action.likelihood:g}"
     if column == "cooldown":
         return f"{action.cooldown:g}"
-    return f"{100 * prominence(project, action):.0f}"
+    return f"{100 * measure_prominence(project, action):.0f}"
 
 
 def has_limb(action: Action) -> bool:

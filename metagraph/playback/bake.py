@@ -29,7 +29,7 @@ def bake(poses: Poses, project: Project, seconds: float, fps: float = 30.0, star
     pose = poses.at(times)
     away = np.abs(pose.translations - project.skeleton.rest_translations).max(axis=(0, 2))
     moved = (0, *(int(j) for j in np.flatnonzero(away > STILL) if j > 0))
-    turned = rotation.continuous(pose.rotations)
+    turned = rotation.make_continuous(pose.rotations)
     return Clip(
         project.name,
         project.skeleton,

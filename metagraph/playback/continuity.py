@@ -100,7 +100,7 @@ class ContinuityLaw:
         """
         far, turned = measure_moves(moves_of(self._globals(shown)))
         own_far, own_turned = self._own(plan, times)
-        mixed = blending(self.project, plan, times[1:])[:, None]
+        mixed = find_blending(self.project, plan, times[1:])[:, None]
         return AddedMoves(
             np.where(mixed, np.maximum(0, far - np.maximum(own_far, self._usual[0])), 0) / self._size,
             np.where(mixed, np.maximum(0, turned - np.maximum(own_turned, self._usual[1])), 0),
@@ -195,7 +195,7 @@ def measure_usual_moves(project: Project, joints: list[int]) -> tuple[Array, Arr
     return np.percentile(far, USUAL, axis=0), np.percentile(turned, USUAL, axis=0)
 
 
-def blending(project: Project, plan: Plan, times: Array) -> Array:
+def find_blending(project: Project, plan: Plan, times: Array) -> Array:
     """Return `[N]` whether two poses blend on any layer at `times [N]`: in blends, fades and seams."""
     return _within([*_blends(plan), *_seams(project, plan)], times)
 

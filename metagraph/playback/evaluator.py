@@ -16,11 +16,11 @@ from metagraph.graph.model import LAYERS, Action, Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.life.evaluate import LifeStage, Playing
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.composer import find_playable_motion
 from metagraph.playback.posing.contacts import ContactStage
-from metagraph.playback.posing.layers import LayersStage, loop_seconds, weight_of_cue
+from metagraph.playback.posing.layers import LayersStage, compute_cue_weight, compute_loop_seconds
 from metagraph.playback.posing.overlay import Overlay, lay_over
-from metagraph.playback.posing.rigs import Rigs, rigs_of
+from metagraph.playback.posing.rigs import Rigs, get_rigs
 from metagraph.playback.posing.weight import WeightStage
 
 Array = NDArray[Any]
@@ -47,7 +47,7 @@ class Evaluator:
         without a skeleton.
         """
         self.plan, self.project = plan, project
-        self.rigs = rigs if rigs is not None else rigs_of(project)
+        self.rigs = rigs if rigs is not None else get_rigs(project)
         self._lives = project.life.on and plan.life.end > 0
         self._layers = LayersStage(plan, project, self.rigs.composer)
         self._still = _first_picture(plan, project)
@@ -158,15 +158,17 @@ class Evaluator:
             weight = 0.0
             if cue is not None:
                 playing.append((cue.action.tags, cue.start, cue.end))
-                weight = float(weight_of_cue(cue, np.array([seconds]))[0])
+                weight = float(compute_cue_weight(cue, np.array([seconds]))[0])
                 shares.append((cue.action, float(cue.clip_seconds(seconds)), weight))
             if rest is not None:
                 elapsed = np.array([seconds - rest.start])
-                at, other, old = (float(x[0]) for x in loop_seconds(self.project, rest.action, elapsed))
+                at, other, old = (
+                    float(x[0]) for x in compute_loop_seconds(self.project, rest.action, elapsed)
+                )
                 shares.append((rest.action, at, (1 - weight) * (1 - old)))
                 shares.append((rest.action, other, (1 - weight) * old))
             for action, at, share in shares:
-                motion = playable(self.project, action)
+                motion = find_playable_motion(self.project, action)
                 if motion is not None and share > 0:
                     for name, value in motion.morphs_at(at).items():
                         out[name] = out.get(name, 0.0) + share * value

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.manual.machine import Link, Manual, State
-from metagraph.graph.manual.timing import exit_moment
+from metagraph.graph.manual.timing import find_exit_moment
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -28,7 +28,7 @@ from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
 from metagraph.playback.planning.choice import pick
-from metagraph.playback.posing.composer import Ground, Reach, playable
+from metagraph.playback.posing.composer import Ground, Reach, find_playable_motion
 from metagraph.playback.posing.layers import (
     Sample,
     crossfade,
@@ -37,7 +37,7 @@ from metagraph.playback.posing.layers import (
     make_zero_offsets,
     sample_offsets,
 )
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 
 Array = NDArray[Any]
 LEAST = 1 / 30  # seconds a state plays at least: links in a circle without length take their time
@@ -126,7 +126,7 @@ def _cues(played: tuple[Played, ...], end: float) -> tuple[Cue, ...]:
     )
 
 
-def action_of(state: State) -> Action:
+def make_state_action(state: State) -> Action:
     """Return a state as the action it plays, under its own id."""
     timing = Timing(state.start, state.end, 0.0, 0.0, state.loop)
     kind: Kind = "stance" if state.loop else "gesture"
@@ -203,7 +203,7 @@ def _perform(
 
 
 def _turn(project: Project, state: State, start: float, link: Link | None) -> Played:
-    action = action_of(state)
+    action = make_state_action(state)
     blend = max(0.0, link.blend) if link is not None else 0.0
     return Played(action, start, blend, project.span(action)[0], link.id if link is not None else None)
 
@@ -219,7 +219,7 @@ def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
     """Return when a link is taken, `ready` at the earliest; in a loop the next time round."""
     start, end = project.span(here.action)
     state = project.manual[here.action.layer].states[here.action.id]
-    leave = exit_moment(project, state, link)
+    leave = find_exit_moment(project, state, link)
     if leave is None:
         return ready
     moment = here.start + leave - here.entry
@@ -264,7 +264,7 @@ def play_state_alone(project: Project, ident: str) -> ManualPlan:
     return ManualPlan(1, max(LEAST, end - start), {state.layer: ManualLayer(state.layer, (turn,))})
 
 
-def link_alone(project: Project, ident: str) -> ManualPlan:
+def plan_link_alone(project: Project, ident: str) -> ManualPlan:
     """Return a plan of one link: its source's last second, the blend, its target's first. Raises KeyError.
 
     Of a link from several states the start is the source, or if that is not one of them, or the target,
@@ -284,7 +284,7 @@ def link_alone(project: Project, ident: str) -> ManualPlan:
     )
     first = _turn(project, source, 0.0, None)
     start, end = project.span(first.action)
-    leave = exit_moment(project, source, link)
+    leave = find_exit_moment(project, source, link)
     leave = min(start + AROUND, end) if leave is None else leave
     lead = min(AROUND, leave - start)
     first = replace(first, entry=leave - lead)
@@ -302,7 +302,7 @@ class ManualEvaluator:
 
     def __init__(self, plan: ManualPlan, project: Project) -> None:
         """Raises ValueError for a project without a skeleton."""
-        rigs = rigs_of(project)
+        rigs = get_rigs(project)
         self.plan, self.project, self._rig = plan, project, rigs.composer
         self._lives = project.life.on and plan.life.end > 0
         self._life = LifeStage(project, plan.life, Track(), rigs.body)
@@ -331,9 +331,9 @@ class ManualEvaluator:
         out: dict[str, float] = {}
         for of in self.plan.layers.values():
             for turn, weight in of.shares(seconds):
-                motion = playable(self.project, turn.action)
+                motion = find_playable_motion(self.project, turn.action)
                 if motion is not None:
-                    at = float(clip_seconds(self.project, turn, seconds))
+                    at = float(compute_clip_seconds(self.project, turn, seconds))
                     for name, value in motion.morphs_at(at).items():
                         out[name] = out.get(name, 0.0) + weight * value
         if alive and self._lives:
@@ -367,7 +367,7 @@ def _layer(plan: ManualLayer, project: Project, ground: Ground, reach: Reach, ti
     return rotations, translations
 
 
-def clip_seconds(project: Project, turn: Played, times: Any) -> Any:
+def compute_clip_seconds(project: Project, turn: Played, times: Any) -> Any:
     """Return the clip seconds a turn shows at `times [...]`: round and round in a loop, else up to the end,
     where it holds.
     """
@@ -382,12 +382,12 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     """Return what a state adds to the base pose; joints it does not move, and all where its clip is missing,
     add nothing.
     """
-    motion = playable(project, turn.action)
+    motion = find_playable_motion(project, turn.action)
     if motion is None:
         return make_zero_offsets(len(times), len(reach.joints))
-    shown = sample_offsets(ground, reach, motion, clip_seconds(project, turn, times))
-    mask = anatomy.action_mask(project, turn.action)
+    shown = sample_offsets(ground, reach, motion, compute_clip_seconds(project, turn, times))
+    mask = anatomy.make_action_mask(project, turn.action)
     if mask is not None:
-        none = rotation.identity_rotations(shown[0].shape[:-1], np.float32), np.zeros_like(shown[1])
+        none = rotation.make_identity_rotations(shown[0].shape[:-1], np.float32), np.zeros_like(shown[1])
         keep_to(shown, none, mask[reach.joints])
     return shown

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.composer import find_playable_motion
 
 Array = NDArray[Any]
 
@@ -34,7 +34,7 @@ def play_clips(project: Project) -> Iterator[tuple[Array, Array]]:
     plays of its clip, F >= 3 poses at RATE, in the character's space.
     """
     for action in project.actions():
-        clip = playable(project, action)
+        clip = find_playable_motion(project, action)
         if clip is None:
             continue
         start, end = project.span(action)
@@ -42,12 +42,14 @@ def play_clips(project: Project) -> Iterator[tuple[Array, Array]]:
         yield clip.skeleton.globals(clip.pose_at(np.clip(times, 0.0, clip.duration)))
 
 
-def own_moves(project: Project, plan: Plan, layer: Layer, joint: int, time: float) -> tuple[float, float]:
+def measure_own_moves(
+    project: Project, plan: Plan, layer: Layer, joint: int, time: float
+) -> tuple[float, float]:
     """Return how fast a joint goes, m/s, and how its speed changes, m/s2, in the clip that a layer plays at a
     time, seconds, alone: the most of the poses next to it, at RATE. Zeros where only a stance's loop plays.
     """
     cue = plan.layers[layer].cue_at(time)
-    clip = playable(project, cue.action) if cue is not None else None
+    clip = find_playable_motion(project, cue.action) if cue is not None else None
     if cue is None or clip is None:
         return 0.0, 0.0
     near = float(cue.clip_seconds(time)) + np.arange(-2, 4) * cue.tempo / RATE  # not over a cycle's seam

@@ -307,7 +307,7 @@ class Plan:
     be met.
 
     track: what was asked of the life layers; life: what they do. Both begin where the plan was last cut
-    (`since`).
+    (`drop_ended`).
     """
 
     seed: int

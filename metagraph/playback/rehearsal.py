@@ -24,12 +24,12 @@ from metagraph.motion.in_place import measure_travel
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.continuity import ContinuityLaw
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
-from metagraph.playback.own_moves import RATE, find_body_joints, own_moves, play_clips
+from metagraph.playback.own_moves import RATE, find_body_joints, measure_own_moves, play_clips
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import improvise, plan_performance
-from metagraph.playback.posing.composer import playable
-from metagraph.playback.posing.contacts import contact_depths
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.composer import find_playable_motion
+from metagraph.playback.posing.contacts import measure_contact_depths
+from metagraph.playback.posing.rigs import get_rigs
 
 Array = NDArray[Any]
 
@@ -156,7 +156,7 @@ def _ask_for_each(project: Project) -> tuple[list[Play], float]:
     for layer in LAYERS:
         at = 1.0
         for action in project.graphs[layer].actions.values():
-            if action.kind == "stance" or playable(project, action) is None:
+            if action.kind == "stance" or find_playable_motion(project, action) is None:
                 continue
             asks.append(Play(id=f"rehearse {action.id}", action=action.id, layer=layer, at=at))
             start, end = project.span(action)
@@ -177,7 +177,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
     parts = tuple(part for part in PARTS if part in roles)
     joints = [roles[part] for part in parts]
     body = find_body_joints(skeleton, roles)
-    contacts = rigs_of(project).contacts
+    contacts = get_rigs(project).contacts
     evaluator = Evaluator(plan, project)
     times = np.arange(round(seconds * RATE)) / RATE
     thighs = [
@@ -201,7 +201,7 @@ def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool
         lowest.append(at[:, body, 1].min(1))
         sits.append(_is_sitting(at, thighs, [roles["hips"], roles["head"]] if thighs else []))
         inside.append(
-            contact_depths(contacts, pose).max(-1, initial=0.0)
+            measure_contact_depths(contacts, pose).max(-1, initial=0.0)
             if contacts is not None
             else np.zeros(len(some))
         )
@@ -375,9 +375,9 @@ class _Findings:
                 yield self._problem("play-jump", words, remedy, frame + 1, cause)
 
     def _own_moves(self, part: str, time: float, cause: _Cause) -> tuple[float, float]:
-        """Return what a part does at a time in the clip that the cause plays, as `own_moves`."""
+        """Return what a part does at a time in the clip that the cause plays, as `measure_own_moves`."""
         joint = anatomy.project_roles(self.project)[part]
-        return own_moves(self.project, self.plan, cause.layer, joint, time)
+        return measure_own_moves(self.project, self.plan, cause.layer, joint, time)
 
     def _own_jump(self, part: str, far: float, frame: int, cause: _Cause, alone: bool) -> Problem:
         """Return that a clip itself moves so fast. alone: whether it lasts a single moment, which no limb can
@@ -456,7 +456,7 @@ class _Findings:
     def _can_stay(self, ident: str | None) -> bool:
         """Return whether keeping an action's clip in place takes out a way that it makes."""
         action = self.project.action(ident or "")
-        clip = playable(self.project, action) if action is not None else None
+        clip = find_playable_motion(self.project, action) if action is not None else None
         if action is None or clip is None or self.project.skeleton is None:
             return False
         hips = anatomy.project_roles(self.project).get("hips", 0)

@@ -38,7 +38,7 @@ class SpokenStretch:
     end: float
 
 
-def activity(
+def find_activity(
     heard: HeardSound, pitch: Pitch | None = None, partner: HeardSound | None = None
 ) -> tuple[SpokenStretch, ...]:
     """Return when somebody speaks, by start, pauses between. pitch: of the same channel, to leave out what is
@@ -83,7 +83,7 @@ def _voiced(pitch: Pitch, a: int, b: int) -> bool:
     return float((~np.isnan(pitch.hertz[a:b])).mean() if len(pitch.hertz[a:b]) else 0.0) >= VOICED
 
 
-def crosstalk(heard: HeardSound, partner: HeardSound) -> float:
+def measure_crosstalk(heard: HeardSound, partner: HeardSound) -> float:
     """Return how loud the partner is in one's own microphone, dB relative to the partner's: their middle over
     the moments in which only the partner seems to speak. -inf where the partner says nothing.
     """
@@ -106,7 +106,7 @@ def crosstalk(heard: HeardSound, partner: HeardSound) -> float:
 
 def is_not_crosstalk(heard: HeardSound, partner: HeardSound) -> Array:
     """Return which moments `[K]` are louder than what comes over from the partner."""
-    bleed = crosstalk(heard, partner)
+    bleed = measure_crosstalk(heard, partner)
     count = min(len(heard.level), len(partner.level))
     if (
         not np.isfinite(bleed) or bleed > -3.0

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Literal
 
-from metagraph.graph.conversation.model import EVERYBODY, Conversation, Segment, others_of
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, Segment, list_other_sides
 from metagraph.graph.vocabulary import split_tokens
 
 TURN = 0.6  # seconds of silence that part two turns of one speaker
@@ -68,7 +68,7 @@ def find_speaking_spans(segments: Iterable[Segment]) -> list[tuple[float, float]
     return out
 
 
-def turns_of(conversation: Conversation) -> tuple[AddressedTurn, ...]:
+def list_addressed_turns(conversation: Conversation) -> tuple[AddressedTurn, ...]:
     """Return the turns of all sides, by start, each with whom it is said to."""
     found = sorted(
         (t for side in range(len(conversation.sides)) for t in _turns(conversation, side)),
@@ -105,7 +105,7 @@ def _inferred(
 def _turns(conversation: Conversation, side: int) -> Iterable[AddressedTurn]:
     """Yield a side's turns: parted where it says that it speaks to somebody else."""
     segments = conversation.sides[side].segments
-    names = {n: split_tokens(conversation.sides[n].name) for n in others_of(conversation, side)}
+    names = {n: split_tokens(conversation.sides[n].name) for n in list_other_sides(conversation, side)}
     ends = iter([end for _, end in find_speaking_spans(segments)])
     end = next(ends, 0.0)
     some: list[Segment] = []
@@ -144,7 +144,7 @@ def _called(text: str, names: dict[int, tuple[str, ...]]) -> int | None:
     return max(found)[1] if found else None
 
 
-def floor(turns: Iterable[AddressedTurn]) -> tuple[tuple[float, float, AddressedTurn], ...]:
+def find_floor_holders(turns: Iterable[AddressedTurn]) -> tuple[tuple[float, float, AddressedTurn], ...]:
     """Return from when to when which of some turns holds the floor: of those at once the one that began
     first. By start; nothing while nobody speaks.
     """
@@ -158,11 +158,11 @@ def floor(turns: Iterable[AddressedTurn]) -> tuple[tuple[float, float, Addressed
     return tuple(out)
 
 
-def roles_of(conversation: Conversation, side: int) -> tuple[Role, ...]:
+def list_side_roles(conversation: Conversation, side: int) -> tuple[Role, ...]:
     """Return what a side is from 0 to the conversation's length, without gaps."""
-    every = turns_of(conversation)
-    own = floor(t for t in every if t.side == side)
-    theirs = floor(t for t in every if t.side != side)
+    every = list_addressed_turns(conversation)
+    own = find_floor_holders(t for t in every if t.side == side)
+    theirs = find_floor_holders(t for t in every if t.side != side)
     edges = sorted(
         {0.0, conversation.length, *(x for part in (own, theirs) for a, b, _ in part for x in (a, b))}
     )

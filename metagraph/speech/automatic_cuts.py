@@ -61,7 +61,7 @@ def list_turns(conversation: Conversation) -> list[FloorTurn]:
     return sorted(some, key=lambda t: (t.start, t.end))
 
 
-def automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
+def make_automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
     """Return the cuts, by time; the first at 0."""
     found = list_turns(conversation)
     cuts = [Cut(at=0.0, shot="two")]
@@ -148,7 +148,7 @@ def keep_filmed_conversation(project: Project, conversation: Conversation) -> tu
     project, ident = add_conversation(project, conversation)
     if len(conversation.sides) < 2:
         return project, ident
-    return change_timeline(project, ident, cuts=automatic_cuts(conversation)), ident
+    return change_timeline(project, ident, cuts=make_automatic_cuts(conversation)), ident
 
 
 def _between_words(conversation: Conversation, side: int, at: float) -> float:

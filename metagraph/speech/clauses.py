@@ -26,12 +26,12 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import SHORTEST, Segment, Spoken, Word
-from metagraph.graph.vocabulary import Vocabulary, join_tokens, kinds_of_words, split_tokens
-from metagraph.speech.activity import PAUSE, SpokenStretch, activity
+from metagraph.graph.vocabulary import Vocabulary, join_tokens, make_word_vocabularies, split_tokens
+from metagraph.speech.activity import PAUSE, SpokenStretch, find_activity
 from metagraph.speech.language_packs import LanguagePack, read_english_pack
-from metagraph.speech.pitch import Pitch, peaks, smooth
+from metagraph.speech.pitch import Pitch, find_pitch_peaks, smooth
 from metagraph.speech.sound import HeardSound
-from metagraph.speech.stress import CLOSED, rate_stresses, split_into_clauses
+from metagraph.speech.stress import CLOSED, measure_stresses, split_into_clauses
 
 Array = NDArray[Any]
 
@@ -53,7 +53,7 @@ class _Part:
     last: int
 
 
-def segments(
+def find_segments(
     words: Sequence[Word],
     pitch: Pitch,
     heard: HeardSound,
@@ -66,30 +66,30 @@ def segments(
 
     `words` are as transcribed, by start. `pitch` and `heard` are those of the side's own channel, `partner`
     that of the other side, if that is another channel. `responses` and `hesitations` replace the language's
-    own lists. `language` is None for English. Without words, `segment_by_sound` is used.
+    own lists. `language` is None for English. Without words, `find_segments_by_sound` is used.
     """
     words = order_words(words, heard.duration)
     if not words:
-        return segment_by_sound(words, pitch, heard, partner)
+        return find_segments_by_sound(words, pitch, heard, partner)
     spoken = language if language is not None else read_english_pack()
     lists = [
         tuple(own if some is None else some)
         for own, some in ((spoken.responses, responses), (spoken.hesitations, hesitations))
     ]
-    answers, pauses, _, both = kinds_of_words(lists[0], lists[1])
+    answers, pauses, _, both = make_word_vocabularies(lists[0], lists[1])
     tones = smooth(pitch)
     said = [split_tokens(w.text) for w in words]
     found = _parts(words, said, answers, pauses, both, spoken.lexical)
     return _segments(words, said, found, pitch, tones, heard, spoken)
 
 
-def segment_by_sound(
+def find_segments_by_sound(
     words: Sequence[Word], pitch: Pitch, heard: HeardSound, partner: HeardSound | None
 ) -> tuple[Segment, ...]:
     """Return one side's clauses and responses without understanding words, because there are none or their
     language is unknown. Hesitations are not found.
 
-    Loudness decides (`activity.activity`): a sound between pauses is a clause, a short sound while the
+    Loudness decides (`activity.find_activity`): a sound between pauses is a clause, a short sound while the
     partner talks a response. If a channel is shared or nothing stands out from it, the times of words decide.
     """
     words, tones = order_words(words, heard.duration), smooth(pitch)
@@ -115,7 +115,7 @@ def _segments(
     language: LanguagePack | None,
 ) -> tuple[Segment, ...]:
     """Return parts as segments, with clauses divided further by stress."""
-    stress = rate_stresses(words, said, tones, heard, language)
+    stress = measure_stresses(words, said, tones, heard, language)
     out: list[Segment] = []
     for part in parts:
         groups = [(part.first, part.last)]
@@ -161,7 +161,7 @@ def find_stress_time(pitch: Pitch, tones: Array, heard: HeardSound, start: float
     """Return the time of the stress between two times, in seconds: F0's most prominent peak or, without a
     voice, the loudest moment. `tones` is `pitch.smooth(pitch)`.
     """
-    found = peaks(pitch, start, end, tones)
+    found = find_pitch_peaks(pitch, start, end, tones)
     if found:
         return min(max(round(found[0], 3), start), end)
     part = slice(int(np.searchsorted(heard.times, start)), int(np.searchsorted(heard.times, end, "right")))
@@ -294,8 +294,8 @@ def _answers(words: Sequence[Word], first: int, last: int) -> bool:
 def _by_loudness(
     pitch: Pitch, tones: Array, heard: HeardSound, partner: HeardSound | None
 ) -> tuple[Segment, ...]:
-    own = activity(heard, pitch, partner)
-    others = activity(partner, None, heard) if partner is not None else ()
+    own = find_activity(heard, pitch, partner)
+    others = find_activity(partner, None, heard) if partner is not None else ()
     out: list[Segment] = []
     for n, s in enumerate(own):
         before = s.start - own[n - 1].end if n else np.inf

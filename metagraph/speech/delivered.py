@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from metagraph.common.wording import phrase
-from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, segments_heard_by
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Plan
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.drive import TOLERANCE, draw_segments, find_clause_peak, key_segments
 
 NAMES = {
@@ -76,7 +76,7 @@ def count_delivered(
     """Return what a side's plan does with each kind of segments, of those its rates are about. project: whose
     graph moves it.
     """
-    every = key_segments(segments_heard_by(conversation, side))
+    every = key_segments(list_segments_heard_by(conversation, side))
     drawn = draw_segments(conversation, side)
     told = [_told(cue, project) for cue in plan.layers["arms"].cues if cue.action.kind == "gesture"]
     nods = [cue for cue in plan.layers["head"].cues if cue.action.kind == "gesture"]
@@ -92,7 +92,7 @@ def count_delivered(
 
 def _told(cue: Cue, project: Project) -> tuple[float, float]:
     """Return when a gesture's stroke is, and when its hold ends."""
-    found = phases(project, cue.action)
+    found = find_phases(project, cue.action)
     stroke = cue.start + (found.stroke - cue.entry) / cue.tempo
     if cue.repeats:
         return stroke, cue.end - cue.blend_out

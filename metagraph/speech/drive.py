@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from metagraph.graph.conversation.model import Conversation, Segment, others_of, segments_heard_by
+from metagraph.graph.conversation.model import Conversation, Segment, list_other_sides, list_segments_heard_by
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import (
     AnyRequest,
@@ -31,13 +31,13 @@ from metagraph.graph.requests import (
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.running_plan import plan_performance
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.addressing import TURN, find_speaking_spans
 from metagraph.speech.gesture_choice import GestureClause, choose_gestures
-from metagraph.speech.group_gaze import looks_of
+from metagraph.speech.group_gaze import list_looks
 from metagraph.speech.mode_spans import list_modes
-from metagraph.speech.peak_blinks import peak_blinks
-from metagraph.speech.turn_cues import LISTEN, look_at_turns, nod_to_clauses
+from metagraph.speech.peak_blinks import place_peak_blinks
+from metagraph.speech.turn_cues import LISTEN, look_at_turns, place_clause_nods
 
 PARTNER = "partner"  # named point of the other's head; if there are several, with a number from 1
 TOLERANCE = 0.1  # seconds by which a stroke may miss its peak (section 7.2)
@@ -74,11 +74,11 @@ def drive_side(
     ]
     if conversation.blinks == "peaks":
         peaks = [s.peak for s in conversation.sides[side].segments if s.peak is not None]
-        found = peak_blinks(peaks, conversation.length, conversation.seed, str(side))
+        found = place_peak_blinks(peaks, conversation.length, conversation.seed, str(side))
         out += [Blink(id=f"blink {n}", at=at) for n, at in enumerate(found)]
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
-    heard, said = segments_heard_by(conversation, side), _meanings(project)
+    heard, said = list_segments_heard_by(conversation, side), _meanings(project)
     busy = [(s.start, s.end) for s in conversation.sides[side].segments]
     drawn = draw_segments(conversation, side)
     tags = {
@@ -101,7 +101,7 @@ def drive_side(
     if nods:
         head = project.graphs["head"]
         small = any(LISTEN in a.tags for a in head.of(head.start or "", "gesture"))
-        listened = list(nod_to_clauses(conversation, side, small))
+        listened = list(place_clause_nods(conversation, side, small))
         out += listened
         busy += [(nod.at or 0.0, (nod.at or 0.0) + 1.0) for nod in listened]
     if "transition" in kinds["body"]:
@@ -123,7 +123,7 @@ def drive_side(
 
 def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Iterator[AnyRequest]:
     """Yield where the others' heads are, and who is looked at when."""
-    others = others_of(conversation, side)
+    others = list_other_sides(conversation, side)
     if len(others) == 1:
         yield Place(id=PARTNER, at=0.0, name=PARTNER, point=heads[0])
         yield Look(id="look", at=0.0, to=PARTNER)
@@ -132,7 +132,7 @@ def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Ite
     for n, other in enumerate(others):
         name = f"{PARTNER} {other + 1}"
         yield Place(id=name, at=0.0, name=name, point=heads[min(n, len(heads) - 1)])
-    for n, look in enumerate(looks_of(conversation, side)):
+    for n, look in enumerate(list_looks(conversation, side)):
         yield Look(id=f"look {n}", at=look.at, to=f"{PARTNER} {look.side + 1}")
 
 
@@ -147,7 +147,7 @@ def draw_segments(conversation: Conversation, side: int) -> frozenset[str]:
     rates = conversation.sides[side].rates
     return frozenset(
         key
-        for key, s in key_segments(segments_heard_by(conversation, side))
+        for key, s in key_segments(list_segments_heard_by(conversation, side))
         if s.kind != "idle" and uniform(conversation.seed, str(side), key) < getattr(rates, s.kind)
     )
 
@@ -171,7 +171,9 @@ def _chosen(
     stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
     every = [a for a in graph.of(stance, "gesture") if a.likelihood > 0]
     every = [a for a in every if a.cooldown <= 0] or every
-    said = [(key, s) for key, s in key_segments(segments_heard_by(conversation, side)) if s.kind == "clause"]
+    said = [
+        (key, s) for key, s in key_segments(list_segments_heard_by(conversation, side)) if s.kind == "clause"
+    ]
     clauses = [
         GestureClause(key, find_clause_peak(s), key in drawn, _fitting(every, tags[key])) for key, s in said
     ]
@@ -247,13 +249,13 @@ def drive(
     ), plan
 
 
-def strokes(project: Project, plan: Plan) -> dict[str, float]:
+def find_stroke_times(project: Project, plan: Plan) -> dict[str, float]:
     """Return the time of each requested gesture's stroke, in seconds, by the request's id."""
     out: dict[str, float] = {}
     for cue in plan.layers["arms"].cues:
         if cue.action.kind == "gesture":
             out[cue.meta.partition("+")[0]] = (
-                cue.start + (phases(project, cue.action).stroke - cue.entry) / cue.tempo
+                cue.start + (find_phases(project, cue.action).stroke - cue.entry) / cue.tempo
             )
     return out
 
@@ -262,7 +264,7 @@ def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
     """Return requests for gestures that are not played or miss their peak; of several in a row every second
     one, because without it the next may fit.
     """
-    found = strokes(project, plan)
+    found = find_stroke_times(project, plan)
     out: set[str] = set()
     before = False
     for ask in sorted((a for a in asks if isinstance(a, Gesture | Play)), key=lambda a: a.stroke or 0.0):

@@ -16,17 +16,17 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.graph import anatomy
-from metagraph.graph.conversation.model import Conversation, Side, others_of
+from metagraph.graph.conversation.model import Conversation, Side, list_other_sides
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Line, Performance, Point
 from metagraph.motion import rotation
 from metagraph.playback.life.body import LIFELESS
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.speech.delivered import Delivered, count_delivered
 from metagraph.speech.drive import drive
-from metagraph.speech.gaze_shares import GazeShare, gaze_shares
+from metagraph.speech.gaze_shares import GazeShare, measure_gaze_shares
 from metagraph.speech.lines import read_spoken_voice
 from metagraph.speech.mirroring import Mover, list_mirrored_stances
 from metagraph.speech.sympathies import list_sympathies
@@ -117,12 +117,14 @@ def _facing(at: Sequence[tuple[float, float]], n: int) -> float:
     return atan2(x, z) if hypot(x, z) > 1e-3 else 0.0
 
 
-def side_line(side: Side) -> Line:
+def make_side_line(side: Side) -> Line:
     """Return the line that has a side's voice."""
     return Line(text=" ".join(w.text for w in side.words)[:20000], audio=side.audio, channel=side.channel)
 
 
-def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None, ...], tuple[str, ...]]:
+def load_conversation_voices(
+    conversation: Conversation, folder: Path
+) -> tuple[tuple[Voice | None, ...], tuple[str, ...]]:
     """Return each side's voice, None if its sound is missing, and what could not be read, in words. folder:
     what paths begin at.
     """
@@ -139,7 +141,7 @@ def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None
     return tuple(found), tuple(dict.fromkeys(notes))
 
 
-def duet(
+def plan_duet(
     conversation: Conversation, ident: str, projects: Sequence[Project], heard: Sequence[Voice | None]
 ) -> Duet:
     """Return all characters' plans. ident: the conversation's id. projects: of each side. heard: their
@@ -155,7 +157,7 @@ def duet(
             (0.0, round(_head(projects[m]), 3), conversation.distance)
             if ahead
             else places[n].own(places[m].world(_eyes(projects[m])))
-            for m in others_of(conversation, n)
+            for m in list_other_sides(conversation, n)
         )
         performance, plan = drive(conversation, n, *known, heads)
         driven.append((known, heads, performance))
@@ -170,7 +172,7 @@ def duet(
         if taken_up:
             performance, plan = drive(conversation, n, *known, heads, more=taken_up)
         told = count_delivered(conversation, n, known[0], plan)
-        looks = gaze_shares(conversation, n, known[0], plan)
+        looks = measure_gaze_shares(conversation, n, known[0], plan)
         parts.append(DuetPart(known[0], performance, plan, places[n], told, looks))
     return Duet(tuple(parts), conversation.length)
 
@@ -185,7 +187,9 @@ def _with_voice(
         peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
         voice = replace(voice, stresses=np.array(peaks)) if peaks else voice
         project = replace(
-            project, lines={**project.lines, line: side_line(side)}, voices={**project.voices, line: voice}
+            project,
+            lines={**project.lines, line: make_side_line(side)},
+            voices={**project.voices, line: voice},
         )
     if conversation.blinks == "peaks":  # and no others
         project = replace(project, life=msgspec.structs.replace(project.life, blinks=0.0, accent_blinks=0.0))
@@ -209,7 +213,7 @@ def _head(project: Project) -> float:
 
 def _eyes(project: Project) -> Point:
     """Return where a character's eyes are, metres, in its own space."""
-    body = rigs_of(project).body if project.skeleton is not None else LIFELESS
+    body = get_rigs(project).body if project.skeleton is not None else LIFELESS
     if body.empty:
         return 0.0, round(_head(project), 3), 0.0
     x, y, z = (round(v, 3) for v in body.eyes_at_rest)

@@ -15,8 +15,8 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Point
 from metagraph.playback.life.gaze import BodyGaze
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.rigs import rigs_of
-from metagraph.speech.addressing import roles_of
+from metagraph.playback.posing.rigs import get_rigs
+from metagraph.speech.addressing import list_side_roles
 from metagraph.speech.drive import find_partner_points
 
 FACE = 0.14  # metres round the middle of a head that are its face, hair and chin with it
@@ -68,16 +68,18 @@ class GazeShare:
         )
 
 
-def gaze_shares(conversation: Conversation, side: int, project: Project, plan: Plan) -> tuple[GazeShare, ...]:
+def measure_gaze_shares(
+    conversation: Conversation, side: int, project: Project, plan: Plan
+) -> tuple[GazeShare, ...]:
     """Return where a side looks by what it does, in the order of `NAMES`; nothing of what it never does, and
     nothing of two, who have nobody else to look at. project: whose graph moves it.
     """
     points = find_partner_points(plan)
     if len(conversation.sides) < 3 or not points or not project.life.on:
         return ()
-    gaze = BodyGaze(plan.life, project.life, rigs_of(project).body, project.points)
+    gaze = BodyGaze(plan.life, project.life, get_rigs(project).body, project.points)
     found: dict[Doing, list[int]] = {doing: [0, 0, 0] for doing in NAMES}
-    roles, place = roles_of(conversation, side), 0
+    roles, place = list_side_roles(conversation, side), 0
     step = max(STEP, conversation.length / MOST)
     for n in range(int(conversation.length / step)):
         at = (n + 0.5) * step

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Action, Project
 from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.cue_shapes import HURRY
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 Array = NDArray[Any]
 
@@ -141,7 +141,7 @@ def _of_turn(
 
 
 def _lengths(project: Project, action: Action) -> _Lengths:
-    found = phases(project, action)
+    found = find_phases(project, action)
     return _Lengths(
         found.stroke - found.start,
         found.stroke - found.skip(action.timing.blend_in),

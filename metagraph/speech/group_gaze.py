@@ -18,9 +18,16 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from metagraph.graph.conversation.model import EVERYBODY, Conversation, others_of
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, list_other_sides
 from metagraph.playback.planning.choice import uniform
-from metagraph.speech.addressing import ANSWER, OVERLAP, AddressedTurn, Role, roles_of, turns_of
+from metagraph.speech.addressing import (
+    ANSWER,
+    OVERLAP,
+    AddressedTurn,
+    Role,
+    list_addressed_turns,
+    list_side_roles,
+)
 
 AT_SPEAKER, AT_ADDRESSEE = 0.88, 0.77  # of looks at faces, listening and speaking (Vertegaal et al. 2001)
 GLANCE = (0.6, 0.6)  # seconds a look at somebody else lasts: at least, and what chance adds
@@ -42,12 +49,12 @@ class LookAtFace:
     side: int
 
 
-def looks_of(conversation: Conversation, side: int) -> tuple[LookAtFace, ...]:
+def list_looks(conversation: Conversation, side: int) -> tuple[LookAtFace, ...]:
     """Return whose face a side looks at from when on, by time; the first at 0."""
-    others = others_of(conversation, side)
+    others = list_other_sides(conversation, side)
     if len(others) == 1:
         return (LookAtFace(0.0, others[0]),)
-    roles, turns = roles_of(conversation, side), turns_of(conversation)
+    roles, turns = list_side_roles(conversation, side), list_addressed_turns(conversation)
     seen: Counter[str] = Counter()
     found: list[LookAtFace] = []
     before: AddressedTurn | None = None

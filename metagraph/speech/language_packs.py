@@ -143,7 +143,7 @@ def list_pack_words(words: str | Collection[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(w for w in each if w))
 
 
-def language_of(pack: PackFile, others: Mapping[str, LanguagePack]) -> LanguagePack:
+def make_language(pack: PackFile, others: Mapping[str, LanguagePack]) -> LanguagePack:
     """Return a pack as it is used. others: those it may borrow from, by code. Raises PackError naming the
     field that is wrong.
     """
@@ -179,7 +179,7 @@ def language_of(pack: PackFile, others: Mapping[str, LanguagePack]) -> LanguageP
         pack.rests_on,
         pack.sure,
         pack.spaced,
-        frozenset(tokens_letters(pack.letters)),
+        frozenset(normalize_letters(pack.letters)),
         pack.letters_a_word,
         tuple(dict.fromkeys((*lists["responses"], *borrowed))),
         lists["hesitations"],
@@ -193,7 +193,7 @@ _PHRASES = ("responses", "hesitations", "lexical")
 _LISTS = (*_PHRASES, "small", "joining", "trailing", "inside", "closing", "elided")
 
 
-def tokens_letters(letters: str) -> str:
+def normalize_letters(letters: str) -> str:
     """Return letters in the form tokens have."""
     return "".join(split_tokens(letters))
 
@@ -203,7 +203,7 @@ def list_language_packs() -> Mapping[str, LanguagePack]:
     """Return the packs that come with the program, by code, English first."""
     out: dict[str, LanguagePack] = {}
     for path in sorted(FOLDER.glob("*.json"), key=lambda p: (p.stem != ENGLISH, p.stem)):
-        pack = language_of(msgspec.json.decode(path.read_bytes(), type=PackFile), out)
+        pack = make_language(msgspec.json.decode(path.read_bytes(), type=PackFile), out)
         out[pack.code] = pack
     return out
 

@@ -11,18 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS, LINE_SECONDS
-from metagraph.common.files import unforeseen_error
+from metagraph.common.files import make_unforeseen_error
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.playback.life.voice import Voice, make_voice, silent
+from metagraph.playback.life.voice import Voice, make_silent_voice, make_voice
 from metagraph.speech.mouth_files.model import MouthShapes
 from metagraph.speech.mouth_files.registry import read_mouth_file
-from metagraph.speech.phones import pieces_of
-from metagraph.speech.sound import analyse_sound, guess_mouth_shapes, read_sound, syllables
+from metagraph.speech.phones import list_mouth_pieces
+from metagraph.speech.sound import analyse_sound, find_syllables, guess_mouth_shapes, read_sound
 from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid
 
 Array = NDArray[Any]
@@ -49,7 +49,7 @@ def read_line_voice(
     if told.weights is None or told.times is None:
         return _voice(samples, rate, list(told.pieces))
     heard = analyse_sound(samples, rate)
-    return Voice(heard.duration, *_track(told, heard.duration, *syllables(heard)))
+    return Voice(heard.duration, *_track(told, heard.duration, *find_syllables(heard)))
 
 
 def _tell(notes: list[str] | None, path: str | Path, told: MouthShapes) -> None:
@@ -77,13 +77,13 @@ def read_spoken_voice(audio: str | Path, channel: int | None = None, words: Sequ
     if not words:
         return _voice(samples, rate, None)
     tier = GridTier("words", tuple(GridInterval(w.start, w.end, w.text) for w in words))
-    return _voice(samples, rate, pieces_of(TextGrid(0.0, len(samples) / rate, (tier,))))
+    return _voice(samples, rate, list_mouth_pieces(TextGrid(0.0, len(samples) / rate, (tier,))))
 
 
 def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
     """Return the voice of a sound. `told` has the mouth's shapes; None finds them in the sound."""
     heard = analyse_sound(samples, rate)
-    peaks, strengths = syllables(heard)
+    peaks, strengths = find_syllables(heard)
     pieces = guess_mouth_shapes(heard) if told is None else told
     pieces = [replace(p, end=min(p.end, heard.duration)) for p in pieces if p.start < heard.duration]
     if told is not None:  # a vowel's loudness shows how open it is
@@ -93,7 +93,7 @@ def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
             for p, x in zip(pieces, loud, strict=True)
         ]
     if not pieces:
-        return silent(heard.duration)
+        return make_silent_voice(heard.duration)
     return make_voice(pieces, heard.duration, peaks, strengths)
 
 
@@ -114,7 +114,7 @@ def make_voice_from_phones(phones: str | Path) -> Voice:
     if told.weights is not None:
         return Voice(max(duration, 0.0), *_track(told, duration, np.zeros(0), np.zeros(0)))
     if not pieces:
-        return silent(max(duration, 0.0))
+        return make_silent_voice(max(duration, 0.0))
     vowels = [
         p
         for n, p in enumerate(pieces)
@@ -156,7 +156,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
             try:
                 voice = read_line(attempt, folder, notes)
             except Exception as error:  # a bad sound must not stop a project
-                why = unforeseen_error(folder / (line.audio or line.phones or ""), error)
+                why = make_unforeseen_error(folder / (line.audio or line.phones or ""), error)
                 note = phrase("line '{ident}': {why}", ident=ident, why=why.words)
                 if note not in notes:
                     notes.append(note)

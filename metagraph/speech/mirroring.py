@@ -20,7 +20,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Go
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.choice import uniform
-from metagraph.speech.addressing import roles_of
+from metagraph.speech.addressing import list_side_roles
 
 Array = NDArray[Any]
 
@@ -44,12 +44,12 @@ def list_mirrored_stances(conversation: Conversation, own: Mover, others: Sequen
     it is. Nothing where either has no stances to tell apart, or bodies cannot be compared.
     """
     side, plan = own.side, own.plan.layers["body"]
-    share, shapes = conversation.sides[side].rates.mirror, stance_shapes(own.project)
+    share, shapes = conversation.sides[side].rates.mirror, measure_stance_shapes(own.project)
     if share <= 0 or len(shapes) < 2:
         return
     taken: tuple[float, str] | None = None
     speaks = [(s.start, s.end) for s in conversation.sides[side].segments]
-    theirs = {o.side: stance_shapes(o.project) for o in others}
+    theirs = {o.side: measure_stance_shapes(o.project) for o in others}
     for cue, other, key, at in sorted(_seen(conversation, side, others), key=lambda x: x[3]):
         shown = theirs[other]
         if len(shown) < 2 or cue.then == cue.stance or cue.then not in shown or at >= conversation.length:
@@ -72,7 +72,7 @@ def _seen(
     conversation: Conversation, side: int, others: Sequence[Mover]
 ) -> Iterator[tuple[Cue, int, str, float]]:
     """Yield what others' bodies do, whose it is, its key, and when it would be taken up, seconds."""
-    listens = [r for r in roles_of(conversation, side) if r.part in ("addressed", "aside")]
+    listens = [r for r in list_side_roles(conversation, side) if r.part in ("addressed", "aside")]
     for other in others:
         for n, cue in enumerate(other.plan.layers["body"].cues):
             key = f"mirror {n}" if len(others) == 1 else f"mirror {other.side + 1} {n}"
@@ -81,7 +81,7 @@ def _seen(
                 yield cue, other.side, key, at
 
 
-def stance_shapes(project: Project) -> dict[str, Array]:
+def measure_stance_shapes(project: Project) -> dict[str, Array]:
     """Return where `SEEN` is in each stance of the body `[6, 3]`, x to the left, from the hips, in units of
     the hips' height; none if that cannot be told.
     """

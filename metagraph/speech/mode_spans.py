@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from metagraph.graph.conversation.model import Conversation, Segment, others_of
+from metagraph.graph.conversation.model import Conversation, Segment, list_other_sides
 from metagraph.graph.model import Mode
 from metagraph.speech.addressing import find_speaking_spans
 
@@ -31,7 +31,7 @@ def list_modes(conversation: Conversation, side: int) -> Iterator[tuple[float, M
     own = find_speaking_spans(segments)
     other = [
         span
-        for n in others_of(conversation, side)
+        for n in list_other_sides(conversation, side)
         for span in find_speaking_spans(conversation.sides[n].segments)
     ]
     thinks, reacts = list(_thinking(segments, other)), list(_reacting(segments, conversation.length))

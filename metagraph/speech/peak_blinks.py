@@ -12,7 +12,7 @@ AFTER = 1.0  # seconds since the last blink at which a peak brings another
 WITHOUT = 5.0  # seconds without a blink, in which one is keyed at random
 
 
-def peak_blinks(peaks: Sequence[float], length: float, seed: int, key: str = "") -> list[float]:
+def place_peak_blinks(peaks: Sequence[float], length: float, seed: int, key: str = "") -> list[float]:
     """Return when somebody blinks from 0 to length seconds: at the first peak, at those that come at least
     `AFTER` seconds after the last blink, and once in each `WITHOUT` seconds in which there is none. peaks:
     seconds, ascending. key: of the draws.

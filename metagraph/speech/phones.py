@@ -134,7 +134,7 @@ def is_arpabet(labels: Iterable[str]) -> bool:
     return bool(plain) and known >= 0.75 * len(plain) and any(x in _LONG_VOWELS for x in plain)
 
 
-def visemes_of(label: str, arpabet: bool) -> tuple[list[str], float]:
+def find_visemes(label: str, arpabet: bool) -> tuple[list[str], float]:
     """Return a phone's mouth shapes in turn, none for silence, and how fully they are made, 0..1."""
     if label.strip().casefold() in _SILENT:
         return [], 0.0
@@ -164,7 +164,7 @@ def _bare(label: str) -> str:
     return re.sub(r"[^a-z]", "", label.strip().casefold())
 
 
-def pieces_of(grid: TextGrid) -> list[MouthPiece]:
+def list_mouth_pieces(grid: TextGrid) -> list[MouthPiece]:
     """Return what the mouth goes through in a TextGrid, by its phones or, where it has none, its words."""
     tiers = [
         t for t in grid.tiers if not t.points and any(i.text.casefold() not in _SILENT for i in t.intervals)
@@ -172,7 +172,7 @@ def pieces_of(grid: TextGrid) -> list[MouthPiece]:
     phones = _pick(tiers, r"phon|segment|sampa|ipa|\bmau\b|\bph\b|^phs?$", short=True)
     if phones is not None:
         arpabet = is_arpabet(i.text for i in phones.intervals)
-        return [p for i in _in_turn(phones) for p in _spread(i, *visemes_of(i.text, arpabet))]
+        return [p for i in _in_turn(phones) for p in _spread(i, *find_visemes(i.text, arpabet))]
     words = _pick(tiers, r"word|ort|transcript|text|utter|phrase", short=False)
     return [p for i in _in_turn(words) for p in _spell(i)] if words is not None else []
 

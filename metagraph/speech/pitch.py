@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.speech.sound import HOP
-from metagraph.speech.yin import yin
+from metagraph.speech.yin import measure_f0_by_yin
 
 Array = NDArray[Any]
 
@@ -41,7 +41,7 @@ class Pitch:
     hertz: Array
 
 
-def pitch(samples: Array, rate: int) -> Pitch:
+def measure_pitch(samples: Array, rate: int) -> Pitch:
     """Return the pitch of a voice. samples: `[N]`, about -1..1; rate: samples a second. Hours take memory for
     the samples alone.
     """
@@ -106,7 +106,7 @@ def _block(
     if not some.any():
         return hertz, repeats, level
     frames = frames[some]
-    found = yin(frames, own, *bounds)
+    found = measure_f0_by_yin(frames, own, *bounds)
     period = np.clip(np.round(own / found).astype(int), 2, size // 2)
     one = frames[:, : size - size // 2]
     two = np.take_along_axis(frames, np.arange(size - size // 2)[None, :] + period[:, None], 1)
@@ -170,7 +170,7 @@ def smooth(found: Pitch) -> Array:
     return np.where(np.isnan(tones), np.nan, total / np.maximum(weight, 1e-9))
 
 
-def peaks(found: Pitch, start: float, end: float, tones: Array | None = None) -> tuple[float, ...]:
+def find_pitch_peaks(found: Pitch, start: float, end: float, tones: Array | None = None) -> tuple[float, ...]:
     """Return when F0 has its local maxima between two times, seconds, the most prominent first: those that
     are followed and preceded by the deepest falls, and, among equals, the highest. Where it only rises or
     falls, its highest moment. () if there is no voice. tones: `smooth(found)`, if that is at hand.

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import Segment, Sound, Word
 from metagraph.speech.loudness import measure_loudness_within
-from metagraph.speech.sound import analyse_sound, syllables
+from metagraph.speech.sound import analyse_sound, find_syllables
 
 Array = NDArray[Any]
 
@@ -30,7 +30,7 @@ class Prosody:
     rate: Array
 
 
-def prosody(
+def measure_prosody(
     segments: Sequence[Segment], words: Sequence[Word] = (), samples: Array | None = None, rate: int = 0
 ) -> Prosody:
     """Return how the segments of a recording are said. words: of the same speaker, with their times. samples,
@@ -47,15 +47,15 @@ def prosody(
         loud = measure_loudness_within(samples, rate, [(s.start, s.end) for s in segments])
     found = _by_words(segments, words)
     if np.isnan(found).all():
-        found = np.array([_of(letters(s.text), s.end - s.start) for s in segments])
+        found = np.array([_of(count_letters(s.text), s.end - s.start) for s in segments])
     if np.isnan(found).all() and samples is not None and any(own):
-        peaks = syllables(analyse_sound(samples, rate))[0]
+        peaks = find_syllables(analyse_sound(samples, rate))[0]
         count = [np.searchsorted(peaks, s.end) - np.searchsorted(peaks, s.start) for s in segments]
         found = np.array([_of(int(n), s.end - s.start) for n, s in zip(count, segments, strict=True)])
     return Prosody(np.where(own, loud, np.nan), np.where(own, found, np.nan))
 
 
-def letters(text: str) -> int:
+def count_letters(text: str) -> int:
     """Return how many letters and digits a text has; marks on letters are of the letter."""
     return sum(unicodedata.category(c)[0] in "LN" for c in text)
 
@@ -72,5 +72,5 @@ def _by_words(segments: Sequence[Segment], words: Sequence[Word]) -> Array:
         a, b = np.searchsorted(middles, (s.start, s.end))
         inside = ordered[a:b]
         if inside:
-            out[n] = _of(sum(letters(w.text) for w in inside), inside[-1].end - inside[0].start)
+            out[n] = _of(sum(count_letters(w.text) for w in inside), inside[-1].end - inside[0].start)
     return out

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 Array = NDArray[Any]
 
 
-def percentile(values: Array, share: float) -> float:
+def compute_percentile(values: Array, share: float) -> float:
     """Return the value below which `share` percent of all lie, linear between two. values: `[N]`, at least
     one, float64.
     """

@@ -28,7 +28,7 @@ from metagraph.common.files import check_file, guard_reader, is_file, open_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.speech.quantile import percentile
+from metagraph.speech.quantile import compute_percentile
 
 Array = NDArray[Any]
 
@@ -352,7 +352,7 @@ def analyse_sound(samples: Array, rate: int) -> HeardSound:
             centres[row, now] = (amplitude @ hertz[some]) / np.maximum(amplitude.sum(1), 1e-12)
     speech, high, forward, back, low = energies
     level = _smooth(10 * np.log10(speech + 1e-12), SMOOTH / HOP)
-    floor, top = percentile(level, 8), percentile(level, 97)
+    floor, top = compute_percentile(level, 8), compute_percentile(level, 97)
     if top < _HUSH or top - floor < _LEAST_RANGE:
         loud = (
             np.zeros(count)
@@ -363,7 +363,7 @@ def analyse_sound(samples: Array, rate: int) -> HeardSound:
         softest = max(floor + 0.3 * (top - floor), top - BELOW)
         loud = np.clip((level - softest) / (top - softest), 0, 1)
     high_level = 10 * np.log10(high + 1e-12)
-    bursts = (high_level > percentile(high_level, 20) + _BURST) & (
+    bursts = (high_level > compute_percentile(high_level, 20) + _BURST) & (
         high_level > _HUSH
     )  # a hiss that never stops is noise
     # The first formant rises as the mouth opens, the second as the tongue comes forward.
@@ -382,7 +382,7 @@ def analyse_sound(samples: Array, rate: int) -> HeardSound:
     )
 
 
-def syllables(heard: HeardSound) -> tuple[Array, Array]:
+def find_syllables(heard: HeardSound) -> tuple[Array, Array]:
     """Return times and strengths `[P]`, 0..1, of the peaks of loudness."""
     level, loud = heard.level, heard.loud
     inside = np.flatnonzero((loud[1:-1] > 0.08) & (level[1:-1] >= level[:-2]) & (level[1:-1] > level[2:])) + 1
@@ -484,7 +484,7 @@ def _relative(values: Array, spoken: Array, low: float, high: float) -> Array:
     absolute = (values - low) / (high - low)
     if spoken.sum() < 8:
         return np.asarray(np.clip(absolute, 0, 1))
-    least, most = (percentile(values[spoken], share) for share in (10, 90))
+    least, most = (compute_percentile(values[spoken], share) for share in (10, 90))
     own = (values - least) / max(most - least, 0.25 * (high - low))
     return np.asarray(np.clip(0.5 * absolute + 0.5 * own, 0, 1))
 

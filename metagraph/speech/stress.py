@@ -30,7 +30,7 @@ _CONTENT = (
 )
 
 
-def rate_stresses(
+def measure_stresses(
     words: Sequence[Word],
     said: Sequence[tuple[str, ...]],
     tones: Array,

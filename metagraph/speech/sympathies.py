@@ -24,7 +24,7 @@ _LAUGHED = re.compile(
 _APART = 0.5  # seconds between words up to which they are one laugh
 
 
-def laughs_of(side: Side, plan: Plan) -> list[Laugh]:
+def find_laughs(side: Side, plan: Plan) -> list[Laugh]:
     """Return a side's laughs, by start: words that spell one ("haha"), and actions tagged `laugh`."""
     spans = [(w.start, w.end) for w in side.words if _LAUGHED.match(w.text)]
     for layer in plan.layers.values():
@@ -49,7 +49,7 @@ def list_sympathies(conversation: Conversation, own: Mover, others: Sequence[Mov
         theirs = moods_of(other.project.life, other.plan.track)
         if len(others) == 1 and rates.mood > 0:
             told += moods_taken_up(mine, theirs, conversation.length, rates.mood, seed, who)
-        laughs = laughs_of(conversation.sides[other.side], other.plan)
+        laughs = find_laughs(conversation.sides[other.side], other.plan)
         told += laughs_along(mine, laughs, rates.laugh, seed, who)
     for one in sorted(told, key=lambda m: m.start):
         if one.start < min(one.end, conversation.length) and one.valence is not None:

@@ -84,7 +84,7 @@ def read_gesture_words(path: str | Path) -> GestureWords:
 
 
 @cache
-def words_for_gesture(language: str = "en") -> GestureWords:
+def load_gesture_words(language: str = "en") -> GestureWords:
     """Return the lexicon that comes along for a language, English if there is none."""
     file = _files().get(language)
     return msgspec.json.decode((file or _files()["en"]).read_bytes(), type=_Words).read()
@@ -96,7 +96,7 @@ def find_gesture_words(text: str) -> GestureWords:
     spoken = detect_language(
         text.split(), [packs[code] for code in list_lexicon_languages() if code in packs]
     )
-    return words_for_gesture(spoken.language.code if spoken.language is not None else "en")
+    return load_gesture_words(spoken.language.code if spoken.language is not None else "en")
 
 
 def list_lexicon_languages() -> tuple[str, ...]:
@@ -131,7 +131,7 @@ def propose_gestures(
 
     tags: which a character's gestures have, by layer; what it has none for is not proposed.
     """
-    known = lexicon or words_for_gesture()
+    known = lexicon or load_gesture_words()
     pack = list_language_packs().get(known.language)
     small = {word.plain for word in words if pack is not None and pack.is_small(word.plain)}
     return proposed_for(words, set(tags.get("arms", ())), bool(tags.get("head")), known, small, Bits(seed))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import cos, radians, sin
 
-from metagraph.graph.conversation.model import Conversation, Segment, others_of
+from metagraph.graph.conversation.model import Conversation, Segment, list_other_sides
 from metagraph.graph.requests import Look, Nod, Point
 from metagraph.playback.planning.choice import uniform
 from metagraph.speech.addressing import find_speaking_spans
@@ -69,7 +69,7 @@ def _beside(head: Point, degrees: float) -> Point:
     )
 
 
-def nod_to_clauses(conversation: Conversation, side: int, small: bool) -> Iterator[Nod]:
+def place_clause_nods(conversation: Conversation, side: int, small: bool) -> Iterator[Nod]:
     """Yield the nods of a side that listens to what the others say. small: whether its head has nods with the
     tag "listen".
     """
@@ -87,5 +87,5 @@ def nod_to_clauses(conversation: Conversation, side: int, small: bool) -> Iterat
 
 def _clauses(conversation: Conversation, side: int) -> list[Segment]:
     """Return the clauses of all others, by their ends."""
-    found = [s for n in others_of(conversation, side) for s in conversation.sides[n].segments]
+    found = [s for n in list_other_sides(conversation, side) for s in conversation.sides[n].segments]
     return sorted((s for s in found if s.kind == "clause"), key=lambda s: s.end)

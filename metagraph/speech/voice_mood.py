@@ -17,8 +17,8 @@ import numpy as np
 from metagraph.graph.model import Project
 from metagraph.speech.lines import Array
 from metagraph.speech.loudness import measure_loudness
-from metagraph.speech.pitch import pitch, smooth
-from metagraph.speech.sound import analyse_sound, read_sound, syllables
+from metagraph.speech.pitch import measure_pitch, smooth
+from metagraph.speech.sound import analyse_sound, find_syllables, read_sound
 
 # By how much of each above the speaker's own median a voice is as aroused as it can be: LU, of the rate,
 # semitones of range; ours.
@@ -46,9 +46,9 @@ def measure_voice(samples: Array, rate: int) -> VoiceFeatures:
         return VoiceFeatures(nan, nan, nan)
     loud = measure_loudness(samples, rate)
     heard = analyse_sound(samples, rate)
-    beats = syllables(heard)[0]
+    beats = find_syllables(heard)[0]
     spoken = float(beats[-1] - beats[0]) if len(beats) > 1 else 0.0
-    tones = smooth(pitch(samples, rate))
+    tones = smooth(measure_pitch(samples, rate))
     tones = tones[np.isfinite(tones)]
     span = float(np.ptp(np.percentile(tones, (10, 90)))) if len(tones) >= 10 else nan
     return VoiceFeatures(

@@ -17,7 +17,7 @@ Array = NDArray[Any]
 THRESHOLD = 0.1  # of the mean difference: the shortest period that differs less is taken
 
 
-def yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
+def measure_f0_by_yin(frames: Array, rate: float, lowest: float, highest: float) -> Array:
     """Return the F0 `[K]`, Hz, of frames `[K, N]`, each on its own: of one without any period, that of the
     period after which it differs least, and of silence about `highest`.
 

@@ -12,10 +12,10 @@ from metagraph.errors import describe_error
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.flags import is_unlikely
 from metagraph.suggest.jumps.soft_blends import soften_blends
-from metagraph.suggest.proposal import Proposal, Proposals, RestMoment, StancePlace, plain_stance_name
+from metagraph.suggest.proposal import Proposal, Proposals, RestMoment, StancePlace, simplify_stance_name
 from metagraph.suggest.whole_body import CARRIER
 
 
@@ -56,13 +56,13 @@ def accept(
         key: key for key, place in found.places.items() if place.there and project.stance(key) is not None
     }
     loops = {
-        plain_stance_name(s.name): g.of(i, "stance")[0].clip
+        simplify_stance_name(s.name): g.of(i, "stance")[0].clip
         for g in project.graphs.values()
         for i, s in g.stances.items()
         if g.of(i, "stance")
     }
     loops |= {
-        plain_stance_name(found.places[p.stance.value].name): p.clip
+        simplify_stance_name(found.places[p.stance.value].name): p.clip
         for p in wanted
         if p.kind.value == "stance" and p.stance is not None
     }
@@ -137,10 +137,10 @@ def _place(
         rest = place.rest if place.rest is not None and place.rest.clip in project.clips else None
         loop = place.loop if place.loop in project.clips else None
         if loop is None and place.shape is None:
-            loop = loops.get(plain_stance_name(place.name))
+            loop = loops.get(simplify_stance_name(place.name))
         moment = rest if loop is None else None
         if loop is None:
-            loop = rest.clip if rest is not None else loops.get(plain_stance_name(place.name))
+            loop = rest.clip if rest is not None else loops.get(simplify_stance_name(place.name))
         if loop is None:
             raise EditError(
                 phrase(
@@ -182,6 +182,6 @@ def _place(
     project = edits.update_actions(project, [action.id], **changes)
     if kind == "gesture" and "stroke" not in timing and (after := project.action(action.id)) is not None:
         project = edits.update_actions(
-            project, [action.id], timing={"stroke": round(phases(project, after).stroke, 3)}
+            project, [action.id], timing={"stroke": round(find_phases(project, after).stroke, 3)}
         )
     return project

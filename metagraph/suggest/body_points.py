@@ -56,7 +56,8 @@ class PosedFigure:
 
 
 @lru_cache(maxsize=64)
-def pose_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> PosedFigure:
+def make_posed_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> PosedFigure:
+    """Return the figure of a skeleton whose roles are `named` (role, joint), in its rest pose."""
     roles = dict(named)
     wanted = {r: j for r, j in roles.items() if r in (*_CARRIERS, "head") or r.endswith(_LIMBS)}
     if "hips" not in wanted:
@@ -106,7 +107,7 @@ def pose_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Posed
 
 def _axes_at_rest(at: Mapping[str, Array]) -> Array:
     """Return the rotation whose axes are the character's left, up and ahead in its rest pose."""
-    across = leftward(at)
+    across = find_leftward(at)
     top = at.get("head", at.get("upper_chest", at.get("chest")))
     up = np.array([0.0, 1.0, 0.0]) if top is None else top - at["hips"]
     if across is None or np.linalg.norm(across) < 1e-6 or np.linalg.norm(up) < 1e-6:
@@ -121,7 +122,7 @@ def _axes_at_rest(at: Mapping[str, Array]) -> Array:
     return rotation.from_matrix(np.stack([left, up, np.cross(left, up)], axis=-1))
 
 
-def leftward(at: Mapping[str, Array]) -> Array | None:
+def find_leftward(at: Mapping[str, Array]) -> Array | None:
     """Return the vector from right to left, of hips and shoulders together; None if both are missing."""
     pairs = [
         at[f"left_{part}"] - at[f"right_{part}"]
@@ -131,7 +132,7 @@ def leftward(at: Mapping[str, Array]) -> Array | None:
     return np.sum(pairs, axis=0) if pairs else None
 
 
-def points_of(
+def measure_body_points(
     figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return name -> `[F, 3]` of all NAMES that exist, each relative to its ground, and of the points in
@@ -181,7 +182,7 @@ class _Posed:
         ahead, up = self.axis("head", (0, 0, 1)), self.axis("head", (0, 1, 0))
         middle = self.p["head"] - self.p[self.carrier]
         points = {"head": middle, "nose": middle + AHEAD * ahead, "crown": middle + AHEAD * up}
-        return {name: view_from(self.facing, v) for name, v in points.items()}
+        return {name: turn_to_viewer(self.facing, v) for name, v in points.items()}
 
     def body(self) -> dict[str, Array]:
         """Return the body's points, relative to the ground between the feet."""
@@ -191,13 +192,13 @@ class _Posed:
         else:
             ground = p["hips"] * np.array([1, 0, 1], np.float32)
         legs = [f"{side}_{part}" for side in ("left", "right") for part in ("lower_leg", "foot")]
-        out = {name: view_from(facing, p[name] - ground) for name in ("hips", *legs) if name in p}
+        out = {name: turn_to_viewer(facing, p[name] - ground) for name in ("hips", *legs) if name in p}
         trunk = p[self.carrier] - ground
-        out["trunk"] = view_from(facing, trunk)
-        out["trunk_ahead"] = view_from(facing, trunk + AHEAD * self.axis(self.carrier, (0, 0, 1)))
+        out["trunk"] = turn_to_viewer(facing, trunk)
+        out["trunk_ahead"] = turn_to_viewer(facing, trunk + AHEAD * self.axis(self.carrier, (0, 0, 1)))
         for role in p:
             if role.startswith("joint "):
-                out[role] = view_from(facing, p[role] - ground)
+                out[role] = turn_to_viewer(facing, p[role] - ground)
         return out
 
     def fingers(self) -> dict[str, Array]:
@@ -242,7 +243,7 @@ def _pose(figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]) -
 
 def measure_facing(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
     """Return `[F, 2]` sine and cosine of the direction that hips and shoulders face, about y from +z."""
-    across = leftward(p)
+    across = find_leftward(p)
     if across is None:
         across = rotation.rotate_vectors(
             hips, rotation.rotate_vectors(turned, np.array([1.0, 0, 0])).astype(np.float32)
@@ -252,7 +253,7 @@ def measure_facing(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
     return np.where(length > 1e-6, flat / np.maximum(length, 1e-6), np.array([0.0, 1.0])).astype(np.float32)
 
 
-def view_from(facing: Array, v: Array) -> Array:
+def turn_to_viewer(facing: Array, v: Array) -> Array:
     """Return vectors `v` `[..., 3]` as seen by somebody with the facing direction `[..., 2]`, see
     `measure_facing`.
     """

@@ -44,7 +44,8 @@ TREMBLE = 0.025  # heights a second; if the calmest clips move more, none of the
 SUREST = 0.95
 
 
-def energy(traits: Traits) -> float:
+def compute_energy(traits: Traits) -> float:
+    """Return the mean speeds of all parts of a clip added up, heights a second."""
     return sum(traits.energy.values())
 
 
@@ -52,7 +53,7 @@ def with_tremble(traits: Mapping[str, Traits]) -> dict[str, Traits]:
     """Return traits with the movement that all clips of their set have: the tremble of a recording, and
     breathing, say nothing about one clip.
     """
-    moving = [t for t in traits.values() if t.face == 0 and not no_measures(t)]
+    moving = [t for t in traits.values() if t.face == 0 and not has_no_measures(t)]
     if len(moving) < SEVERAL:
         return dict(traits)
     least = {}
@@ -72,17 +73,18 @@ def _beyond_tremble(traits: Traits) -> Mapping[str, float]:
     return beyond if any(beyond.values()) else traits.energy
 
 
-def no_measures(traits: Traits) -> bool:
+def has_no_measures(traits: Traits) -> bool:
+    """Return whether nothing of a clip moves, so that its motion says nothing."""
     return all(x.peak < 1e-3 for x in traits.layers.values()) and traits.energy["fingers"] < 1e-3
 
 
-def resting(traits: Traits) -> float:
+def compute_resting_logit(traits: Traits) -> float:
     """Return the logit of a stance: little movement, for a long time, steady, with ends that meet."""
     if traits.frames < 2 or traits.duration <= 0:
         return 3.0
     if is_cycle(traits):
         return -3.0
-    if no_measures(traits):  # held, or a clip of the face
+    if has_no_measures(traits):  # held, or a clip of the face
         return 3.0 if traits.duration >= HELD else 0.0
     x = max(traits.layers.values(), key=lambda y: y.peak)
     fastest = max(x.peak, 3 * traits.energy["fingers"], 1e-3)
@@ -157,7 +159,7 @@ def is_walk(traits: Traits) -> bool:
     )
 
 
-def layer_of(traits: Traits) -> Belief[Layer]:
+def guess_layer(traits: Traits) -> Belief[Layer]:
     """Return which layer a clip moves: the body if hips or legs move, else the arms, else the head."""
     e, layers = _beyond_tremble(traits), traits.layers
     lower, upper = e["hips"] + e["legs"], e["head"] + e["trunk"]
@@ -202,7 +204,7 @@ def find_layer_moving_most(traits: Traits) -> Belief[Layer]:
         ((x.extent / TYPICAL[layer], layer) for layer, x in traits.layers.items() if x.names), reverse=True
     )
     if not far or far[0][0] <= 0:
-        return layer_of(traits)
+        return guess_layer(traits)
     first, second = far[0], far[1][0] if len(far) > 1 else 0.0
     x = traits.layers[first[1]]
     words = _goes_farthest(first[1], 100 * traits.height * x.extent)

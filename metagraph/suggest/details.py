@@ -18,7 +18,7 @@ from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.graph.repeating import usual_repeat
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.phase_times import LEAST_BLEND
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.jumps import compatibility
 from metagraph.suggest.motion_guess import MotionGuess
@@ -49,15 +49,15 @@ def with_timing(
         motions = [m for p in mine if (m := project.clips[p.clip].motion) is not None]
         if not motions:
             continue
-        stats = compatibility.statistics(motions, layer, roles)
+        stats = compatibility.compute_statistics(motions, layer, roles)
         loops: dict[str, list[tuple[Clip, float, float]]] = {
-            k: list(v) for k, v in compatibility.loops_of(project, layer).items()
+            k: list(v) for k, v in compatibility.list_stance_loops(project, layer).items()
         }
         for p in mine:
             motion = project.clips[p.clip].motion
             if p.kind.value == "stance" and p.stance is not None and motion is not None:
                 loops.setdefault(p.stance.value, []).append((motion, 0.0, motion.duration))
-        frames = {key: compatibility.stance_frames(stats, rows, roles) for key, rows in loops.items()}
+        frames = {key: compatibility.find_stance_frames(stats, rows, roles) for key, rows in loops.items()}
         for p in mine:
             if cancelled is not None and cancelled():
                 return out
@@ -184,7 +184,7 @@ def with_stroke(project: Project, p: Proposal, motion: MotionGuess | None) -> Pr
     if _repeats(p):  # of the first cycle late, when it has mostly come in
         timing = replace(timing, start=LATE * project.clips[p.clip].duration)
     action = Action("", p.clip, "gesture", p.layer.value, "", "", timing=timing, limb=p.limb.value)
-    found = phases(project, action)
+    found = find_phases(project, action)
     near = motion.stroke is not None and abs(motion.stroke.value - found.stroke) < 0.1
     reason = _fastest(p.layer.value, found.stroke)
     if near:
@@ -268,7 +268,9 @@ def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> t
 # --- where to stand when nothing rests
 
 
-def rest_of(project: Project, place: StancePlace, proposals: Mapping[str, Proposal]) -> RestMoment | None:
+def find_rest_moment(
+    project: Project, place: StancePlace, proposals: Mapping[str, Proposal]
+) -> RestMoment | None:
     """Return the stillest moment in which clips show a stance that no clip rests in: the beginning of one
     that starts there, or the end of one that ends there; None if no clip has motion.
     """

@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy, edits
-from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.checks.end_gaps import get_action_motion
 from metagraph.graph.model import Action, Project
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.contact_solve import HAND, OBSTACLE, ContactRig
 from metagraph.motion.contact_spans import EASE, HANDS, ContactKey, ContactSpan
-from metagraph.playback.posing.contacts import ends, find_body_parts, nearest_between_lines
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.contacts import find_body_parts, find_capsule_ends, find_nearest_between_lines
+from metagraph.playback.posing.rigs import get_rigs
 
 Array = NDArray[Any]
 
@@ -57,8 +57,8 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
     """Return the contacts of the hands that an action moves, in order; none if its clip is missing or the
     character has no arms.
     """
-    motion = motion_of(project, action)
-    rig = rigs_of(project).contacts if motion is not None else None
+    motion = get_action_motion(project, action)
+    rig = get_rigs(project).contacts if motion is not None else None
     if motion is None or rig is None:
         return ()
     start, end = project.span(action)
@@ -69,14 +69,14 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
     poses = motion.pose_at(times)
     turned, at = (np.asarray(x, float) for x in motion.skeleton.globals(poses))
     joints = list(rig.joints)
-    a, b = ends(rig, poses)
+    a, b = find_capsule_ends(rig, poses)
     one = rig.arms[0]
     arm = float(
         np.linalg.norm(at[0, joints[one.lower]] - at[0, joints[one.upper]])
         + np.linalg.norm(at[0, joints[one.hand]] - at[0, joints[one.lower]])
     )
     seen = _Seen(rig, times, turned[:, joints], at[:, joints], a, b, arm)
-    mask = anatomy.action_mask(project, action)
+    mask = anatomy.make_action_mask(project, action)
     found: list[ContactSpan] = []
     for side in (1, 0):
         if mask is None or mask[joints[rig.arms[side].hand]] > 0:
@@ -160,7 +160,7 @@ def _runs(on: Array, times: Array) -> list[tuple[int, int]]:
 
 
 def _gap(seen: _Seen, i: int, k: int) -> Array:
-    way, _ = nearest_between_lines(seen.a[:, i], seen.b[:, i], seen.a[:, k], seen.b[:, k])
+    way, _ = find_nearest_between_lines(seen.a[:, i], seen.b[:, i], seen.a[:, k], seen.b[:, k])
     return np.asarray(
         np.linalg.norm(way, axis=-1) - seen.rig.capsules[i].radius - seen.rig.capsules[k].radius
     )
@@ -183,13 +183,13 @@ def _keys(seen: _Seen, side: int, joint: int, i: int, k: int) -> tuple[tuple[Con
     hand = seen.rig.arms[side].hand
     frames = np.arange(i, k + 1)
     at = _beside(seen, joint, seen.at[:, hand])[frames]
-    turn = rotation.continuous(
+    turn = rotation.make_continuous(
         rotation.multiply(rotation.conjugate(seen.turned[frames, joint]), seen.turned[frames, hand])
     )
     middle = len(frames) // 2
     still = (
         np.linalg.norm(at - np.median(at, axis=0), axis=1).max() <= STILL[0]
-        and np.degrees(rotation.angle_between(turn, turn[middle])).max() <= STILL[1]
+        and np.degrees(rotation.measure_angle_between(turn, turn[middle])).max() <= STILL[1]
     )
     if still:
         middle = int(np.argmin(np.linalg.norm(at - np.median(at, axis=0), axis=1)))
@@ -224,7 +224,7 @@ def _thinned(times: Array, at: Array, turn: Array) -> list[int]:
         mixed = rotation.nlerp(np.broadcast_to(turn[i], (len(part), 4)), turn[k], part[:, 0])
         error = np.maximum(
             np.linalg.norm(at[i + 1 : k] - line, axis=1) / THIN[0],
-            np.degrees(rotation.angle_between(turn[i + 1 : k], mixed)) / THIN[1],
+            np.degrees(rotation.measure_angle_between(turn[i + 1 : k], mixed)) / THIN[1],
         )
         worst = int(np.argmax(error))
         if error[worst] > 1:
@@ -247,7 +247,7 @@ def _to_surface(seen: _Seen, side: int, joint: int, frame: int) -> tuple[Array, 
     a, b = seen.a[frame], seen.b[frame]
     touching, way = 0, np.array([0.0, 1.0, 0.0])
     for turn in range(ROUNDS):
-        apart, _ = nearest_between_lines(a[i] + push, b[i] + push, a[k], b[k])
+        apart, _ = find_nearest_between_lines(a[i] + push, b[i] + push, a[k], b[k])
         gap = np.linalg.norm(apart, axis=1)
         depth = radii[i] + radii[k] - gap
         touching = int(np.argmax(np.where(its, depth, -np.inf)))

@@ -27,7 +27,7 @@ UNLIKELY = 0.4  # confidence of a stance; below it a clip is not placed unless s
 WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
 
 
-def proposal_measures(p: Proposal) -> Array:
+def measure_proposal(p: Proposal) -> Array:
     """Return what a proposal says about itself `[7]`: 1, the logits of kind, of layer and of where a
     transition ends (0 for other kinds), whether it is a gesture or fidget, which are the hardest to tell
     apart, whether its name says its kind, and whether its stance is almost unknown.
@@ -51,14 +51,14 @@ def proposal_measures(p: Proposal) -> Array:
 
 def _fitted_chance(p: Proposal) -> float:
     """Return how likely a proposal is wrong by the regression, 0..1."""
-    return 1 / (1 + exp(float(np.clip(proposal_measures(p) @ np.array(WEIGHTS), -30, 30))))
+    return 1 / (1 + exp(float(np.clip(measure_proposal(p) @ np.array(WEIGHTS), -30, 30))))
 
 
 def needs_look(p: Proposal, left: Container[str] = ()) -> bool:
     """Return whether somebody should check a proposal: it may well be wrong, nobody can be sure where it
     belongs, or it was not placed. `left` are the clips that were not placed.
     """
-    return p.clip in left or chance_wrong(p) > LOOK
+    return p.clip in left or estimate_chance_wrong(p) > LOOK
 
 
 def is_unlikely(p: Proposal) -> bool:
@@ -73,7 +73,7 @@ def _least_certain_stance(p: Proposal) -> float:
     return min(belief.confidence if belief is not None else 0.0 for belief in where)
 
 
-def chance_wrong(p: Proposal) -> float:
+def estimate_chance_wrong(p: Proposal) -> float:
     """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong if
     nobody can be sure of its stance, or of the one that a transition ends in: a clip that begins 40 cm from
     its stance belongs elsewhere, whatever its name says.
@@ -82,9 +82,9 @@ def chance_wrong(p: Proposal) -> float:
     return max(_fitted_chance(p), 1 - sure if sure < PLACED else 0.0)
 
 
-def doubt(p: Proposal) -> str:
+def explain_doubt(p: Proposal) -> str:
     """Return how likely a proposal is wrong and why, in words."""
-    chance = f"wrong with a probability of {100 * chance_wrong(p):.0f} %"
+    chance = f"wrong with a probability of {100 * estimate_chance_wrong(p):.0f} %"
     if p.conflicts:
         return f"{chance}: {p.conflicts[0]}"
     beliefs: list[tuple[str, Belief[Any] | None]] = [
@@ -100,13 +100,13 @@ def doubt(p: Proposal) -> str:
     return f"{chance}: its {name} is {100 * least.confidence:.0f} % certain, {least.reason}"
 
 
-def gain(p: Proposal) -> float:
+def estimate_gain(p: Proposal) -> float:
     """Return what checking a proposal would gain: its probability of being wrong, more if other clips have
     the same words, because a correction corrects them, too.
     """
     share = p.details.get("likelihood")
     alike = round(1 / share.value) if share is not None and share.value > 0 else 1
-    return chance_wrong(p) * (1 + ALIKE * (min(alike, 10) - 1))
+    return estimate_chance_wrong(p) * (1 + ALIKE * (min(alike, 10) - 1))
 
 
 def _logit(p: float) -> float:

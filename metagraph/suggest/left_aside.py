@@ -9,11 +9,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from metagraph.common.wording import phrase
-from metagraph.suggest.clip_measures import is_walk, no_measures
+from metagraph.suggest.clip_measures import has_no_measures, is_walk
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
-from metagraph.suggest.proposal import Proposals, StancePlace, plain_stance_name
-from metagraph.suggest.stances.known import Stances, likely
+from metagraph.suggest.proposal import Proposals, StancePlace, simplify_stance_name
+from metagraph.suggest.stances.known import Stances, rank_likely_stances
 from metagraph.suggest.traits import Traits
 from metagraph.suggest.words.names import NEVER, NameGuess
 
@@ -44,12 +44,12 @@ def _shared(traits: Traits, motion: MotionGuess | None, shapes: Stances | None) 
     """
     if motion is None:
         return True
-    if not no_measures(traits) or traits.face > 0:
+    if not has_no_measures(traits) or traits.face > 0:
         return False
     told = [motion.begins]
     if shapes is not None:
         told = [
-            likely(some, x.names, x.first)
+            rank_likely_stances(some, x.names, x.first)
             for layer, x in traits.layers.items()
             if x.names and (some := [s for s in shapes.get(layer, ()) if s.id or len(s.members) > 1])
         ]
@@ -125,12 +125,12 @@ def take_up_skipped(found: Proposals, clip: str) -> Proposals:
         same = [
             k
             for k, x in places.items()
-            if (x.layer, plain_stance_name(x.name)) == (old.layer, plain_stance_name(old.name))
+            if (x.layer, simplify_stance_name(x.name)) == (old.layer, simplify_stance_name(old.name))
         ]
         key = (
             belief.value
             if belief.value in same
-            else next(iter(same), f"new {old.layer} {plain_stance_name(old.name)}")
+            else next(iter(same), f"new {old.layer} {simplify_stance_name(old.name)}")
         )
         places.setdefault(key, replace(old, key=key, there=False))
         return replace(belief, value=key)
@@ -146,7 +146,7 @@ def take_up_skipped(found: Proposals, clip: str) -> Proposals:
     )
 
 
-def reasons(aside: Mapping[str, str]) -> list[tuple[str, list[str]]]:
+def group_reasons(aside: Mapping[str, str]) -> list[tuple[str, list[str]]]:
     """Return reasons in words with their clips, the most frequent first. Reasons that differ only in numbers
     are one, with the least and the greatest number.
     """

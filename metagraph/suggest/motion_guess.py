@@ -16,14 +16,20 @@ from metagraph.suggest.clip_measures import (
     HANGING,
     SUREST,
     TYPICAL,
-    energy,
+    compute_energy,
+    compute_resting_logit,
     find_layer_moving_most,
+    guess_layer,
     is_walk,
-    layer_of,
-    resting,
 )
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.stances.known import Shape, Stances, distance_from_stance, likely, rank_stances
+from metagraph.suggest.stances.known import (
+    Shape,
+    Stances,
+    measure_distance_from_stance,
+    rank_likely_stances,
+    rank_stances,
+)
 from metagraph.suggest.traits import LayerTraits, Traits
 
 # of the way of a clip that ends in no other stance: the share from end to end from which on it is a
@@ -85,11 +91,18 @@ def guess(
         rank_stances(shapes, posed.names, posed.first),
         rank_stances(shapes, posed.names, posed.last),
     )
-    begins, leaves = likely(shapes, posed.names, posed.first), likely(shapes, posed.names, posed.last)
+    begins, leaves = (
+        rank_likely_stances(shapes, posed.names, posed.first),
+        rank_likely_stances(shapes, posed.names, posed.last),
+    )
     moved = _passing(begins, leaves, _moving(posed, layer.value, starts, ends))
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
     walking = is_walk(traits)
-    rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
+    rests = (
+        1.0
+        if walking
+        else compute_resting_logit(traits) + (3.0 if compute_energy(traits) <= 1.05 * calm else 0.0)
+    )
     moves = layer if posture is None else find_layer_moving_most(traits)
     x = traits.layers[moves.value]
     rest, gesture = _sigmoid(rests), _gesturing(traits, moves)
@@ -248,23 +261,23 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
     """Return which layer a clip moves; for a resting clip, the only layer whose pose is unusual, if there is
     one.
     """
-    found = layer_of(traits)
+    found = guess_layer(traits)
     if is_walk(traits):
         return Belief(
             "body",
             SUREST,
             phrase("the feet pass each other by {stride:.0f} cm", stride=100 * traits.height * traits.stride),
         )
-    if resting(traits) < 0 or traits.face > 1e-3:
+    if compute_resting_logit(traits) < 0 or traits.face > 1e-3:
         return found
     unusual: dict[Layer, float] = {}
     for layer in LAYERS:
         x, shapes = traits.layers[layer], stances.get(layer, ())
         if shapes and len(x.typical):
-            away = distance_from_stance(shapes[0], x.names, x.typical)
+            away = measure_distance_from_stance(shapes[0], x.names, x.typical)
             if 0.5 * TYPICAL[layer] < away < float("inf"):
                 unusual[layer] = away
-    lower, all_of = traits.energy["hips"] + traits.energy["legs"], energy(traits)
+    lower, all_of = traits.energy["hips"] + traits.energy["legs"], compute_energy(traits)
     if found.value != "body" and (
         ("body" in unusual and unusual["body"] > ELSEWHERE) or lower > LIFE * all_of
     ):

@@ -122,6 +122,6 @@ def name_words(name: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(split_clip_name(name, _USUAL).words))
 
 
-def plain_stance_name(name: str) -> str:
+def simplify_stance_name(name: str) -> str:
     """Return a stance's name without case, order of words or separators."""
     return " ".join(sorted(split_clip_name(name, _USUAL).words))

@@ -17,9 +17,9 @@ from metagraph.common.wording import phrase
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import AcceptedProposals, accept
 from metagraph.suggest.alike import Alike, LabelledExample
-from metagraph.suggest.clip_measures import is_cycle, layer_of, with_tremble
+from metagraph.suggest.clip_measures import guess_layer, is_cycle, with_tremble
 from metagraph.suggest.details import (
-    rest_of,
+    find_rest_moment,
     with_likelihoods,
     with_moved_joints,
     with_rare_lying,
@@ -37,22 +37,22 @@ from metagraph.suggest.proposal import (
     Spare,
     StancePlace,
     name_words,
-    plain_stance_name,
+    simplify_stance_name,
 )
 from metagraph.suggest.stances.known import (
     SAME,
     Shape,
     discover,
     discover_stances,
-    distance_from_stance,
     list_known_stances,
+    measure_distance_from_stance,
     rank_stances,
     settle_stances,
     split_stances,
 )
 from metagraph.suggest.stances.most_used import assign_most_used
 from metagraph.suggest.stances.places import ClipEvidence, StancePlaces
-from metagraph.suggest.traits import Traits, traits_of
+from metagraph.suggest.traits import Traits, measure_all_traits
 from metagraph.suggest.vote_fusion import Agreed, combine
 from metagraph.suggest.whole_body import (
     CARRIER,
@@ -71,10 +71,10 @@ __all__ = [
     "Source",
     "StancePlace",
     "accept",
-    "examples_of",
-    "measures_of",
-    "plain_stance_name",
+    "list_examples",
+    "measure_motion",
     "propose",
+    "simplify_stance_name",
 ]
 
 Source = Literal["name", "motion", "learned"]
@@ -89,7 +89,7 @@ NAMED = 1.5  # times as far from a stance that a clip may rest which is named af
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 
 
-def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[LabelledExample]:
+def list_examples(project: Project, traits: Mapping[str, Traits]) -> list[LabelledExample]:
     """Return the examples that a project's labelled clips give."""
     out = []
     for action in project.actions():
@@ -97,11 +97,11 @@ def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[Labelled
         if entry is None:
             continue
         labels: dict[str, str] = {"kind": action.kind, "layer": action.layer, "limb": action.limb}
-        out.append(LabelledExample(name_words(entry.name), measures_of(traits.get(action.clip)), labels))
+        out.append(LabelledExample(name_words(entry.name), measure_motion(traits.get(action.clip)), labels))
     return out
 
 
-def measures_of(traits: Traits | None) -> Any:
+def measure_motion(traits: Traits | None) -> Any:
     """Return a clip's motion as numbers that are comparable between characters."""
     if traits is None:
         return np.zeros(0)
@@ -120,7 +120,7 @@ def measures_of(traits: Traits | None) -> Any:
     return np.array(rows, float)
 
 
-def waiting(project: Project) -> list[str]:
+def list_waiting_clips(project: Project) -> list[str]:
     """Return the clips that are not placed yet, including those that only lend a stance a still moment."""
     return [
         clip
@@ -153,8 +153,8 @@ def propose(
 
     Never raises because of a clip's content; a clip of which nothing is known is left out.
     """
-    chosen = waiting(project) if clips is None else [c for c in clips if c in project.clips]
-    seen = traits_of(project, cancelled, progress) if {"motion", "learned"} & set(sources) else {}
+    chosen = list_waiting_clips(project) if clips is None else [c for c in clips if c in project.clips]
+    seen = measure_all_traits(project, cancelled, progress) if {"motion", "learned"} & set(sources) else {}
     traits = with_tremble(seen)
     # All names together give the stances, also those of placed clips, so that the meaning of a number is not
     # forgotten while a person goes through the proposals.
@@ -175,7 +175,7 @@ def propose(
     still = {c: t for c, t in standing.items() if not (moving and _is_cycle(t, called[c], True))}
     standing = still or standing  # nor in the middle of a wave
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
-    alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
+    alike = Alike([*list_examples(project, traits), *examples]) if "learned" in sources else Alike([])
     odd = sum(1 for c in chosen if said[c].other is not None)
     heard, others, aside = list[ClipEvidence](), list[ClipEvidence](), dict[str, str]()
     for c in chosen:
@@ -192,7 +192,7 @@ def propose(
                 each.cycle = True
                 each.motion = guess(each.traits, shapes, on, each.posture, True)
         if alike.examples:
-            each.learned = alike.guess(name_words(each.name), measures_of(each.traits))
+            each.learned = alike.guess(name_words(each.name), measure_motion(each.traits))
         each.said = _leading(each.said, each.motion)
         usual, apart = odd >= MANY * len(chosen), shapes if each.posture is None else None
         why = explain_skipping(each.said, each.traits, each.motion, usual, apart)
@@ -329,7 +329,7 @@ def _shapes(
         there, found = list_known_stances(project, traits), discover_stances(mine)
     for layer, shapes in found.items():
         if shapes:
-            moves = [every[c].layers[layer] for c in mine if whole or layer_of(every[c]).value == layer]
+            moves = [every[c].layers[layer] for c in mine if whole or guess_layer(every[c]).value == layer]
             ends = _ends({c: every[c] for c in mine}, layer, called, whole)
             if len({word for *_, word in ends}) < 2:
                 shapes = settle_stances(
@@ -360,7 +360,7 @@ def _ends(
     out = []
     for clip, t in traits.items():
         said, x = called[clip], t.layers[layer]
-        if not whole and layer_of(t).value != layer:
+        if not whole and guess_layer(t).value != layer:
             continue
         kind = said.kind.value if said.kind is not None else None
         if said.stance is not None:
@@ -412,7 +412,7 @@ def _with_rests(
         if not place.there and key not in shown:
             loop = _loop_elsewhere(place, places, resting, traits)
             place = replace(
-                place, loop=loop, rest=rest_of(project, place, proposals) if loop is None else None
+                place, loop=loop, rest=find_rest_moment(project, place, proposals) if loop is None else None
             )
         out[key] = place
     return out
@@ -427,15 +427,15 @@ def _loop_elsewhere(
     """Return the clip of another layer that rests in a stance: the one whose pose there is nearest, if it is
     near, else, if nobody knows what the stance looks like, one whose stance has the same name.
     """
-    name, found = plain_stance_name(place.name), list[tuple[float, str]]()
+    name, found = simplify_stance_name(place.name), list[tuple[float, str]]()
     for clip, p in resting.items():
         assert p.stance is not None
-        named = plain_stance_name(places[p.stance.value].name) == name
+        named = simplify_stance_name(places[p.stance.value].name) == name
         if place.shape is None or clip not in traits:
             found += [(0.0, clip)] if named else []
             continue
         posed = traits[clip].layers[place.layer]
-        away = distance_from_stance(place.shape, posed.names, posed.first)
+        away = measure_distance_from_stance(place.shape, posed.names, posed.first)
         if away <= SAME[place.layer][1] * (NAMED if named else 1.0):
             found.append((away, clip))
     return min(found)[1] if found else None

@@ -20,9 +20,9 @@ from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
 from metagraph.suggest.accept import AcceptedProposals, accept
 from metagraph.suggest.details import with_timing
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.flags import gain
-from metagraph.suggest.proposal import Proposal, Proposals, StancePlace, plain_stance_name
-from metagraph.suggest.propose import waiting
+from metagraph.suggest.flags import estimate_gain
+from metagraph.suggest.proposal import Proposal, Proposals, StancePlace, simplify_stance_name
+from metagraph.suggest.propose import list_waiting_clips
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
 DECIDING: tuple[Field, ...] = (
@@ -89,16 +89,16 @@ class Review:
         moved: dict[str, str] = {}
         places: dict[str, StancePlace] = {}
         named = {
-            (s.layer, plain_stance_name(s.name)): s
+            (s.layer, simplify_stance_name(s.name)): s
             for layer in LAYERS
             for s in project.graphs[layer].stances.values()
         }
         for key, place in self.found.places.items():
-            stance = project.stance(key) or named.get((place.layer, plain_stance_name(place.name)))
+            stance = project.stance(key) or named.get((place.layer, simplify_stance_name(place.name)))
             if stance is not None:
                 new = replace(place, key=stance.id, layer=stance.layer, name=stance.name, there=True)
             elif place.there:
-                new = replace(place, key=f"new {place.layer} {plain_stance_name(place.name)}", there=False)
+                new = replace(place, key=f"new {place.layer} {simplify_stance_name(place.name)}", there=False)
             else:
                 new = place
             moved[key] = new.key
@@ -123,7 +123,7 @@ class Review:
             return (
                 not rests,
                 -used[p.stance.value] if rests and p.stance is not None else 0,
-                -gain(p),
+                -estimate_gain(p),
                 p.confidence,
                 p.clip,
             )
@@ -172,7 +172,7 @@ class Review:
         need that do not exist yet. A clip that is placed already is placed again.
         """
         known = [c for c in clips if c in self.found.proposals and c in project.clips]
-        open_ = set(waiting(project))
+        open_ = set(list_waiting_clips(project))
         again = [a.id for c in known if c not in open_ for a in project.uses.get(c, ())]
         try:
             bare = edits.remove_actions(project, again) if again else project
@@ -236,7 +236,7 @@ class Review:
         does not have.
         """
         p = self.found.proposals[clip]
-        out, open_ = [], set(waiting(project))
+        out, open_ = [], set(list_waiting_clips(project))
         for belief in (p.stance, p.end_stance if p.kind.value == "transition" else None):
             if (
                 belief is None
@@ -270,9 +270,9 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
 
     def place(name: str) -> str:
         for key, there in places.items():
-            if there.layer == layer and plain_stance_name(there.name) == plain_stance_name(name):
+            if there.layer == layer and simplify_stance_name(there.name) == simplify_stance_name(name):
                 return key
-        key = f"new {layer} {plain_stance_name(name)}"
+        key = f"new {layer} {simplify_stance_name(name)}"
         places[key] = StancePlace(key, layer, name)
         return key
 
@@ -281,9 +281,9 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
         stance = Belief(place(said["stance"]), 1.0, SAID)
     elif stance is not None and places[stance.value].layer != layer:
         # The other layer's stance of the same name, if there is one; else the one with most of its clips.
-        name = plain_stance_name(places[stance.value].name)
+        name = simplify_stance_name(places[stance.value].name)
         same = next(
-            (k for k, x in places.items() if x.layer == layer and plain_stance_name(x.name) == name), None
+            (k for k, x in places.items() if x.layer == layer and simplify_stance_name(x.name) == name), None
         )
         there = Counter(
             x.stance.value

@@ -42,7 +42,7 @@ class SelfContact:
 NOTHING = SelfContact()
 
 
-def self_contact(world: Mapping[str, Array], seconds: float) -> SelfContact:
+def measure_self_contact(world: Mapping[str, Array], seconds: float) -> SelfContact:
     """Return how a clip's hands touch their own body. `world` is name -> `[F, 3]` in heights: hands, tips,
     lower and upper arms, head and skull, hips, thighs. `seconds` is the time from frame to frame.
     """

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.motion.rig_controls import rig_controls
-from metagraph.motion.roles import body_parts, find_roles
+from metagraph.motion.rig_controls import find_rig_controls
+from metagraph.motion.roles import assign_body_parts, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.suggest.body_points import measure_facing, view_from
+from metagraph.suggest.body_points import measure_facing, turn_to_viewer
 
 Array = NDArray[Any]
 
@@ -39,10 +39,10 @@ class TrackRig:
 @lru_cache(maxsize=32)
 def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> TrackRig:
     roles = dict(named)
-    parts = body_parts(skeleton, roles)
+    parts = assign_body_parts(skeleton, roles)
     hands = [roles[r] for r in ("left_hand", "right_hand") if r in roles]
     fingers = {j for hand in hands for j in skeleton.descendants(hand)} - set(hands)
-    unseen = fingers | rig_controls(skeleton)
+    unseen = fingers | find_rig_controls(skeleton)
     used = [j for j in range(len(skeleton)) if j not in unseen and parts[j] != "face"] or [0]
     keep = np.array(sorted({k for j in used for k in skeleton.chain(j)}))
     place = {int(j): i for i, j in enumerate(keep)}
@@ -63,7 +63,7 @@ def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> TrackRig:
 _TRACKS: WeakKeyDictionary[Clip, tuple[TrackRig, Array, Array]] = WeakKeyDictionary()
 
 
-def joint_track(rig: TrackRig, clip: Clip) -> Array:
+def make_joint_track(rig: TrackRig, clip: Clip) -> Array:
     """Return where the relevant joints are, `[F, J, 3]` float32, in metres, from the root as the character
     faces, at RATE frames a second.
     """
@@ -79,7 +79,7 @@ def _tracks(rig: TrackRig, clip: Clip) -> tuple[TrackRig, Array, Array]:
     known = _TRACKS.get(clip)
     if known is None or known[0] is not rig:
         facing, at = measure_facing_and_standing(rig, sample_clip_poses(clip))
-        track = view_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
+        track = turn_to_viewer(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
         known = _TRACKS[clip] = rig, track, at[:, rig.root][:, [0, 2]]
     return known
 
@@ -106,7 +106,7 @@ def track_seconds(clip: Clip) -> Array:
     return np.linspace(0, clip.duration, max(1, round(clip.duration * RATE)) + 1)
 
 
-def velocity_of(track: Array) -> Array:
+def measure_velocity(track: Array) -> Array:
     """Return the velocities `[F, J, 3]` of a track, in metres a second."""
     return np.gradient(track, 1 / RATE, axis=0) if len(track) > 1 else np.zeros_like(track)
 

@@ -21,8 +21,14 @@ from metagraph.graph.words import LAYERS, Layer
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.body_points import NAMES, PosedFigure, points_of, pose_figure, view_from
-from metagraph.suggest.self_contact import NOTHING, SelfContact, self_contact
+from metagraph.suggest.body_points import (
+    NAMES,
+    PosedFigure,
+    make_posed_figure,
+    measure_body_points,
+    turn_to_viewer,
+)
+from metagraph.suggest.self_contact import NOTHING, SelfContact, measure_self_contact
 
 Array = NDArray[Any]
 
@@ -124,7 +130,7 @@ class Traits:
 _KNOWN: WeakKeyDictionary[Clip, tuple[tuple[tuple[str, int], ...], Traits]] = WeakKeyDictionary()
 
 
-def traits(skeleton: Skeleton, roles: Mapping[str, int] | None, clip: Clip) -> Traits:
+def measure_traits(skeleton: Skeleton, roles: Mapping[str, int] | None, clip: Clip) -> Traits:
     """Return what a clip's motion looks like. `roles` maps roles to joints of the skeleton; None finds them.
     Never raises.
     """
@@ -134,7 +140,7 @@ def traits(skeleton: Skeleton, roles: Mapping[str, int] | None, clip: Clip) -> T
     return _all([clip], lambda _: named)[0]
 
 
-def traits_of(
+def measure_all_traits(
     source: Project | Iterable[Clip],
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -197,9 +203,9 @@ def _all(clips: Sequence[Clip], roles: Callable[[Clip], tuple[tuple[str, int], .
         if known is None or known[0] != named:
             groups.setdefault((clip.skeleton, named), []).append(clip)
     for (skeleton, named), some in groups.items():
-        figure = pose_figure(skeleton, named)
+        figure = make_posed_figure(skeleton, named)
         frames = [_frames(clip) for clip in some]
-        points, world = points_of(figure, some, frames)
+        points, world = measure_body_points(figure, some, frames)
         ends = np.cumsum([0, *(len(f) for f in frames)])
         for clip, index, a, b in zip(some, frames, ends, ends[1:], strict=False):
             times = index / clip.fps
@@ -336,7 +342,7 @@ def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Ar
         tracks = np.stack([points[n] for n in names], axis=1) if names else np.zeros((len(times), 0, 3))
         turned = tracks
         if layer == "body" and names:  # a turn of the whole body is a movement
-            turned = view_from(facing[:1, None], view_from(facing[:, None] * _BACK, tracks))
+            turned = turn_to_viewer(facing[:1, None], turn_to_viewer(facing[:, None] * _BACK, tracks))
         fast = _speeds(turned, times)
         speeds |= dict(zip(names, fast.T, strict=True))
         layers[layer] = _layer(names, tracks, turned, fast, times)
@@ -380,7 +386,7 @@ def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Ar
         _stride(points),
         turned=_turned(facing),
         rise=float(np.ptp(world["hips"][:, 1])),
-        contact=self_contact(world, float(times[1] - times[0]) if len(times) > 1 else 0.0),
+        contact=measure_self_contact(world, float(times[1] - times[0]) if len(times) > 1 else 0.0),
         shrug=_shrug(points),
         sway=float(np.ptp(points["hips"][:, 0])) if "hips" in points else 0.0,
         front=front,

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.suggest.body_points import NAMES
-from metagraph.suggest.clip_measures import TYPICAL, layer_of, no_measures, resting
-from metagraph.suggest.stances.known import SETTLED, Shape, discover, likely
+from metagraph.suggest.clip_measures import TYPICAL, compute_resting_logit, guess_layer, has_no_measures
+from metagraph.suggest.stances.known import SETTLED, Shape, discover, rank_likely_stances
 from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
@@ -94,8 +94,8 @@ def are_whole_body_recordings(traits: Mapping[str, Traits], named: Mapping[str, 
 def _named_whole(traits: Mapping[str, Traits], named: Mapping[str, str]) -> bool:
     groups: dict[str, list[Layer]] = {}
     for clip, word in named.items():
-        if clip in traits and traits[clip].face == 0 and not no_measures(traits[clip]):
-            moved = layer_of(traits[clip])
+        if clip in traits and traits[clip].face == 0 and not has_no_measures(traits[clip]):
+            moved = guess_layer(traits[clip])
             if moved.confidence >= CLEAR:
                 groups.setdefault(word, []).append(moved.value)
     several = [layers for layers in groups.values() if len(layers) >= FEW]
@@ -107,18 +107,22 @@ def _seen_whole(traits: Mapping[str, Traits]) -> bool:
     moving = {
         clip: with_whole_body(t)
         for clip, t in traits.items()
-        if t.face == 0 and not no_measures(t) and all(t.layers[layer].names for layer in ("arms", "body"))
+        if t.face == 0 and not has_no_measures(t) and all(t.layers[layer].names for layer in ("arms", "body"))
     }
     shapes = discover(moving, CARRIER, together=True)
     held: list[tuple[Shape, Layer]] = []  # stance and layer of clips that stay in a stance
     settled = 0
     for clip, t in moving.items():
         x = t.layers[CARRIER]
-        begins, ends = (likely(shapes, x.names, pose) for pose in (x.first, x.last))
+        begins, ends = (rank_likely_stances(shapes, x.names, pose) for pose in (x.first, x.last))
         if begins and ends and min(begins[0][0], ends[0][0]) > 0.5:
             settled += 1
-            moved = layer_of(traits[clip])
-            if begins[0][1] is ends[0][1] and moved.confidence >= CLEAR and resting(traits[clip]) < 0:
+            moved = guess_layer(traits[clip])
+            if (
+                begins[0][1] is ends[0][1]
+                and moved.confidence >= CLEAR
+                and compute_resting_logit(traits[clip]) < 0
+            ):
                 held.append((begins[0][1], moved.value))
     if len(shapes) < 2 or settled < SETTLED * len(moving):
         return False  # cut from longer takes, or poses to look at: nobody stands anywhere

@@ -86,7 +86,7 @@ def assemble(
         name,
         takes[0].skeleton,
         RATE,
-        rotation.continuous(rotation.normalize(out.rotations)).astype(np.float32),
+        rotation.make_continuous(rotation.normalize(out.rotations)).astype(np.float32),
         out.translations[:, joints].astype(np.float32),
         tuple(joints),
         notes=(
@@ -96,7 +96,7 @@ def assemble(
     )
     if retiming is not None:
         poses = made.pose_at(retiming.moments / RATE)
-        turns = rotation.continuous(poses.rotations).astype(np.float32)
+        turns = rotation.make_continuous(poses.rotations).astype(np.float32)
         made = replace(made, rotations=turns, translations=poses.translations[:, joints])
         way = way[retiming.frames]
     if not hold_feet or not len(path.jumps):

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.synthesis.states import States, SynthesisError, terms_of
+from metagraph.synthesis.states import States, SynthesisError, compute_cost_terms
 
 Array = NDArray[Any]
 Block = tuple[
@@ -70,7 +70,7 @@ class BlockWork:
         return told.hexdigest()
 
 
-def work_of(states: States, keys: Array, limit: float, most: int | None) -> BlockWork:
+def prepare_blocks(states: States, keys: Array, limit: float, most: int | None) -> BlockWork:
     """Return what the blocks of a graph are made from. Only key states are copied, whatever the number of
     frames.
 
@@ -82,7 +82,7 @@ def work_of(states: States, keys: Array, limit: float, most: int | None) -> Bloc
     first = np.zeros(len(states), bool)
     first[states.starts[:-1]] = True
     into = keys[~first[keys]]
-    rows = terms_of(states, keys)
+    rows = compute_cost_terms(states, keys)
     order = _order(rows[:: max(1, len(keys) // SAMPLE)])
     rows = _planes(rows, order)
     count = -(-len(into) // LANES)
@@ -90,7 +90,7 @@ def work_of(states: States, keys: Array, limit: float, most: int | None) -> Bloc
     middles, spread = np.empty((count, 3, len(order)), np.float32), np.empty(count, np.float32)
     for n in range(0, count, LANES):
         some, part = into[n * LANES : (n + LANES) * LANES] - 1, slice(n, n + LANES)
-        lay(_planes(terms_of(states, some), order), FAR, blocks[part], middles[part], spread[part])
+        lay(_planes(compute_cost_terms(states, some), order), FAR, blocks[part], middles[part], spread[part])
     # Costs are a metric: what is farther from a middle is farther than the limit from whatever is round it.
     # Sums in 32 bits may be off by some of the last of them.
     largest = float(np.abs(rows).max(initial=0.0) + spread.max(initial=0.0))
@@ -109,11 +109,11 @@ def _order(terms: Array) -> Array:
     return np.argsort(-np.sqrt(x * x + y * y + z * z).mean(0), kind="stable")
 
 
-def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = None) -> Block:
+def make_block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = None) -> Block:
     """Return the transitions of the key states from the `first` on, one after another, targets ascending.
     Raises SynthesisError when it was cancelled.
     """
-    from metagraph.synthesis.kernels import find_near, pack, thin
+    from metagraph.synthesis.kernels import find_near, pack_rows, thin
 
     count = len(work.into)
     size = min(ROWS, len(work.keys) - first)
@@ -136,7 +136,7 @@ def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = No
             found,
         )
         counts = found.copy()
-        targets, costs = pack(places, price, found, work.into, rows, counts)
+        targets, costs = pack_rows(places, price, found, work.into, rows, counts)
         if work.most is not None:
             targets, costs = thin(counts, targets, costs, work.most)
         out.append((counts, targets, costs))
@@ -160,7 +160,7 @@ class BlockMakers:
 THIS_MACHINE = BlockMakers()
 
 
-def transitions(
+def compute_transitions(
     work: BlockWork,
     makers: BlockMakers = THIS_MACHINE,
     progress: Callable[[int, int], None] | None = None,
@@ -264,7 +264,7 @@ def _here(
         try:
             while True:
                 for first in islice(waiting, 2 * count - len(under_way)):
-                    under_way[pool.submit(block, work, first, cancel)] = first
+                    under_way[pool.submit(make_block, work, first, cancel)] = first
                 if not under_way:
                     return
                 for future in wait(under_way, return_when=FIRST_COMPLETED).done:
@@ -281,7 +281,7 @@ def _there(
     if cancelled is not None and cancelled():
         raise SynthesisError(CANCELLED)
     sent = cluster.scatter(work, broadcast=True, hash=False)
-    futures = {cluster.submit(block, sent, first, pure=False): first for first in firsts}
+    futures = {cluster.submit(make_block, sent, first, pure=False): first for first in firsts}
     try:
         for future in distributed.as_completed(list(futures)):
             yield futures.pop(future), future.result()

@@ -54,7 +54,7 @@ class CooccurrenceRow:
     chance: float
 
 
-def speeds(clip: Clip, roles: Mapping[str, int] | None = None) -> dict[Part, Array]:
+def measure_part_speeds(clip: Clip, roles: Mapping[str, int] | None = None) -> dict[Part, Array]:
     """Return speeds `[F]`, metres a second, of those parts the skeleton has: hands as seen from the shoulder,
     the head up and down as seen from the neck; so a walk or a turn of the trunk is no gesture, and a step no
     nod.
@@ -89,13 +89,13 @@ def _speed(track: Array, fps: float) -> Array:
     return np.asarray(np.linalg.norm(np.gradient(track.astype(np.float64), 1 / fps, axis=0), axis=-1))
 
 
-def activation(speed: Array, share: float = ACTIVE) -> float:
+def find_activation_speed(speed: Array, share: float = ACTIVE) -> float:
     """Return the speed under which nothing moves: min + share (max - min) (equations 1 and 2)."""
     low, high = float(speed.min()), float(speed.max())
     return low + share * (high - low)
 
 
-def movement_windows(
+def find_movement_windows(
     segments: Sequence[Segment], length: float, every: Sequence[Segment] | None = None
 ) -> list[tuple[float, float]]:
     """Return where to look for the movement of each segment, seconds: about its middle, WIDE times as long,
@@ -117,7 +117,7 @@ def movement_windows(
     return out
 
 
-def movement(
+def find_movement(
     speed: Array, fps: float, window: tuple[float, float], idle: float
 ) -> tuple[float, float] | None:
     """Return when a movement begins and ends within a window, seconds; None if nothing is faster than `idle`
@@ -130,7 +130,7 @@ def movement(
     part = speed[first:after]
     if not len(part) or float(part.max()) < idle:
         return None
-    fast = np.flatnonzero(part > activation(part))
+    fast = np.flatnonzero(part > find_activation_speed(part))
     if not len(fast):
         return None
     return (first + int(fast[0])) / fps, (first + int(fast[-1])) / fps
@@ -146,14 +146,17 @@ def count_cooccurrence(
     """
     if len(takes) != len(speech):
         raise ValueError(f"{len(takes)} takes, but speech for {len(speech)}")
-    found = [(clip, speeds(clip), list(segments)) for clip, segments in zip(takes, speech, strict=True)]
+    found = [
+        (clip, measure_part_speeds(clip), list(segments))
+        for clip, segments in zip(takes, speech, strict=True)
+    ]
     shifts = np.random.default_rng(seed).random((chances, max(1, len(takes))))
     rows = []
     for words, kind, parts in HYPOTHESES:
         matched, total = _matches(found, kind, parts, None)
         by_chance = [_matches(found, kind, parts, s) for s in shifts] if total else []
         chance = float(np.mean([m / max(1, n) for m, n in by_chance])) if by_chance else 0.0
-        low, high = wilson(matched, total)
+        low, high = compute_wilson_interval(matched, total)
         rows.append(
             CooccurrenceRow(words, matched, total, matched / total if total else 0.0, low, high, chance)
         )
@@ -178,13 +181,13 @@ def _matches(
             by = float(shift[number]) * clip.duration
             every = [_turned(s, by, clip.duration) for s in every]
         mine = sorted((s for s in every if s.kind == kind), key=lambda s: s.start)
-        idle = {part: activation(speed[part]) for part in parts if part in speed}
+        idle = {part: find_activation_speed(speed[part]) for part in parts if part in speed}
         seen = dict.fromkeys(idle, 0.0)  # a movement counts once: the next window begins after it
-        for low, high in movement_windows(mine, clip.duration, every):
+        for low, high in find_movement_windows(mine, clip.duration, every):
             total += 1
             there = False
             for part, least in idle.items():
-                moved = movement(speed[part], clip.fps, (max(low, seen[part]), high), least)
+                moved = find_movement(speed[part], clip.fps, (max(low, seen[part]), high), least)
                 if moved is not None:
                     there, seen[part] = True, _over(speed[part], clip.fps, moved[1], least)
             matched += there
@@ -208,7 +211,7 @@ def _turned(s: Segment, by: float, length: float) -> Segment:
     return Segment(s.kind, start, start + s.end - s.start)
 
 
-def wilson(matched: int, total: int, level: float = 0.95) -> tuple[float, float]:
+def compute_wilson_interval(matched: int, total: int, level: float = 0.95) -> tuple[float, float]:
     """Return the interval of a share (Wilson, 1927); 0..1 if there is nothing to tell."""
     if not total:
         return 0.0, 1.0

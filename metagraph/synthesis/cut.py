@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE, track_seconds
-from metagraph.synthesis.graph import threshold
-from metagraph.synthesis.states import States, SynthesisError, read_states, terms_of
+from metagraph.synthesis.graph import find_threshold
+from metagraph.synthesis.states import States, SynthesisError, compute_cost_terms, read_states
 
 Array = NDArray[Any]
 Candidate = tuple[
@@ -34,7 +34,7 @@ TWO_KINDS = (
 POSES = 2000  # moments that are compared with each other at most
 
 
-def candidates(
+def find_candidates(
     clip: Clip,
     limit: float | None = None,
     least: float = LEAST,
@@ -45,9 +45,9 @@ def candidates(
     that is far enough.
 
     limit: what frames at which they begin and end may differ by, metres, half of it from the stance each,
-    else `threshold` of the take. least, most: seconds a clip lasts. What moves less than the limit on the
-    way, rest alone, is left out. states: the take's, where they are known. Raises SynthesisError for takes
-    too short to tell, and lengths that cannot be.
+    else `find_threshold` of the take. least, most: seconds a clip lasts. What moves less than the limit on
+    the way, rest alone, is left out. states: the take's, where they are known. Raises SynthesisError for
+    takes too short to tell, and lengths that cannot be.
     """
     if not 0 < least <= most:
         raise SynthesisError(
@@ -55,10 +55,10 @@ def candidates(
             "shortest, more than 0"
         )
     states = read_states([clip]) if states is None else states
-    limit = threshold(states).limit if limit is None else limit
+    limit = find_threshold(states).limit if limit is None else limit
     near, apart = _rests(states, limit)
     speeds = smooth_speed(states)
-    least_speed = pace(speeds).moves
+    least_speed = measure_pace(speeds).moves
     times = track_seconds(clip)
     out: list[Candidate] = []
     n = 0
@@ -95,7 +95,7 @@ def smooth_speed(states: States) -> Array:
     return np.convolve(np.pad(speed, 2, "edge"), np.ones(5) / 5, "valid")
 
 
-def pace(speeds: Array) -> TakePace:
+def measure_pace(speeds: Array) -> TakePace:
     """Return what rest is and what moves by a take's own speeds `[F]`: where their logarithms are of two
     kinds (Otsu), the middle of each; else a share of the median.
     """
@@ -114,12 +114,12 @@ def pace(speeds: Array) -> TakePace:
     return TakePace(max(still, float(np.exp(slow[best]))), float(np.exp(fast[best])), middle)
 
 
-def uncut(clip: Clip, limit: float | None = None, least: float = LEAST, most: float = MOST) -> str:
-    """Return why `candidates` finds nothing in a take, in words. Arguments and errors as there."""
+def explain_uncut(clip: Clip, limit: float | None = None, least: float = LEAST, most: float = MOST) -> str:
+    """Return why `find_candidates` finds nothing in a take, in words. Arguments and errors as there."""
     states = read_states([clip])
-    limit = threshold(states).limit if limit is None else limit
+    limit = find_threshold(states).limit if limit is None else limit
     speeds = smooth_speed(states)
-    found, places = pace(speeds), moments(states)
+    found, places = measure_pace(speeds), find_rest_moments(states)
     if len(places) < 2:
         slow = 100 * float(np.quantile(speeds, 0.05))
         return (
@@ -138,14 +138,14 @@ def uncut(clip: Clip, limit: float | None = None, least: float = LEAST, most: fl
     )
 
 
-def moments(states: States) -> Array:
+def find_rest_moments(states: States) -> Array:
     """Return `[n]` the states at which a take rests: where it is slowest, for a while around, and slow by
     itself; ascending.
     """
     if len(states.velocities) < 3:
         return np.zeros(0, int)
     smooth = smooth_speed(states)
-    slow = smooth <= pace(smooth).rests
+    slow = smooth <= measure_pace(smooth).rests
     out: list[int] = []
     for at in np.argsort(smooth, kind="stable"):
         if not slow[at]:
@@ -161,10 +161,10 @@ def _rests(states: States, limit: float) -> tuple[Array, Array]:
     """Return `[n]` the moments at which a take rests in its stance, any two of which differ by no more than
     the limit, and `[n]` by how much each differs from the stance.
     """
-    places = moments(states)
+    places = find_rest_moments(states)
     if not len(places):
         return places, np.zeros(0)
-    terms = terms_of(states, places)
+    terms = compute_cost_terms(states, places)
     away = np.linalg.norm(terms - terms[_stance(terms, limit)], axis=-1).sum(-1)
     near = away <= limit / 2
     return places[near], away[near]

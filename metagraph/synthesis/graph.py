@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.jumps.johnson import JohnsonSB, fit_johnson
-from metagraph.synthesis.blocks import THIS_MACHINE, BlockMakers, transitions, work_of
-from metagraph.synthesis.states import LEVEL, STEP, States, SynthesisError, costs_apart, key_states
+from metagraph.synthesis.blocks import THIS_MACHINE, BlockMakers, compute_transitions, prepare_blocks
+from metagraph.synthesis.states import LEVEL, STEP, States, SynthesisError, compute_costs_apart, key_states
 
 Array = NDArray[Any]
 
@@ -59,13 +59,13 @@ class MotionGraph:
         return int(self.kept.sum()), len(self.targets)
 
 
-def threshold(states: States, k: int = STEP, level: float = LEVEL) -> Threshold:
+def find_threshold(states: States, k: int = STEP, level: float = LEVEL) -> Threshold:
     """Return what a transition may cost: the level of the Johnson S_B distribution of c_(i, i+k), or what was
     observed where none fits.
 
     Raises SynthesisError when no take is longer than k frames.
     """
-    costs = costs_apart(states, k)
+    costs = compute_costs_apart(states, k)
     if not len(costs):
         raise SynthesisError(
             f"no take has more than {k} frames, so nothing tells what a jump is: give longer takes"
@@ -91,25 +91,25 @@ def build_graph(
 ) -> MotionGraph:
     """Return the motion graph of takes.
 
-    limit: what transitions may cost, else `threshold(states)`. keys: the states they may leave and enter,
-    else `key_states(states)`. most: how many of the cheapest are kept of each state, all when None; bounds
-    the memory of large sets. connected: keep only the largest strongly connected component. makers: who makes
-    the blocks of transitions, and where they are kept. Raises SynthesisError when it was cancelled, or when
-    nothing is connected.
+    limit: what transitions may cost, else `find_threshold(states)`. keys: the states they may leave and
+    enter, else `key_states(states)`. most: how many of the cheapest are kept of each state, all when None;
+    bounds the memory of large sets. connected: keep only the largest strongly connected component. makers:
+    who makes the blocks of transitions, and where they are kept. Raises SynthesisError when it was cancelled,
+    or when nothing is connected.
     """
-    limit = threshold(states) if limit is None else limit
+    limit = find_threshold(states) if limit is None else limit
     keys = key_states(states) if keys is None else np.asarray(keys)
-    work = work_of(states, keys, limit.limit, most)
-    rows, targets, costs = transitions(work, makers, progress, cancelled)
+    work = prepare_blocks(states, keys, limit.limit, most)
+    rows, targets, costs = compute_transitions(work, makers, progress, cancelled)
     del work
     starts = np.zeros(len(states) + 1, np.int64)
     starts[keys + 1] = rows
     starts = np.cumsum(starts)
     graph = MotionGraph(states, limit, keys, starts, targets, costs, np.ones(len(states), bool))
-    return largest(graph, spent=True) if connected else graph
+    return find_largest_component(graph, spent=True) if connected else graph
 
 
-def largest(graph: MotionGraph, spent: bool = False) -> MotionGraph:
+def find_largest_component(graph: MotionGraph, spent: bool = False) -> MotionGraph:
     """Return what is left of a graph in its largest strongly connected component: from every state there is a
     way to every other. spent: nobody needs the graph any more; what is left takes its memory. Raises
     SynthesisError when no two states are connected.

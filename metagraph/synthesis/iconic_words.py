@@ -44,7 +44,7 @@ class WordWish:
         return self.said[0]
 
 
-def word_wish(text: str) -> WordWish:
+def parse_word_wish(text: str) -> WordWish:
     """Return what is wished by "big", "big = huge, tall" (motion for "big", of takes that say any of them) or
     "big, huge" (for both, of either). Raises ValueError if a side names no word.
     """
@@ -177,7 +177,7 @@ def measure_word_cost(
     return FrameCost("words", at, np.concatenate(rows).astype(np.float32))
 
 
-def only_states_of_words(places: Sequence[WordPlace]) -> dict[int, Array]:
+def find_states_of_words(places: Sequence[WordPlace]) -> dict[int, Array]:
     """Return, as `WantedSegment.only` has it, the states that alone may come at each word some take says."""
     return {p.frames[0] + n: near for p in places if p.known for n, near in enumerate(p.near)}
 
@@ -209,7 +209,9 @@ def find_words_shown(places: Sequence[WordPlace], states: States, way: Array) ->
     return tuple(out)
 
 
-def unsaid(wishes: Sequence[WordWish], new: SpokenTake, start: float, seconds: float) -> tuple[str, ...]:
+def find_unsaid_wishes(
+    wishes: Sequence[WordWish], new: SpokenTake, start: float, seconds: float
+) -> tuple[str, ...]:
     """Return the wishes, by name, of which nothing is said in new speech, from a second of it on."""
     return tuple(
         wish.name
@@ -221,7 +223,9 @@ def unsaid(wishes: Sequence[WordWish], new: SpokenTake, start: float, seconds: f
 
 
 def describe_words(shown: Sequence[WordShown], never: Sequence[str] = ()) -> str:
-    """Return how well words are met, or "" if no words were given. never: the words of `unsaid`."""
+    """Return how well words are met, or "" if no words were given. never: the words of
+    `find_unsaid_wishes`.
+    """
     parts = []
     if shown:
         met = sum(w.met for w in shown)

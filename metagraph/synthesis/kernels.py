@@ -133,7 +133,7 @@ def find_near(
 
 
 @compiled
-def pack(
+def pack_rows(
     places: Array, costs: Array, found: Array, into: Array, rows: Array, counts: Array
 ) -> tuple[Array, Array]:
     """Return the targets and costs of rows as `near` found them, one row after another, without the state
@@ -158,8 +158,8 @@ def pack(
 
 @compiled
 def thin(counts: Array, targets: Array, costs: Array, most: Any) -> tuple[Array, Array]:
-    """Return the targets and costs of the cheapest transitions of each row, as `pack` returns them, of those
-    that cost alike the first ones. counts `[R]`: how many a row has; becomes how many are left.
+    """Return the targets and costs of the cheapest transitions of each row, as `pack_rows` returns them, of
+    those that cost alike the first ones. counts `[R]`: how many a row has; becomes how many are left.
     """
     ends, price = np.empty(len(targets), np.int32), np.empty(len(costs), np.float32)
     at = first = 0

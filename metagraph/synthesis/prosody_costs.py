@@ -34,8 +34,8 @@ UNKNOWN = 1.0  # spreads that what nobody knows is held to be off; two of one sp
 @dataclass(frozen=True, eq=False)
 class SpokenTake:
     """What is known of the speech a take was recorded with, or new motion is for. segments: as
-    `segments_heard_by` has them. words: its own, with times. prosody: of the segments, None if it was not
-    looked for.
+    `list_segments_heard_by` has them. words: its own, with times. prosody: of the segments, None if it was
+    not looked for.
     """
 
     segments: tuple[Segment, ...]
@@ -77,7 +77,7 @@ def standardise_prosody(recordings: Sequence[SpokenTake], measure: Measure) -> l
     return out
 
 
-def of_states(states: States, takes: Sequence[SpokenTake], measure: Measure) -> Array:
+def measure_state_prosody(states: States, takes: Sequence[SpokenTake], measure: Measure) -> Array:
     """Return `[F]` how the segment a state is in is said, in spreads of its speaker; NaN outside of one's own
     speech. Raises SynthesisError if there are not as many takes.
     """
@@ -92,7 +92,7 @@ def of_states(states: States, takes: Sequence[SpokenTake], measure: Measure) -> 
     return out
 
 
-def of_speech(new: SpokenTake, start: float, seconds: float, measure: Measure) -> Array:
+def measure_speech_prosody(new: SpokenTake, start: float, seconds: float, measure: Measure) -> Array:
     """Return `[T]` how what is said at each frame is said, from a second of the speech on, in spreads; the
     mean is that of all of the speech. NaN outside of its speaker's own speech.
     """
@@ -108,7 +108,8 @@ def measure_prosody_cost(
     measure: Measure, weight: float, of_state: Array, of_frame: Array, limit: float
 ) -> FrameCost:
     """Return what frames cost by how they are said. weight: what a second costs that is off by one spread, of
-    the graph's threshold (limit, metres). of_state, of_frame: as `of_states` and `of_speech` have them.
+    the graph's threshold (limit, metres). of_state, of_frame: as `measure_state_prosody` and
+    `measure_speech_prosody` have them.
     """
     changes = np.flatnonzero(np.append(True, of_frame[1:] != of_frame[:-1]))  # NaN differs from itself
     known = [t for t in changes.tolist() if np.isfinite(of_frame[t])]

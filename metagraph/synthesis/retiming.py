@@ -19,7 +19,7 @@ from metagraph.common.wording import phrase
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE, sample_clip_poses, track_seconds
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
-from metagraph.synthesis.cooccurrence import activation, speeds
+from metagraph.synthesis.cooccurrence import find_activation_speed, measure_part_speeds
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.search.frame_costs import FrameCost
 from metagraph.synthesis.standing_feet import find_standing
@@ -82,7 +82,7 @@ def check_share(most: float) -> float:
     return most
 
 
-def retimable(takes: Sequence[Clip]) -> Array:
+def find_retimable(takes: Sequence[Clip]) -> Array:
     """Return `[F]` at which states of takes speed may change: no hand is in its stroke, and no foot
     steps.
 
@@ -94,7 +94,7 @@ def retimable(takes: Sequence[Clip]) -> Array:
         times, poses = track_seconds(clip), sample_clip_poses(clip)
         free = np.ones(len(times), bool)
         own = np.arange(clip.frames) / clip.fps
-        for part, speed in speeds(clip).items():
+        for part, speed in measure_part_speeds(clip).items():
             if part != "head":
                 free &= ~_strokes(np.interp(times, own, speed))
         for stands in find_standing(clip.skeleton, poses).values():
@@ -104,7 +104,7 @@ def retimable(takes: Sequence[Clip]) -> Array:
 
 
 def _strokes(speed: Array) -> Array:
-    moving = speed > max(activation(speed), SLOW)
+    moving = speed > max(find_activation_speed(speed), SLOW)
     out = np.zeros(len(speed), bool)
     for a, b in _stretches(moving):
         out[a:b] = speed[a:b] > STROKE * speed[a:b].max()
@@ -129,9 +129,9 @@ def retime(
     """Return how a path is retimed so that its events come nearer to where they are wanted, None if nothing
     can be or need be moved.
 
-    way `[T]`: its states; jumps: frames that come by a transition. free `[F]`: `retimable`. most: share by
-    which speed may change at most. reach: frames within which an event of the path is the one that is wanted,
-    else up to half way to the next. The path's beginning and end stay where they are.
+    way `[T]`: its states; jumps: frames that come by a transition. free `[F]`: `find_retimable`. most: share
+    by which speed may change at most. reach: frames within which an event of the path is the one that is
+    wanted, else up to half way to the next. The path's beginning and end stay where they are.
 
     Between two events there is so much time to be won or lost, by speed at its highest in all that is free
     there. How far each is moved is the best by that (dynamic programming): squares of what they are then off
@@ -235,7 +235,7 @@ def _moved(goal: Array, room: Array) -> Array:
     return np.asarray(steps[out[::-1]])
 
 
-def timing_cost(
+def make_timing_cost(
     heard: HeardStates, wanted: WantedSegment, limit: float, price: float = NEARER
 ) -> FrameCost | None:
     """Return what frames cost in which an event comes early or late, so that there is less to retime: none

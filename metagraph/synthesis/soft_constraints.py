@@ -21,10 +21,10 @@ from metagraph.synthesis.iconic_words import (
     WordShown,
     WordWish,
     describe_words,
+    find_unsaid_wishes,
     find_word_places,
     find_words_shown,
     measure_word_cost,
-    unsaid,
 )
 from metagraph.synthesis.prosody_costs import (
     MEASURES,
@@ -33,10 +33,10 @@ from metagraph.synthesis.prosody_costs import (
     SpokenTake,
     measure_prosody_cost,
     measure_prosody_match,
-    of_speech,
-    of_states,
+    measure_speech_prosody,
+    measure_state_prosody,
 )
-from metagraph.synthesis.retiming import Retiming, check_share, retimable, retime
+from metagraph.synthesis.retiming import Retiming, check_share, find_retimable, retime
 from metagraph.synthesis.search.frame_costs import FrameCosts, join_costs
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
@@ -126,11 +126,11 @@ class SoftMaterial:
         self.wish, self.states, self.limit = wish, states, limit
         # Takes of one frame have no states.
         self.takes = [t for t, c in zip(takes, clips, strict=True) if c.frames >= 2]
-        self.of_states = {m: of_states(states, self.takes, m) for m in wish.measures}
+        self.of_states = {m: measure_state_prosody(states, self.takes, m) for m in wish.measures}
         for measure, values in self.of_states.items():
             if not np.isfinite(values).any():
                 raise SynthesisError(_unknown(measure, "the speech of the takes"))
-        self.free = retimable(clips) if wish.retime else None
+        self.free = find_retimable(clips) if wish.retime else None
 
     def constraints(
         self, new: SpokenTake, start: float, seconds: float, tolerance: float = TOLERANCE
@@ -142,7 +142,7 @@ class SoftMaterial:
         for measure, of_state in self.of_states.items():
             if not np.isfinite(new.values(measure)).any() and new.segments:
                 raise SynthesisError(_unknown(measure, "the new speech"))
-            of_frame = of_speech(new, start, seconds, measure)
+            of_frame = measure_speech_prosody(new, start, seconds, measure)
             kinds.append(
                 measure_prosody_cost(measure, getattr(wish, measure), of_state, of_frame, self.limit)
             )
@@ -150,7 +150,7 @@ class SoftMaterial:
         places = find_word_places(wish.words, self.states, self.takes, new, start, seconds, tolerance)
         frames = max(1, round(seconds * RATE))
         charged = join_costs([*kinds, measure_word_cost(places, frames, wish.price, self.limit)])
-        never = unsaid(wish.words, new, start, seconds)
+        never = find_unsaid_wishes(wish.words, new, start, seconds)
         return SoftConstraints(charged, places, wish.hard, self.free, wish.retime, tuple(known), never)
 
 
@@ -196,7 +196,7 @@ class SoftReport:
         return asdict(self)
 
 
-def soft_report(
+def make_soft_report(
     soft: SoftConstraints, states: States, path: Path, retiming: Retiming | None = None
 ) -> SoftReport:
     """Return how well a path meets preferences, as it is shown."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.contact_hold import brought
+from metagraph.motion.contact_hold import bring_limb
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.suggest.tracks import RATE
@@ -72,12 +72,14 @@ def keep_feet_still(clip: Clip, when: Mapping[str, Array]) -> Clip:
         turns, places = (np.asarray(a, np.float64) for a in clip.skeleton.globals(clip.poses()))
         foot = places[:, limb[2]]
         goal = foot + _back(foot, there, FARTHEST * size, max(1, round(FADE * clip.fps)))
-        made = brought(clip, turns, places, (limb[0], limb[1], limb[2]), goal, turns[:, limb[2]])
+        made = bring_limb(clip, turns, places, (limb[0], limb[1], limb[2]), goal, turns[:, limb[2]])
         rotations = np.array(clip.rotations, np.float64)
         moved = np.linalg.norm(goal - foot, axis=-1) > 1e-6
         for joint in limb:
             rotations[moved, joint] = made[moved, joint]
-        clip = replace(clip, rotations=rotation.continuous(rotation.normalize(rotations)).astype(np.float32))
+        clip = replace(
+            clip, rotations=rotation.make_continuous(rotation.normalize(rotations)).astype(np.float32)
+        )
     return clip
 
 

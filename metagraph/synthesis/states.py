@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.suggest.tracks import RATE, joint_track, track_rig, velocity_of
+from metagraph.suggest.tracks import RATE, make_joint_track, measure_velocity, track_rig
 
 Array = NDArray[Any]
 
@@ -56,7 +56,7 @@ class States:
         return int(np.searchsorted(self.starts, state, "right")) - 1
 
 
-def terms_of(states: States, which: Array) -> Array:
+def compute_cost_terms(states: States, which: Array) -> Array:
     """Return `[n, 2 J', 3]` float32: what costs of states are sums of lengths of differences of; joints
     without weight are left out.
     """
@@ -91,9 +91,9 @@ def read_states(
     if len(short) == len(clips):
         raise SynthesisError("every take has only one frame; a motion graph needs motion")
     rig = track_rig(clips[0], roles)
-    tracks = [joint_track(rig, c) for c in clips if c.frames >= 2]
+    tracks = [make_joint_track(rig, c) for c in clips if c.frames >= 2]
     places = np.concatenate(tracks).astype(np.float32)
-    velocities = np.concatenate([velocity_of(t) for t in tracks]).astype(np.float32)
+    velocities = np.concatenate([measure_velocity(t) for t in tracks]).astype(np.float32)
     starts = np.concatenate([[0], np.cumsum([len(t) for t in tracks])])
     weights = np.ones(places.shape[1], np.float32)
     return with_velocity(States(places, velocities, weights, starts, 0.0), velocity)
@@ -127,7 +127,7 @@ def _distance(values: Array, a: Array, b: Array, weights: Array) -> Array:
     return out
 
 
-def costs_apart(states: States, k: int = STEP) -> Array:
+def compute_costs_apart(states: States, k: int = STEP) -> Array:
     """Return c_(i, i+k) `[n]` of all frames that have one so much later (equations 3 and 4): frame i beside
     frame i + k - 1.
     """

@@ -59,7 +59,7 @@ def bind_pose(skeleton: Skeleton, at: Mapping[str, Array], footing: Footing | No
         return why
     turned, places = _facing(turned, places, known)
     levels = {
-        side: rotation.rotation_between(rotation.rotate_vectors(turned[known[f"{side}_foot"]], up), UP)
+        side: rotation.find_rotation_between(rotation.rotate_vectors(turned[known[f"{side}_foot"]], up), UP)
         for side, up in zip(SIDES, (None, None) if footing is None else footing.ups, strict=True)
         if up is not None
     }
@@ -121,7 +121,7 @@ def _swings(
             own, wanted = aligned[joint]
             carried = rotation.rotate_vectors(swing, own)
             if joint not in shoulders or _angle(carried, wanted) > SHRUG:
-                swing = rotation.multiply(rotation.rotation_between(carried, wanted), swing)
+                swing = rotation.multiply(rotation.find_rotation_between(carried, wanted), swing)
         out[joint] = swing
     return out
 
@@ -182,4 +182,4 @@ def _heading(
     own = rotation.rotate_vectors(level, places[roles[toes]] - places[roles[foot]]) * LEVEL
     if np.linalg.norm(own) < 1e-4:
         return level
-    return rotation.multiply(rotation.rotation_between(own, (at[toes] - at[foot]) * LEVEL), level)
+    return rotation.multiply(rotation.find_rotation_between(own, (at[toes] - at[foot]) * LEVEL), level)

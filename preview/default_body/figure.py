@@ -13,10 +13,10 @@ from metagraph.motion import rotation
 from metagraph.motion.joint_map import SIDES
 from metagraph.motion.skeleton import Skeleton
 from preview.default_body.bind import bind_pose
-from preview.default_body.fit import Fit, sculpture
+from preview.default_body.fit import Fit, read_sculpture
 from preview.default_body.footing import Footing
 from preview.figure import MeshFigure, SkinnedFigure
-from preview.levels import levels_of
+from preview.levels import make_levels
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch
 
 Array = NDArray[Any]
@@ -55,7 +55,7 @@ class DefaultBody(MeshFigure):
     """
 
     def __init__(self, skeleton: Skeleton, footing: Footing | None = None) -> None:
-        bind = bind_pose(skeleton, sculpture().at, footing)
+        bind = bind_pose(skeleton, read_sculpture().at, footing)
         if isinstance(bind, str):
             raise ValueError(bind)
         fit = Fit(skeleton, bind, None if footing is None else footing.ankle)
@@ -93,9 +93,9 @@ class DefaultBody(MeshFigure):
     def simplify(self, cancelled: Callable[[], bool] = lambda: False) -> None:
         """Make the `levels`: the same triangles for every skeleton, so that they are made once."""
         if not self.levels:
-            body = sculpture().character
+            body = read_sculpture().character
             model = SkinnedFigure(body)
-            self.levels = levels_of(self.mesh, self.height, cancelled, (model.mesh, model.height))
+            self.levels = make_levels(self.mesh, self.height, cancelled, (model.mesh, model.height))
 
     def finest(self, error: float) -> SkinnedMesh:
         return super().finest(SMOOTH * error)

@@ -55,7 +55,7 @@ class Sculpture:
 
 
 @lru_cache(maxsize=1)
-def sculpture() -> Sculpture:
+def read_sculpture() -> Sculpture:
     """Read the sculpted body; it is kept, as it is the same for all skeletons."""
     body = read_character(PATH)
     names = body.skeleton.names
@@ -76,7 +76,7 @@ class Fit:
 
     def __init__(self, skeleton: Skeleton, bind: Bind, ankle: float | None = None) -> None:
         self.ankle = ankle
-        self.skeleton, self.bind, self.body = skeleton, bind, sculpture()
+        self.skeleton, self.bind, self.body = skeleton, bind, read_sculpture()
         self.size = self._size()
         self.broad = self.size * self._breadth()
         self.own = {role: bind.at(role) for role in bind.roles}

@@ -14,7 +14,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import NEEDED, SIDES
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import is_standing, standing_pose
+from metagraph.motion.standing import find_standing_pose, is_standing
 
 Array = NDArray[Any]
 
@@ -60,7 +60,7 @@ def find_footing(clip: Clip) -> Footing:
         weights=None,
     )
     roles = find_roles(clip.skeleton)
-    pose = standing_pose(some, roles)
+    pose = find_standing_pose(some, roles)
     if any(role not in roles for role in NEEDED):
         return Footing(pose)
     turned, at = some.skeleton.globals(some.poses())

@@ -26,11 +26,11 @@ from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 from metagraph.suggest.find_contacts import find_contacts, with_measured_body
 from preview.camera import Camera
-from preview.character_file import figure_from_file
+from preview.character_file import load_mesh_figure
 from preview.figure import MeshFigure
 from preview.offscreen import Offscreen
 from preview.scene import LIGHT, Actor, Scene
-from preview.sheet import contact_sheet, write_png
+from preview.sheet import make_contact_sheet, write_png
 from sample_clips.make.clip_sheet import layer_of
 from sample_clips.make.mannequin_rig import SKELETON, Array, at
 
@@ -161,7 +161,7 @@ def main() -> None:
     elif options.before is not None:
         names = [n for n in names if _bytes(options.before, n) != _bytes(options.after, n)]
     project = base_project()
-    figure = figure_from_file(HERE / options.character, SKELETON)
+    figure = load_mesh_figure(HERE / options.character, SKELETON)
     below = read_gltf_clips(options.below)[0] if options.below else None
     with Offscreen(*CELL) as offscreen:
         for n, name in enumerate(names):
@@ -180,7 +180,7 @@ def main() -> None:
             title = f"{n:02d}" if options.numbered else name
             write_png(
                 options.folder / f"{title}.png",
-                contact_sheet(pictures, options.columns, labels, title, gap=4),
+                make_contact_sheet(pictures, options.columns, labels, title, gap=4),
             )
             print(title)
 

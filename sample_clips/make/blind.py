@@ -20,16 +20,16 @@ import numpy as np
 
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph.model import Project
-from metagraph.graph.requests import request_from
+from metagraph.graph.requests import make_request
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.planning.mood import MOODS
 from metagraph.playback.planning.running_plan import plan_performance
-from preview.camera import close_up, frame_upper_body
-from preview.character_file import figure_from_file
+from preview.camera import close_up, make_upper_body_camera
+from preview.character_file import load_mesh_figure
 from preview.figure import MeshFigure
 from preview.offscreen import Offscreen
 from preview.scene import LIGHT, Actor, Scene
-from preview.sheet import contact_sheet, write_png
+from preview.sheet import make_contact_sheet, write_png
 from sample_clips.make.before_after import CELL, COLUMNS, HERE, base_project, rows
 from sample_clips.make.mannequin_rig import SKELETON, Array, at
 
@@ -44,7 +44,7 @@ def feeling_rows(offscreen: Offscreen, figure: MeshFigure, project: Project, moo
     face = msgspec.structs.replace(project.face, morphs=tuple(figure.morphs))
     project = replace(project, life=life, face=face)
     times = FROM + EACH * np.arange(COLUMNS)
-    talking = request_from({"do": "mode", "mode": "talking", "id": "m", "at": 0.0})
+    talking = make_request({"do": "mode", "mode": "talking", "id": "m", "at": 0.0})
     plan = plan_performance(project, [talking], float(times[-1]) + 1.0, PLAN_SEED, idle=True)
     evaluator = Evaluator(plan, project)
     pose = evaluator.at(times)
@@ -54,7 +54,7 @@ def feeling_rows(offscreen: Offscreen, figure: MeshFigure, project: Project, moo
         morphs = figure.morph_weights(evaluator.morphs_at(float(time)))
         scene = Scene((Actor(figure, rotations[i], places[i], morphs),))
         head = places[i, at("Head")]
-        body = frame_upper_body(places[0, at("Head")], SKELETON.height, aspect, 0.35).zoom(-2.0)
+        body = make_upper_body_camera(places[0, at("Head")], SKELETON.height, aspect, 0.35).zoom(-2.0)
         face = close_up(head + (0, 0.03, 0), SKELETON.height, aspect).zoom(2.5)
         for camera, out in ((body, far), (face, near)):
             out.append(offscreen.render(scene, camera, LIGHT)[..., :3])
@@ -64,7 +64,7 @@ def feeling_rows(offscreen: Offscreen, figure: MeshFigure, project: Project, moo
 def strips(folder: Path, key: Path, seed: int, names: list[str], clips: Path) -> None:
     """Write a strip of each name, numbered in a shuffled order, and the key."""
     project = base_project()
-    figure = figure_from_file(HERE / "ada.glb", SKELETON)
+    figure = load_mesh_figure(HERE / "ada.glb", SKELETON)
     names = list(MOODS) if names == ["moods"] else names
     order = [names[i] for i in np.random.default_rng(seed).permutation(len(names))]
     folder.mkdir(parents=True, exist_ok=True)
@@ -75,7 +75,7 @@ def strips(folder: Path, key: Path, seed: int, names: list[str], clips: Path) ->
             else:
                 (clip,) = read_gltf_clips(clips / f"{name}.glb")
                 pictures = rows(offscreen, figure, project, clip, COLUMNS, np.radians(22.0), None)
-            page = contact_sheet(pictures, COLUMNS, [], f"{n:02d}", gap=4)
+            page = make_contact_sheet(pictures, COLUMNS, [], f"{n:02d}", gap=4)
             write_png(folder / f"{n:02d}.png", page)
     key.write_text(json.dumps(order), encoding="utf-8")
 

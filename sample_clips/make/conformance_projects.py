@@ -18,7 +18,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.life.voice import voice_from_text
+from metagraph.playback.life.voice import guess_voice
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from sample_clips.make.numbered_ids import numbered_ids
 
@@ -152,7 +152,9 @@ class Moves:
             turns[:, place] += (
                 np.sin(np.pi * x[:, 0]) ** 2 * a + np.sin(2 * np.pi * x[:, 0]) * np.sin(np.pi * x[:, 0]) * b
             )
-        rotations = rotation.continuous(rotation.multiply(self.skeleton.rest_rotations, rotation.exp(turns)))
+        rotations = rotation.make_continuous(
+            rotation.multiply(self.skeleton.rest_rotations, rotation.exp(turns))
+        )
         if self.size > 1:  # a quaternion and its negative are one rotation
             rotations = rotations * chance.choice((-1.0, 1.0), (1, len(self.skeleton), 1))
         root = np.repeat(self.skeleton.rest_translations[None, :1], frames, 0)
@@ -406,7 +408,7 @@ def stick(
         "hello": Line(text="Hello. I am a stick.", asks=greeting),
         "7": Line(text="Seven!", duration=0.8, asks=(Nod(),), mood=(-0.6, 0.4), intensity=1.3),
     }
-    voices = {"hello": voice_from_text(lines["hello"].text, 1.7)}
+    voices = {"hello": guess_voice(lines["hello"].text, 1.7)}
     plain = edits.set_settings(b.project, variety=0.0)  # as in the paper; the other characters have some
     return replace(plain, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.mesh import lathe
+from preview.mesh import turn_profile
 from sample_clips.make import mannequin_weights as weights
 from sample_clips.make import openings, shapes
 from sample_clips.make.looks import ROWS, Look
@@ -50,7 +50,7 @@ def eye() -> Piece:
     out = EYE_RADIUS + _CORNEA * np.cos(np.radians(np.clip(degrees / 34.0, 0, 1) * 90.0))
     a = np.radians(degrees)
     profile = [(r * np.cos(x), r * np.sin(x) if x > 0 else 0.0) for r, x in zip(out, a, strict=True)]
-    positions, normals, triangles = lathe(profile, 18)
+    positions, normals, triangles = turn_profile(profile, 18)
     positions, normals = (v[:, [0, 2, 1]] * [1, -1, 1] for v in (positions, normals))
     away = np.arctan2(np.hypot(positions[:, 0], positions[:, 1]), positions[:, 2])
     across = positions[:, :2] / np.maximum(np.hypot(positions[:, 0], positions[:, 1]), 1e-9)[:, None]

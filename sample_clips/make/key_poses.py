@@ -144,7 +144,7 @@ def solve(posture: Posture) -> Array:
     """Return local rotations `[J, 4]` of everything but the legs, which `channels` and `legs` place frame by
     frame.
     """
-    out = rotation.identity_rotations((JOINTS,))
+    out = rotation.make_identity_rotations((JOINTS,))
     out[at("Hips")] = turned(posture.hips)
     for names, shares, angles in ((SPINE, SPINE_SHARE, posture.spine), (NECK, NECK_SHARE, posture.head)):
         for name, share in zip(names, shares, strict=True):

@@ -14,7 +14,7 @@ from metagraph.graph.model import Project
 
 
 def numbered_id(project: Project, letter: str, *made_of: object, more: Collection[str] = ()) -> str:
-    """Return the letter and the number after the highest in the project; takes the place of `ids.new_id`."""
+    """Return the letter and the number after the highest in the project; takes the place of `ids.make_id`."""
     graphs, machines = project.graphs.values(), project.manual.values()
     known = (
         project.clips,
@@ -32,8 +32,8 @@ def numbered_id(project: Project, letter: str, *made_of: object, more: Collectio
 @contextmanager
 def numbered_ids() -> Iterator[None]:
     """Number ids while this lasts; also a decorator."""
-    made, ids.new_id = ids.new_id, numbered_id
+    made, ids.make_id = ids.make_id, numbered_id
     try:
         yield
     finally:
-        ids.new_id = made
+        ids.make_id = made

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.mesh import lathe
+from preview.mesh import turn_profile
 from sample_clips.make import mannequin_weights as weights
 from sample_clips.make import shapes
 from sample_clips.make.face import neck
@@ -251,5 +251,7 @@ def wire(path: Array | Sequence[tuple[float, float, float]], radius: float) -> P
 def earring() -> Piece:
     """A stud in the left ear."""
     angle = np.linspace(-np.pi / 2, np.pi / 2, 6)
-    positions, normals, triangles = lathe([(0.0036 * np.cos(a), 0.0036 * np.sin(a)) for a in angle], 10)
+    positions, normals, triangles = turn_profile(
+        [(0.0036 * np.cos(a), 0.0036 * np.sin(a)) for a in angle], 10
+    )
     return rigid((positions + [0.0800, 1.5755, -0.010], normals, triangles), "Head", "metal")

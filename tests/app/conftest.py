@@ -108,7 +108,7 @@ def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("METAGRAPH_DATA", str(tmp_path / "data" / "Metagraph" / "Metagraph"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     # Not XDG_CACHE_HOME: there Mesa keeps its shaders.
-    monkeypatch.setattr("app.stage.kept_pictures.pictures_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr("app.stage.kept_pictures.find_pictures_folder", lambda: tmp_path / "cache")
     QSettings().clear()
     QSettings(QSettings.defaultFormat(), QSettings.Scope.UserScope, "Metagraph", "Metagraph").clear()
 

@@ -127,11 +127,11 @@ def _report(w: Handles, _: Path) -> None:
 
 def _take(w: Handles, folder: Path) -> None:
     from app.features.taking.taking_dialog import TakingDialog
-    from app.look.theme import theme
+    from app.look.theme import get_theme
     from metagraph.formats.project.pieces import read_other_project
 
     piece = read_other_project(ROOT / "seated.metagraph.yaml", None)
-    TakingDialog(w.document, w.shell.jobs, piece, "seated", theme("dark"), w.window).open()
+    TakingDialog(w.document, w.shell.jobs, piece, "seated", get_theme("dark"), w.window).open()
 
 
 def _recover(w: Handles, _: Path) -> None:

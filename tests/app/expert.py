@@ -19,7 +19,7 @@ from metagraph.graph import edits
 from metagraph.graph.edits import guess_limb
 from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import LIMBS, Project
-from metagraph.research.study.machines.by_hand import MachineDrawing, Way, Work, works
+from metagraph.research.study.machines.by_hand import MachineDrawing, Way, Work, list_works
 from metagraph.research.study.machines.finding import Words
 from metagraph.suggest.review import DECIDING
 from tests.app.participant import LEFT, Participant, Task
@@ -36,7 +36,7 @@ class Expert(Participant):
 
     def draw(self, way: Way, look: bool = False) -> None:
         reference = self.given.reference
-        some = works(reference)
+        some = list_works(reference)
         library = [(c, reference.clips[c].name) for w in some for c in w.clips]
         guessed = {
             c: guess_limb(n) if w.layer == "arms" else "both"

@@ -25,7 +25,7 @@ from metagraph.graph.edits import guess_limb
 from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import LAYERS, LIMBS, Layer, Project
 from metagraph.research.study.machines.klm import predict_seconds
-from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.machines.normal_machine import normalize_machines
 from metagraph.research.study.scores.machines import Score, score
 
 LEFT = Qt.MouseButton.LeftButton
@@ -165,7 +165,7 @@ class Participant:
         drags = counts.pop("D", 0)  # pressing and letting go are counted already
         counts["P"] += drags  # a drag points at where it ends
         counts["M"], counts["S"], counts["R"] = self.thoughts, self.scrolls, round(self.waited)
-        found = score(normal(project), normal(self.given.reference))
+        found = score(normalize_machines(project), normalize_machines(self.given.reference))
         return Result(
             condition,
             len(project.clips),

@@ -7,7 +7,7 @@ import pytest
 from metagraph.formats.store import open_project
 from metagraph.research.study.machines.by_hand import Way
 from metagraph.research.study.machines.counted_hand import try_way
-from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.machines.normal_machine import normalize_machines
 from metagraph.research.study.scores.machines import score
 from tests.app.expert import Expert, Reviewer, hidden, without_times
 from tests.app.participant import CONDITIONS, Participant, bare, task
@@ -95,7 +95,9 @@ def test_an_expert_goes_through_proposals_without_a_mistake(drive, sample, look,
     reviewer = Reviewer(drive, given)
     reviewer.act = lambda _: reviewer.review(look)
     result = reviewer.do("meta")
-    found = score(normal(without_times(drive.document.project)), normal(given.reference))
+    found = score(
+        normalize_machines(without_times(drive.document.project)), normalize_machines(given.reference)
+    )
     wrong = [m.words for m in found.mistakes]
     assert not wrong or (not look and not named)  # unseen and unnamed, what is sure may be wrong
     assert result.operators["P"] == result.operators["B"] == 0

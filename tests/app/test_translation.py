@@ -27,7 +27,7 @@ from metagraph.common.wording import Phrase, phrase, plural_phrase
 from metagraph.engines.targets import registry
 from metagraph.errors import FileError
 from metagraph.formats import import_words
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.conversations.files import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
@@ -152,7 +152,7 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
     lines = [tr_phrase(line) for line in import_words.count_alike(result.failures)]
     assert lines[0] == (
         "bad.bvh, ihre ersten Bytes: sie ist eine Datei anderer Art, nicht eine BVH-Datei. "
-        f"Clips werden aus {', '.join(clip_suffixes())} gelesen."
+        f"Clips werden aus {', '.join(list_clip_suffixes())} gelesen."
     )
     assert lines[1].startswith("worse.glb, ihre ersten Bytes: sie ist ")
     assert import_words.describe_import(result) == "Imported 0 clips. Skipped: 2 unusable files"
@@ -161,10 +161,10 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
 def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> None:
     translation.choose("de")
     words = catalogue_texts("de")
-    for target in registry.targets().values():
+    for target in registry.list_targets().values():
         for said in (target.files, target.group, target.untried, *(loss.words for loss in target.losses)):
             assert not said or (isinstance(said, Phrase) and said.template in words), f"{target.name}: {said}"
-    (counted,) = [loss for loss in registry.target("scxml").losses if "blend their seam" in loss.words]
+    (counted,) = [loss for loss in registry.get_target("scxml").losses if "blend their seam" in loss.words]
     loops = replace(counted, count=lambda project: 3).told(Project())
     assert loops == "3 loops blend their seam here but jump at the seam there"
     assert tr_phrase(loops) == "3 Schleifen blenden hier ihre Naht, springen dort aber an ihr"
@@ -203,7 +203,7 @@ def test_why_clips_are_taken_for_what_they_are_is_said_in_the_language(english: 
     translation.choose("de")
     assert all(tr_phrase(one) != one for one in said)
     for p in every:  # and so it is shown
-        shown = review_words.timing(p, 9.0)
+        shown = review_words.describe_proposed_times(p, 9.0)
         beliefs = [p.details[name] for name in ("stroke", "likelihood") if name in p.details]
         assert beliefs and all(escape(tr_phrase(belief.reason)) in shown for belief in beliefs)
 
@@ -232,11 +232,11 @@ def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
 
 def test_what_a_language_lacks_is_english(english: None) -> None:
     translation.choose("de")
-    assert translation.current_language() == "de"
+    assert translation.get_language() == "de"
     assert tr("no such text {n}", n=3) == "no such text 3"
     assert tr("braces {stay} as they are") == "braces {stay} as they are"
     translation.choose("xx")
-    assert translation.current_language() == "en"
+    assert translation.get_language() == "en"
 
 
 def test_the_environment_wins_over_the_settings(english: None, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -246,10 +246,10 @@ def test_the_environment_wins_over_the_settings(english: None, monkeypatch: pyte
             return "de"
 
     translation.choose_language(Settings())
-    assert translation.current_language() == "de"
+    assert translation.get_language() == "de"
     monkeypatch.setenv("METAGRAPH_LANGUAGE", "en")
     translation.choose_language(Settings())
-    assert translation.current_language() == "en"
+    assert translation.get_language() == "en"
 
 
 def connections(count: int) -> str:
@@ -320,4 +320,4 @@ def test_the_language_follows_the_settings_then_the_system(
             return kept or usual
 
     translation.choose_language(Settings(), system)
-    assert translation.current_language() == chosen
+    assert translation.get_language() == chosen

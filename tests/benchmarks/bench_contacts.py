@@ -26,9 +26,13 @@ from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.motion.contact_spans import contact_key, contact_weight
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.contacts import contact_depths, goals_at, solve_pose_with_contacts
+from metagraph.playback.posing.contacts import (
+    find_hand_goals,
+    measure_contact_depths,
+    solve_pose_with_contacts,
+)
 from metagraph.suggest.find_contacts import find_contacts
-from tests.posing import contact_rig, pose_at
+from tests.posing import compute_pose_at, contact_rig
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
@@ -42,7 +46,7 @@ def measured(rig: ContactRig, pose: Pose, goals: Goals, fps: float) -> tuple[flo
     """Return the deepest, the 95 % level (both mm), the share of time deeper than DEEP, and how fast held
     hands slip over what they touch, mm/s, on average.
     """
-    deep = np.maximum(0, contact_depths(rig, pose).max(-1))
+    deep = np.maximum(0, measure_contact_depths(rig, pose).max(-1))
     slips = []
     joints = list(rig.joints)
     part = Pose(pose.rotations, pose.translations)
@@ -90,13 +94,15 @@ def hour(minutes: float) -> None:
     rig = contact_rig(project)
     assert rig is not None
     times = np.arange(0, 60 * minutes, 1 / FPS)
-    goals = [goals_at(plan, project, rig, t) for t in times.tolist()]
+    goals = [find_hand_goals(plan, project, rig, t) for t in times.tolist()]
     for name, touch in ways:
         other = replace(project, touch=touch)
-        parts = [pose_at(plan, other, some) for some in np.array_split(times, max(1, len(times) // 1000))]
+        parts = [
+            compute_pose_at(plan, other, some) for some in np.array_split(times, max(1, len(times) // 1000))
+        ]
         pose = Pose(*(np.concatenate([getattr(p, f) for p in parts]) for f in ("rotations", "translations")))
         said(name, measured(rig, pose, goals, FPS))
-        fine = pose_at(plan, other, np.arange(0, 60, 1 / 120))
+        fine = compute_pose_at(plan, other, np.arange(0, 60, 1 / 120))
         jerks = np.linalg.norm(np.diff(_wrists(project, fine), 2, axis=0), axis=-1) * 120**2
         level, most = np.percentile(jerks, 99.9), jerks.max()
         print(f"  {'':22} wrists' acceleration: 99.9 % {level:.0f} m/s2, most {most:.0f}")
@@ -106,7 +112,7 @@ def hour(minutes: float) -> None:
     for name, touch in ways:
         other = replace(project, touch=touch)
         for what, at, rounds in (("free", free, 200), ("held", held, 200), ("600", times[:600], 5)):
-            spent = cost(partial(pose_at, plan, other, at), rounds)
+            spent = cost(partial(compute_pose_at, plan, other, at), rounds)
             ratio = spent / usual.setdefault(what, spent)
             print(f"  {name:22} hands {what:5} {spent * 1e3:8.2f} ms, {ratio:.2f} times what neither costs")
 

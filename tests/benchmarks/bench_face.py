@@ -36,7 +36,7 @@ from metagraph.graph.requests import Say
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import spelled
-from metagraph.playback.life.lips import mouth
+from metagraph.playback.life.lips import compute_mouth_shapes
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, make_voice
@@ -44,7 +44,7 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import hear_asks
 from metagraph.playback.planning.mood import MOODS
-from metagraph.speech.phones import pieces_of
+from metagraph.speech.phones import list_mouth_pieces
 from metagraph.speech.textgrid import read_textgrid
 from tests.posing import face_weights
 
@@ -97,7 +97,7 @@ def lip_gap(body: CharacterMesh, weights: dict[str, float]) -> float:
 def shown(voice: Voice, times: Array) -> Array:
     """Return how much of each mouth shape but silence shows, `[N, 14]`."""
     track = Track(speeches=(Speech("s", 0.0, voice.duration, line="l"),))
-    out = mouth(track, {"l": voice}, Life().lip_smoothing, times)
+    out = compute_mouth_shapes(track, {"l": voice}, Life().lip_smoothing, times)
     assert out is not None
     return out
 
@@ -179,7 +179,9 @@ def main() -> None:
             (spelled(ALPHABET, text, length).pieces, length) for text, length in spoken
         ]
     grids = [read_textgrid(p) for p in sorted((SAMPLES / "lines").glob("*.TextGrid"))]
-    recorded = [(pieces_of(grid), max(i.end for t in grid.tiers for i in t.intervals)) for grid in grids]
+    recorded = [
+        (list_mouth_pieces(grid), max(i.end for t in grid.tiers for i in t.intervals)) for grid in grids
+    ]
     groups["phones of recorded lines"] = recorded
     print(f"{path.name}: median (least) of the most; of the best frame; share that reach 0.95; gap mm")
     for name, said in groups.items():

@@ -82,7 +82,7 @@ def main(count: int = 1000, pictures: int = 500) -> None:
 
     app = prepare_application()
     folder = Path(tempfile.mkdtemp()) / "pictures"
-    kept_pictures.pictures_folder = lambda: folder
+    kept_pictures.find_pictures_folder = lambda: folder
     project = clips_of(count)
     print(f"{count} clips, panel of {SIZE[0]} x {SIZE[1]}; ms: median, worst")
     for opening in ("first", "second"):

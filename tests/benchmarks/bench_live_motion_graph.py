@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.store import open_project  # noqa: E402
-from metagraph.graph.conversation.model import Segment, segments_heard_by  # noqa: E402
+from metagraph.graph.conversation.model import Segment, list_segments_heard_by  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
 from metagraph.research.exhibits.material import make_conversations  # noqa: E402
 from metagraph.research.generation.planted_speech import make_planted_speech  # noqa: E402
@@ -52,11 +52,11 @@ def main() -> None:
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
     talks = make_conversations(project, TAKES, LONG)
     clips = [clip for talk in talks if (clip := talk.clips[0]) is not None]
-    new = segments_heard_by(make_planted_speech(seconds, 777, 888, "new").conversation, 0)
+    new = list_segments_heard_by(make_planted_speech(seconds, 777, 888, "new").conversation, 0)
     measured(
         "the sample project in conversation",
         clips,
-        [segments_heard_by(t.conversation, 0) for t in talks],
+        [list_segments_heard_by(t.conversation, 0) for t in talks],
         new,
         seconds,
     )

@@ -30,8 +30,8 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import hear_asks
 from metagraph.playback.planning.mood import MOODS
-from metagraph.playback.timing.phases import phases
-from tests.posing import pose_at
+from metagraph.playback.timing.phases import find_phases
+from tests.posing import compute_pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
@@ -60,10 +60,10 @@ def measured(project: Project, seed: int) -> list[float]:
     times = np.arange(0, SECONDS, 1 / FPS)
     skeleton, roles = project.skeleton, anatomy.project_roles(project)
     assert skeleton is not None
-    turned, at = skeleton.globals(pose_at(plan, project, times))
+    turned, at = skeleton.globals(compute_pose_at(plan, project, times))
     arms = plan.layers["arms"]
     resting = replace(plan, layers={**plan.layers, "arms": replace(arms, cues=())})
-    under = skeleton.globals(pose_at(resting, project, times))[1]
+    under = skeleton.globals(compute_pose_at(resting, project, times))[1]
     chest = next(roles[r] for r in ("upper_chest", "chest", "spine") if r in roles)
     hands = [roles[f"{side}_hand"] for side in ("left", "right")]
     seen = at[:, hands] - at[:, [chest]]
@@ -74,7 +74,7 @@ def measured(project: Project, seed: int) -> list[float]:
     )
     away = np.linalg.norm(at[:, hands] - under[:, hands], axis=-1).max(-1)
     head = roles["head"]
-    rest = skeleton.globals(anatomy.base_pose(project))[0][head]
+    rest = skeleton.globals(anatomy.get_base_pose(project))[0][head]
     up = _rotated(turned[:, head], _rotated(_back(rest), np.array([0.0, 1.0, 0.0])))
     return [
         *steps,
@@ -134,7 +134,7 @@ def strokes(project: Project) -> None:
             plan = hear_asks(project, Plan(seed, 0.0), 0.0, [mood, *asks], 125.0, idle=False)
             for cue in plan.layers["arms"].cues:
                 if cue.meta.startswith("g"):
-                    late = cue.start + (phases(project, cue.action).stroke - cue.entry) / cue.tempo
+                    late = cue.start + (find_phases(project, cue.action).stroke - cue.entry) / cue.tempo
                     off.append(abs(late - (6.0 + 7.0 * int(cue.meta[1:]))))
         if off:
             print(f"| {name} | {len(off)} | {1000 * np.mean(off):.2f} | {1000 * max(off):.2f} |")

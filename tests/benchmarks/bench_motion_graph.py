@@ -31,10 +31,16 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.graph.conversation.model import SOUNDS, Segment  # noqa: E402
 from metagraph.synthesis.constraints import HeardStates, list_wanted  # noqa: E402
-from metagraph.synthesis.graph import MotionGraph, Threshold, build_graph, largest, threshold  # noqa: E402
+from metagraph.synthesis.graph import (  # noqa: E402
+    MotionGraph,
+    Threshold,
+    build_graph,
+    find_largest_component,
+    find_threshold,
+)
 from metagraph.synthesis.search.exact_search import find_best_path  # noqa: E402
-from metagraph.synthesis.search.greedy_search import greedy  # noqa: E402
-from metagraph.synthesis.states import States, key_states, read_states, terms_of, with_velocity  # noqa: E402
+from metagraph.synthesis.search.greedy_search import search_greedily  # noqa: E402
+from metagraph.synthesis.states import States, compute_cost_terms, key_states, read_states, with_velocity  # noqa: E402
 
 Array = Any
 ROWS = 12  # the straightforward one compares
@@ -71,7 +77,11 @@ def limit_for(states: States, keys: Array, share: float) -> float:
     a, b = (chance.choice(keys, 600) for _ in range(2))
     return float(
         np.quantile(
-            [np.linalg.norm(x - terms_of(states, b), axis=-1).sum(-1) for x in terms_of(states, a)], share
+            [
+                np.linalg.norm(x - compute_cost_terms(states, b), axis=-1).sum(-1)
+                for x in compute_cost_terms(states, a)
+            ],
+            share,
         )
     )
 
@@ -135,7 +145,7 @@ def components(states: States, limit: float) -> None:
     from scipy.sparse.csgraph import connected_components
 
     whole = build_graph(states, Threshold(3, 0.95, np.zeros(0), None, limit, limit), connected=False)
-    ours, graph = timed(lambda: largest(whole))
+    ours, graph = timed(lambda: find_largest_component(whole))
     rows = np.repeat(np.arange(len(states), dtype=np.int32), np.diff(whole.starts))
     follows = np.flatnonzero(~states.last).astype(np.int32)
     shape = (len(states), len(states))
@@ -183,12 +193,12 @@ def searched(name: str, graph: MotionGraph) -> None:
         f"\n15 s of speech, {name}: exact {exact:.2f} s, cost {path.cost:.3f}, {len(path.jumps)} transitions"
     )
     begun = time.perf_counter()
-    greedy(graph, sound, want)
+    search_greedily(graph, sound, want)
     first = time.perf_counter() - begun
     costs, seconds, failed = [], [], 0
     for seed in range(20):
         try:
-            took, other = timed(lambda n=seed: greedy(graph, sound, want, n), 2)
+            took, other = timed(lambda n=seed: search_greedily(graph, sound, want, n), 2)
         except ValueError:
             failed += 1
             continue
@@ -346,7 +356,7 @@ def main() -> None:
         real = read_states([t for t in takes if t.skeleton == takes[0].skeleton])
         for k in (2, 3, 4):
             try:
-                compared(f"bandai-namco-1, k = {k}", real, threshold(real, k).limit)
+                compared(f"bandai-namco-1, k = {k}", real, find_threshold(real, k).limit)
             except ValueError as error:
                 print(f"bandai-namco-1, k = {k}: {error}")
     print()

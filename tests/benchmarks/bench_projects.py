@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT))
 from metagraph.engines.export import export_project  # noqa: E402
 from metagraph.engines.reading import read_export  # noqa: E402
 from metagraph.formats.project.data import from_data, to_data  # noqa: E402
-from metagraph.formats.project.journal import Journal, journal_path  # noqa: E402
+from metagraph.formats.project.journal import Journal, make_journal_path  # noqa: E402
 from metagraph.formats.project.text import read_text_data, to_text  # noqa: E402
 from metagraph.formats.recovery import recover  # noqa: E402
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project  # noqa: E402
@@ -71,7 +71,7 @@ def main() -> None:
         print(f"  text -> data     {median(lambda: read_text_data(text)):8.0f} ms")
         print(f"  data -> project  {median(lambda: from_data(data)):8.0f} ms")
         print(f"  data -> text     {median(lambda: to_text(data)):8.0f} ms")
-        journal = Journal(journal_path(path), path)
+        journal = Journal(make_journal_path(path), path)
         ids = [a.id for a in project.actions()]
         each, now = [], project
         for n in range(EDITS):
@@ -86,9 +86,9 @@ def main() -> None:
             each.append(time.perf_counter() - begun)
             now = after
         journal.close()
-        size = journal_path(path).stat().st_size
+        size = make_journal_path(path).stat().st_size
         print(f"journal, one edit  {statistics.median(each) * 1e3:8.2f} ms, {size / EDITS:.0f} bytes")
-        print(f"recover {EDITS} edits {median(lambda: recover(journal_path(path), path)):8.0f} ms")
+        print(f"recover {EDITS} edits {median(lambda: recover(make_journal_path(path), path)):8.0f} ms")
         sample = open_project(SAMPLE).project
         print(
             f"open the sample    {median(lambda: open_project(SAMPLE)):8.0f} ms, {len(sample.clips)} clips "

@@ -30,10 +30,10 @@ from metagraph.formats.clips import read_clips  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
 from metagraph.motion.joint_map import propose_joint_map  # noqa: E402
-from metagraph.motion.mirror import mirror, pairs_of  # noqa: E402
+from metagraph.motion.mirror import find_joint_twins, mirror  # noqa: E402
 from metagraph.motion.retarget import retarget  # noqa: E402
 from metagraph.motion.skeleton import Pose, Skeleton  # noqa: E402
-from metagraph.motion.standing import standing_pose  # noqa: E402
+from metagraph.motion.standing import find_standing_pose  # noqa: E402
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton  # noqa: E402
 from tests.retarget_measures import contact_errors, round_trip, variant  # noqa: E402
 
@@ -153,13 +153,13 @@ def main() -> None:
         source.names, source.parents, source.rest_rotations, source.rest_translations * 1.2
     )  # fmt: skip
     many = clips(source)
-    joint_map, pairs = propose_joint_map(source, target), pairs_of(source)
+    joint_map, pairs = propose_joint_map(source, target), find_joint_twins(source)
     print(f"{CLIPS} clips of {(FRAMES - 1) / 30:.0f} s, {len(source)} joints onto {len(target)}")
     print(f"joint map   {timed(lambda: propose_joint_map(source, target)):8.3f} s")
     print(f"retarget    {timed(lambda: [retarget(c, target, joint_map) for c in many]):8.3f} s")
     print(f"mirror      {timed(lambda: [mirror(c, pairs) for c in many]):8.3f} s")
     some = sets()
-    poses = {name: standing_pose(clips[0]) for name, clips in some.items()}
+    poses = {name: find_standing_pose(clips[0]) for name, clips in some.items()}
     trips(some, poses)
     contacts(some, poses)
 

@@ -27,20 +27,20 @@ from metagraph.research.motion_graph.search_evaluation import (  # noqa: E402
     cut_segments,
     evaluate_search,
 )
-from metagraph.speech.prosody import prosody  # noqa: E402
+from metagraph.speech.prosody import measure_prosody  # noqa: E402
 from metagraph.synthesis.assemble import assemble  # noqa: E402
 from metagraph.synthesis.constraints import find_change_states, find_heard_at  # noqa: E402
-from metagraph.synthesis.cooccurrence import speeds  # noqa: E402
+from metagraph.synthesis.cooccurrence import measure_part_speeds  # noqa: E402
 from metagraph.synthesis.graph import build_graph  # noqa: E402
-from metagraph.synthesis.iconic_words import word_wish  # noqa: E402
+from metagraph.synthesis.iconic_words import parse_word_wish  # noqa: E402
 from metagraph.synthesis.prosody_costs import SpokenTake  # noqa: E402
-from metagraph.synthesis.search.path_quality import quality  # noqa: E402
+from metagraph.synthesis.search.path_quality import measure_quality  # noqa: E402
 from metagraph.synthesis.search.relaxing import Searching, answer_speech  # noqa: E402
-from metagraph.synthesis.soft_constraints import SoftMaterial, SoftWish, soft_report  # noqa: E402
+from metagraph.synthesis.soft_constraints import SoftMaterial, SoftWish, make_soft_report  # noqa: E402
 from metagraph.synthesis.states import key_states, read_states  # noqa: E402
 from tests.synthesis.talking import VOICE, aloud, speech, talking  # noqa: E402
 
-WORDS = (word_wish("big"), word_wish("round = river"))
+WORDS = (parse_word_wish("big"), parse_word_wish("round = river"))
 WISHES = {
     "nothing": SoftWish(),
     "loudness 0.1": SoftWish(loudness=0.1),
@@ -61,7 +61,7 @@ Recorded = tuple[list[Segment], list[float], SpokenTake]
 def recorded(seed: int, seconds: int, gain: float) -> Recorded:
     said = speech(seconds, seed)
     steps, words, samples = aloud(said, seconds, seed, gain)
-    return said, steps, SpokenTake(tuple(said), words, prosody(said, words, samples, VOICE))
+    return said, steps, SpokenTake(tuple(said), words, measure_prosody(said, words, samples, VOICE))
 
 
 def wishes(takes: int = 8, windows: int = 16) -> None:
@@ -96,16 +96,18 @@ def wishes(takes: int = 8, windows: int = 16) -> None:
                 )
                 took += time.perf_counter() - begun
                 known = told.constraints(one, 0.0, SECONDS)
-                report = soft_report(soft, states, found.path, found.retiming)
-                looks = quality(states, found.path)
-                matches = soft_report(known, states, found.path, found.retiming).matches
+                report = make_soft_report(soft, states, found.path, found.retiming)
+                looks = measure_quality(states, found.path)
+                matches = make_soft_report(known, states, found.path, found.retiming).matches
                 rows.append([*(m.correlation or 0.0 for m in matches), looks.jumps, found.path.cost])
                 rows[-1].append(bool(found.given_up))
                 words[0] += sum(w.met for w in report.words)
                 words[1] += sum(w.known for w in report.words)
                 if report.off is not None and report.was is not None:
                     times.append((1000 * report.off, 1000 * report.was))
-                speed = speeds(assemble(states, clips, found.path, retiming=found.retiming))["right_hand"]
+                speed = measure_part_speeds(assemble(states, clips, found.path, retiming=found.retiming))[
+                    "right_hand"
+                ]
                 for s, height in zip(said, heights, strict=True):
                     if s.kind == "clause" and s.end < SECONDS:
                         steps.append(height)

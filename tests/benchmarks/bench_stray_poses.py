@@ -21,13 +21,13 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
-from metagraph.formats.stray_poses import stray_poses
+from metagraph.formats.stray_poses import find_stray_poses
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose
-from metagraph.motion.standing import standing_pose
+from metagraph.motion.standing import find_standing_pose
 
 Array = NDArray[Any]
 Case = tuple[
@@ -62,7 +62,7 @@ def posed(clip: Clip, below: float) -> Pose | None:
     needed = [f"{s}_{r}" for s in ("left", "right") for r in ("upper_arm", "lower_arm", "hand", "upper_leg")]
     if any(role not in roles for role in (*needed, "hips", "head")):
         return None
-    standing = standing_pose(clip, roles)
+    standing = find_standing_pose(clip, roles)
     local = standing.rotations.astype(float).copy()
     _, at = skeleton.globals(standing)
     up = at[roles["head"]] - at[roles["hips"]]
@@ -76,7 +76,7 @@ def posed(clip: Clip, below: float) -> Pose | None:
         for joint, tip in (("upper_arm", "lower_arm"), ("lower_arm", "hand")):
             a, b = roles[f"{side}_{joint}"], roles[f"{side}_{tip}"]
             model, at = skeleton.globals(Pose(local, standing.translations))
-            turn = rotation.rotation_between(at[b] - at[a], wanted)
+            turn = rotation.find_rotation_between(at[b] - at[a], wanted)
             above = model[skeleton.parents[a]]
             local[a] = rotation.multiply(rotation.conjugate(above), rotation.multiply(turn, model[a]))
     return Pose(local, standing.translations)
@@ -111,7 +111,7 @@ def row(clip: Clip, pose: Pose, at_origin: bool, near: int) -> tuple[Array, Arra
 
 
 def joined(clip: Clip, parts: list[tuple[Array, Array]]) -> Clip:
-    turns = rotation.continuous(np.concatenate([p[0] for p in parts]))
+    turns = rotation.make_continuous(np.concatenate([p[0] for p in parts]))
     return replace(
         clip,
         rotations=turns,
@@ -148,7 +148,7 @@ def resampled(clip: Clip, fps: float, count_first: bool) -> tuple[Clip, int]:
     moved = replace(
         clip,
         fps=fps,
-        rotations=rotation.continuous(rotation.nlerp(clip.rotations[low], clip.rotations[high], turned)),
+        rotations=rotation.make_continuous(rotation.nlerp(clip.rotations[low], clip.rotations[high], turned)),
         translations=clip.translations[low] * (1 - moved_by) + clip.translations[high] * moved_by,
         morphs=(),
         weights=None,
@@ -230,9 +230,9 @@ def without_stray_poses(clip: Clip) -> Iterator[Case]:
             )
         late = between(head, begin, 1 - (1 - u) ** 2)
         yield f"fast from {name}", joined(clip, [head, late, whole(clip)]), 0, 0, ()
-    steps = rotation.angle_between(clip.rotations[1:].astype(float), clip.rotations[:-1].astype(float)).sum(
-        -1
-    )
+    steps = rotation.measure_angle_between(
+        clip.rotations[1:].astype(float), clip.rotations[:-1].astype(float)
+    ).sum(-1)
     fastest = int(np.argmax(steps[: max(1, len(steps) - SHORTEST)]))
     cut = clip.trimmed(fastest)
     yield "cut where it is fastest", cut, 0, 0, ()
@@ -277,7 +277,7 @@ def seen(case: Case) -> bool:
 
 
 def found(clip: Clip) -> tuple[int, int, tuple[int, ...]]:
-    [poses] = stray_poses([clip])
+    [poses] = find_stray_poses([clip])
     return poses.first, poses.last, poses.lone
 
 

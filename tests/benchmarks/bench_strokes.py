@@ -21,7 +21,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture, Go
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 BEGIN, LEAD, SENTENCES = 20.0, 0.5, 200
@@ -51,7 +51,7 @@ def tried(project: Project, wanted: list[tuple[float, str]], late: float | None,
     told = answer_asks(plan, [a.id for a in asks])
     at = {}
     for cue in plan.layers["arms"].cues:
-        at[cue.meta] = cue.start + phases(project, cue.action).stroke - cue.entry
+        at[cue.meta] = cue.start + find_phases(project, cue.action).stroke - cue.entry
     for report in plan.reports:
         served = getattr(report, "by", "")
         if served in at:

@@ -29,11 +29,11 @@ from metagraph.graph.model import LAYERS, Project  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
 from metagraph.suggest.alike import Alike, LabelledExample  # noqa: E402
-from metagraph.suggest.jumps.compatibility import compatibility_matrix  # noqa: E402
+from metagraph.suggest.jumps.compatibility import make_compatibility_matrix  # noqa: E402
 from metagraph.suggest.motion_guess import guess  # noqa: E402
-from metagraph.suggest.propose import accept, examples_of, propose  # noqa: E402
-from metagraph.suggest.stances.known import discover_stances, distance_from_stance, list_known_stances  # noqa: E402
-from metagraph.suggest.traits import Traits, traits_of  # noqa: E402
+from metagraph.suggest.propose import accept, list_examples, propose  # noqa: E402
+from metagraph.suggest.stances.known import discover_stances, list_known_stances, measure_distance_from_stance  # noqa: E402
+from metagraph.suggest.traits import Traits, measure_all_traits  # noqa: E402
 
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
 TRUTH = ROOT / "tests" / "suggest" / "truth"
@@ -69,9 +69,9 @@ def right(
             for m in shape.members:
                 if m in truth and truth[m]["kind"] is not None:
                     x = traits[m].layers[shape.layer]
-                    ends = distance_from_stance(shape, x.names, x.last) < distance_from_stance(
-                        shape, x.names, x.first
-                    )
+                    ends = measure_distance_from_stance(
+                        shape, x.names, x.last
+                    ) < measure_distance_from_stance(shape, x.names, x.first)
                     votes[
                         truth[m]["end_stance" if ends and truth[m]["kind"] == "transition" else "stance"]
                     ] += 1
@@ -156,7 +156,7 @@ def drifting(clip: Clip, seed: int, degrees: float) -> Clip:
 
 def main() -> None:
     project = open_project(SAMPLE).project
-    traits, truth = traits_of(project), truth_of(project)
+    traits, truth = measure_all_traits(project), truth_of(project)
     print(f"{'names hidden':33}" + " ".join(f"{f:>16}" for f in FIELDS))
     wrong: list[str] = []
     for name, stances in (
@@ -171,14 +171,14 @@ def main() -> None:
             for n, (ident, e) in enumerate(project.clips.items())
             if e.motion is not None
         }
-        found = {ident: traits_of([clip])[clip.name] for ident, clip in slow.items()}
+        found = {ident: measure_all_traits([clip])[clip.name] for ident, clip in slow.items()}
         good, count, _ = right(truth, found, discover_stances(found))
         print(row(f"sample, joints drift {degrees} degrees", good, count))
     totals: dict[str, tuple[Counter[str], Counter[str]]] = {}
     for name, told, clips in others():
         if name == "sample_clips":
             continue
-        found = traits_of(clips.values())
+        found = measure_all_traits(clips.values())
         good, count, _ = right(told, found, discover_stances(found))
         before = totals.setdefault(name, (Counter(), Counter()))
         before[0].update(good)
@@ -193,7 +193,7 @@ def main() -> None:
     motions = [e.motion for e in project.clips.values() if e.motion is not None]
     many = [noisy(motions[i % len(motions)], i) for i in range(1000)]
     start = time.perf_counter()
-    found = traits_of(many)
+    found = measure_all_traits(many)
     middle = time.perf_counter()
     stances = discover_stances(found)
     later = time.perf_counter()
@@ -217,7 +217,7 @@ def main() -> None:
         f"{len(taken.placed)}: "
         f"{time.perf_counter() - middle:.2f} s; {time.process_time() - busy:.2f} s of a processor"
     )
-    some = examples_of(project, traits)
+    some = list_examples(project, traits)
     examples = [
         LabelledExample((*e.words, f"w{n % 40}"), e.measures, e.labels) for n in range(33) for e in some
     ][:5000]
@@ -228,11 +228,11 @@ def main() -> None:
     print(f"asking {len(examples)} labelled clips about 1000: {time.perf_counter() - start:.2f} s")
     start = time.perf_counter()
     for layer in LAYERS:
-        compatibility_matrix(project, layer)
+        make_compatibility_matrix(project, layer)
     first = time.perf_counter() - start
     start = time.perf_counter()
     for layer in LAYERS:
-        compatibility_matrix(project, layer)
+        make_compatibility_matrix(project, layer)
     print(
         f"compatibility of {len(project.clips)} clips with all stances: {first:.2f} s, again "
         f"{time.perf_counter() - start:.2f} s"

@@ -28,7 +28,7 @@ from metagraph.generation.features import RATE, compute_features  # noqa: E402
 from metagraph.generation.statistics import compute_measures, make_motion_sample, mismatch_speech  # noqa: E402
 from metagraph.generation.stored import read_model  # noqa: E402
 from metagraph.generation.take_files import find_takes, read_speech, read_take_batch  # noqa: E402
-from metagraph.research.generation.evaluation import SamplingManner, generate_poses, unseen  # noqa: E402
+from metagraph.research.generation.evaluation import SamplingManner, find_unseen_takes, generate_poses  # noqa: E402
 
 Array = NDArray[Any]
 
@@ -113,7 +113,7 @@ def main(path: Path, folder: Path, count: int) -> None:
     held = {t.name for t in model.card.held_out}
     files = [f for f in files if f.clip.stem in held][:count] or files[:count]
     batch = read_take_batch(files, model.rig, tracks=model.card.tracks)
-    takes, _ = unseen(model, batch.takes)
+    takes, _ = find_unseen_takes(model, batch.takes)
     by_name = {f.clip.stem: f for f in files}
     true = [make_motion_sample(model.rig, t.poses, t) for t in takes]
     print(f"{path.name}: {len(takes)} takes, {sum(t.seconds for t in takes) / 60:.1f} min")

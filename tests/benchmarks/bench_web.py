@@ -29,7 +29,7 @@ KINDS = ("plain", "packed")
 def main() -> None:
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "sample_clips" / "sample.metagraph.yaml"
     project = open_whole(path).project
-    web_tools.web_tools_folder = lambda: ROOT / "tests"
+    web_tools.find_web_tools_folder = lambda: ROOT / "tests"
     character = path.parent / project.character if project.character else None
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)

@@ -28,11 +28,11 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.posing.foot_slides import (
     SIDES,
     WINDOW,
-    clip_speeds,
     find_feet_joints,
+    measure_clip_speeds,
     measure_slide_speeds,
 )
-from tests.posing import pose_at, weight_of
+from tests.posing import compute_pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
@@ -63,7 +63,7 @@ class Watched:
         legs = [[roles[f"{s}_{p}"] for p in ("upper_leg", "lower_leg", "foot")] for s in SIDES]
         parts = []
         for some in np.array_split(times, max(1, len(times) // 1000)):
-            turned, at = skeleton.globals(pose_at(plan, project, some, alive))
+            turned, at = skeleton.globals(compute_pose_at(plan, project, some, alive))
             parts.append(
                 (
                     at[:, roles["hips"]],
@@ -86,7 +86,7 @@ def bend(at: Array, leg: Sequence[int]) -> Array:
 def travel(plan: Plan, times: Array, on: Watched, off: Watched) -> None:
     """Print how far hips go for each cue of the arms, what feet do and how fast knees bend."""
     far = np.linalg.norm(on.hips - off.hips, axis=-1) * 1000
-    turn = np.degrees(rotation.angle_between(on.turned, off.turned))
+    turn = np.degrees(rotation.measure_angle_between(on.turned, off.turned))
     cues = [(times >= c.start) & (times < c.end + 0.3) for c in plan.layers["arms"].cues]
     found = np.array([(far[m].max(), turn[m].max()) for m in cues if m.any()] or [(0.0, 0.0)])
     for n, (word, unit) in enumerate((("hips travel", "mm"), ("pelvis turns", "degrees"))):
@@ -104,7 +104,7 @@ def travel(plan: Plan, times: Array, on: Watched, off: Watched) -> None:
 
 def slides(plan: Plan, project: Project, times: Array, ways: dict[str, Watched]) -> None:
     """Print how fast feet slide that their clip has standing, by what plays."""
-    kind, own = clip_speeds(plan, project, times)
+    kind, own = measure_clip_speeds(plan, project, times)
     window = round(WINDOW * FPS)
     stands = own[:-window] < STANDS
     print(
@@ -139,7 +139,7 @@ def costs(project: Project, plan: Plan) -> None:
             for n, way in enumerate(ways):
                 began = time.perf_counter()
                 for part in np.array_split(some, chunks):
-                    pose_at(plan, way, part if chunks == 1 else float(part[0]))
+                    compute_pose_at(plan, way, part if chunks == 1 else float(part[0]))
                 took[n].append((time.perf_counter() - began) / len(some) * 1e6)
         a, b = (float(np.median(x)) for x in took)
         print(f"  a pose {word}: {a:.0f} us without, {b:.0f} with, {b / a:.2f} times")

@@ -18,7 +18,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.suggest.flags import proposal_measures  # noqa: E402
+from metagraph.suggest.flags import measure_proposal  # noqa: E402
 from metagraph.suggest.propose import propose  # noqa: E402
 from tests.benchmarks.bench_labels import TRUTH, projects  # noqa: E402
 from tests.label_zoo import catalogue  # noqa: E402
@@ -38,7 +38,7 @@ def rows(project: Any, truth: Any) -> list[tuple[int, Any, bool]]:
         for ident, p in found.proposals.items():
             row = truth.get(project.clips[ident].name)
             if row is not None and not none_of_the_four(row):
-                out.append((n, proposal_measures(p), right_clip(p, row, meant, found.whole)))
+                out.append((n, measure_proposal(p), right_clip(p, row, meant, found.whole)))
     return out
 
 

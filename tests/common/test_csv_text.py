@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.common.csv_text import csv_text, escape_cell, restore_cell
+from metagraph.common.csv_text import escape_cell, format_csv, restore_cell
 from metagraph.formats.manual_table import parse_manual_table
 from metagraph.research.study.reports.tables import format_rows
 
@@ -21,7 +21,7 @@ FORMULAS = ("=1+1", "+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\t=1", "\r=1", "\
 
 @pytest.mark.parametrize("text", FORMULAS)
 def test_a_formula_gets_an_apostrophe_and_is_read_back(text: str) -> None:
-    (cell,) = next(csv.reader(io.StringIO(csv_text([[text]]), newline="")))
+    (cell,) = next(csv.reader(io.StringIO(format_csv([[text]]), newline="")))
     assert cell == f"'{text}" and restore_cell(cell) == text
 
 
@@ -35,7 +35,7 @@ def test_numbers_and_plain_texts_stay(value: object) -> None:
 
 @given(st.lists(st.lists(st.text(), min_size=1, max_size=3), min_size=1, max_size=4), st.sampled_from(",;\t"))
 def test_every_text_is_read_back(rows: list[list[str]], separator: str) -> None:
-    found = list(csv.reader(io.StringIO(csv_text(rows, separator), newline=""), delimiter=separator))
+    found = list(csv.reader(io.StringIO(format_csv(rows, separator), newline=""), delimiter=separator))
     read = [[restore_cell(cell) for cell in row] for row in found]
     assert [row or [""] for row in read] == rows
     first = [cell[:1] for row in found for cell in row if cell.strip("+-.0123456789eE") != ""]
@@ -48,7 +48,7 @@ def test_a_study_table_keeps_numbers_and_disarms_texts() -> None:
 
 
 def test_a_table_of_links_reads_back_names_that_were_disarmed() -> None:
-    (row,) = parse_manual_table(csv_text([["from", "to"], ["=wave()", "@nod"]]))
+    (row,) = parse_manual_table(format_csv([["from", "to"], ["=wave()", "@nod"]]))
     assert (row.cells["from"], row.cells["to"]) == ("=wave()", "@nod")
 
 

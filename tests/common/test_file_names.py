@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.common.budgets import NAME_BYTES
-from metagraph.common.file_names import file_stem, fold_file_name, make_file_stems
+from metagraph.common.file_names import fold_file_name, make_file_stem, make_file_stems
 
 DEVICES = ("CON", "nul", "Aux", "PRN", "COM1", "lpt9", "COM¹", "CONIN$")
 
@@ -34,14 +34,14 @@ def sound(stem: str) -> None:
 
 @pytest.mark.parametrize("text", ["talk", "Wave 1", "été", "手を振る", "a.b-c_d", "console", "con man", "~x"])
 def test_a_good_name_stays_as_it_is(text: str) -> None:
-    assert file_stem(text) == text
+    assert make_file_stem(text) == text
 
 
 @pytest.mark.parametrize("text", DEVICES)
 def test_devices_of_windows_are_no_files(text: str) -> None:
     for name in (text, f"{text}.glb", f"{text}.tar.gz", f"{text} "):
-        sound(file_stem(name))
-        assert file_stem(name) != name
+        sound(make_file_stem(name))
+        assert make_file_stem(name) != name
 
 
 @pytest.mark.parametrize(
@@ -66,19 +66,19 @@ def test_devices_of_windows_are_no_files(text: str) -> None:
     ],
 )
 def test_what_no_system_takes_gets_another_name(text: str) -> None:
-    sound(file_stem(text))
-    assert file_stem(text) != text or text == "~"
+    sound(make_file_stem(text))
+    assert make_file_stem(text) != text or text == "~"
 
 
 @given(st.text())
 def test_any_text_is_a_name(text: str) -> None:
-    stem = file_stem(text)
+    stem = make_file_stem(text)
     assert stem and len(stem.encode()) <= NAME_BYTES + 2 and len(PureWindowsPath(stem).parts) == 1
     assert not reserved(stem) and stem[-1] not in ". "
 
 
 def test_cut_names_stay_apart() -> None:
-    a, b = file_stem("n" * 400 + "1"), file_stem("n" * 400 + "2")
+    a, b = make_file_stem("n" * 400 + "1"), make_file_stem("n" * 400 + "2")
     assert a != b and a[:50] == b[:50]
 
 

@@ -16,13 +16,13 @@ from metagraph.common.network_paths import (
     explain_refusal,
     is_closed,
     make_escape_check,
-    original_path,
+    recover_original_path,
 )
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import (
-    absolute,
     list_closed_paths,
+    make_paths_absolute,
     move_project,
     open_project,
     read_project,
@@ -59,7 +59,7 @@ def not_allowed() -> Iterator[None]:
 def test_a_strange_name_is_known_closed_and_given_back_as_it_was(name: str) -> None:
     assert explain_refusal(name) is not None
     path = close_path(name)
-    assert is_closed(path) and original_path(path) == name
+    assert is_closed(path) and recover_original_path(path) == name
     assert explain_refusal(path) is None and not Path(path).is_absolute() and ".." not in Path(path).parts
     network_paths.allow(True)
     assert close_path(name) == name
@@ -67,7 +67,7 @@ def test_a_strange_name_is_known_closed_and_given_back_as_it_was(name: str) -> N
 
 @pytest.mark.parametrize("name", ORDINARY)
 def test_an_ordinary_name_stays_as_it_is(name: str) -> None:
-    assert explain_refusal(name) is None and close_path(name) == name and original_path(name) == name
+    assert explain_refusal(name) is None and close_path(name) == name and recover_original_path(name) == name
 
 
 def _project(folder: Path, name: str) -> Path:
@@ -105,7 +105,7 @@ def test_a_project_touches_none_of_them_and_saves_them_as_they_were(
     assert reopen_paths(read_project(path)).clips["c1"].path == name
     for project in (
         move_project(found.project, path, tmp_path / "b" / "q.metagraph.yaml"),
-        absolute(found.project, tmp_path),
+        make_paths_absolute(found.project, tmp_path),
     ):
         save_project(project, tmp_path / "q.metagraph.yaml")
         assert list_closed_paths(read_project(tmp_path / "q.metagraph.yaml")) == (name,)

@@ -146,7 +146,7 @@ def test_a_child_finds_what_its_parent_does_and_nothing_of_the_working_folder(
     for entry in (str(tmp_path), "", "."):
         monkeypatch.syspath_prepend(entry)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    code, said = programs.run_program(programs.python_command("known_here", "a b", ""))
+    code, said = programs.run_program(programs.make_python_command("known_here", "a b", ""))
     assert code == 0, said
     assert (
         str(ROOT / "metagraph" / "__init__.py") in said
@@ -227,12 +227,12 @@ def test_systems_programs_are_not_looked_for_along_path(
     fake.write_text("#!/bin/sh\n")
     fake.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert programs.system_program("only-there") is None
-    assert programs.system_program("sh") in ("/bin/sh", "/usr/bin/sh")
+    assert programs.find_system_program("only-there") is None
+    assert programs.find_system_program("sh") in ("/bin/sh", "/usr/bin/sh")
     monkeypatch.setattr(programs, "_system_places", lambda: iter([tmp_path]))
-    assert programs.system_program("only-there") == str(fake)
+    assert programs.find_system_program("only-there") == str(fake)
     fake.chmod(0o777)
-    assert programs.system_program("only-there") is None
+    assert programs.find_system_program("only-there") is None
 
 
 def test_a_program_that_takes_too_long_is_ended() -> None:

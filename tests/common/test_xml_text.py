@@ -10,8 +10,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from metagraph.common import svg
-from metagraph.common.xml_text import INSTEAD, describe_replaced, escape, quote_xml, xml_text
-from metagraph.research.study.reports.figure_files import standalone
+from metagraph.common.xml_text import INSTEAD, clean_xml_text, describe_replaced, escape, quote_xml
+from metagraph.research.study.reports.figure_files import make_standalone_svg
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -21,17 +21,17 @@ ROOT = Path(__file__).resolve().parents[2]
 @example("\ud800 half a pair")
 def test_any_text_stands_in_an_element_and_an_attribute(text: str) -> None:
     found = ElementTree.fromstring(f"<x a={quote_xml(text)} b='{escape(text)}'>{escape(text)}</x>")
-    assert found.attrib["a"] == xml_text(text)
-    same_lines = xml_text(text).replace("\r\n", "\n").replace("\r", "\n")
+    assert found.attrib["a"] == clean_xml_text(text)
+    same_lines = clean_xml_text(text).replace("\r\n", "\n").replace("\r", "\n")
     assert (found.text or "") == same_lines
 
 
 @given(st.text(st.characters(exclude_categories=("Cs",))))
 def test_what_xml_can_hold_stays_as_it_is(text: str) -> None:
     if describe_replaced([text]) is None:
-        assert xml_text(text) == text
+        assert clean_xml_text(text) == text
     else:
-        assert INSTEAD in xml_text(text)
+        assert INSTEAD in clean_xml_text(text)
 
 
 def test_what_is_replaced_is_counted_and_told() -> None:
@@ -40,9 +40,9 @@ def test_what_is_replaced_is_counted_and_told() -> None:
 
 
 def test_a_figure_with_control_characters_in_its_words_is_read() -> None:
-    drawing = svg.svg_drawing(20, [svg.svg_text(0, 0, "a\x01<b>", "dim", "start")], "ti\x1btle'\"")
+    drawing = svg.make_svg_drawing(20, [svg.draw_svg_text(0, 0, "a\x01<b>", "dim", "start")], "ti\x1btle'\"")
     ElementTree.fromstring(drawing)
-    ElementTree.fromstring(standalone(drawing).encode())
+    ElementTree.fromstring(make_standalone_svg(drawing).encode())
 
 
 def test_nothing_that_writes_files_escapes_by_other_means() -> None:

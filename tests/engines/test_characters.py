@@ -450,7 +450,7 @@ def test_a_character_is_the_same_in_every_language(
             assert [x or 0.0 for x in mine[1:3]] == pytest.approx([x or 0.0 for x in other[1:3]], abs=1e-6), (
                 asked
             )
-        turned = rotation.angle_between(np.array(ours["rotations"]), np.array(theirs["rotations"]))
+        turned = rotation.measure_angle_between(np.array(ours["rotations"]), np.array(theirs["rotations"]))
         assert np.degrees(turned).max() < 0.05
         assert np.abs(np.array(ours["positions"]) - np.array(theirs["positions"])).max() < 1e-4
         for name in ours["morphs"].keys() | theirs["morphs"].keys():

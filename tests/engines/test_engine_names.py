@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from metagraph.common.file_names import fold_file_name
-from metagraph.engines.engine_machine import machines
-from metagraph.engines.engine_names import MOST, name_apart, number_apart, write_word
+from metagraph.engines.engine_machine import list_machines
+from metagraph.engines.engine_names import MOST, assign_numbers, name_apart, write_word
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.godot_tree import spell_for_godot
 from metagraph.graph import edits
@@ -47,7 +47,7 @@ def named(toy: Any) -> Project:
 
 
 def named_states(project: Project) -> dict[str, tuple[str, int]]:
-    return {s.action.id: (s.name, s.number) for m in machines(project) for s in m.states}
+    return {s.action.id: (s.name, s.number) for m in list_machines(project) for s in m.states}
 
 
 @pytest.mark.parametrize(
@@ -70,10 +70,10 @@ def test_an_id_stands_behind_a_name_that_is_there_already_and_files_are_apart_on
 
 def test_numbers_derive_from_ids_and_are_exact_in_single_precision() -> None:
     idents = ["a7", "b7", "a123456789", "指"]
-    numbers = number_apart(idents)
+    numbers = assign_numbers(idents)
     assert numbers["a7"] == 7
     assert len({*numbers.values()}) == len(idents) and all(0 < n < MOST for n in numbers.values())
-    assert number_apart(idents[2:]) == {i: numbers[i] for i in idents[2:]}
+    assert assign_numbers(idents[2:]) == {i: numbers[i] for i in idents[2:]}
 
 
 def test_states_have_the_letters_of_their_names_else_their_ids(named: Project, toy: Any) -> None:
@@ -83,7 +83,7 @@ def test_states_have_the_letters_of_their_names_else_their_ids(named: Project, t
         "arms_махнуть_рукой", "arms_नमस्ते", "arms_手招き", "arms_Grüßen"
     ]  # fmt: skip
     assert all(states[own] == f"arms_{toy.id(named, own)}" for own in ("👋🏽", "→"))
-    (arms,) = machines(named)
+    (arms,) = list_machines(named)
     assert arms.stance_words[toy.id(named, "далеко")] == "далеко"
 
 
@@ -141,7 +141,7 @@ def test_godots_importers_neither_rename_an_animation_nor_make_a_loop_of_it(
     toy: Any, name: str, spelt: str
 ) -> None:
     project = edits.update_actions(toy.project(), [toy.id(toy.project(), "rest short")], name=name)
-    names = [s.name for m in machines(project, spell_for_godot) for s in m.states]
+    names = [s.name for m in list_machines(project, spell_for_godot) for s in m.states]
     assert f"arms_{spelt}" in names
     assert not [n for n in names if _godot_loops(n) or _godot_renames(n)]
 
@@ -166,8 +166,8 @@ def test_names_of_stances_that_are_the_same_are_told_apart_by_their_ids(toy: Any
     arms = project.graphs["arms"]
     stances = {i: replace(s, name="same") for i, s in arms.stances.items()}
     project = replace(project, graphs={**project.graphs, "arms": replace(arms, stances=stances)})
-    (machine,) = machines(project)
+    (machine,) = list_machines(project)
     first, *rest = stances
     assert machine.stance_words == {first: "same", **{i: f"same_{i}" for i in rest}}
     numbers = json.loads(json.dumps(machine.stances))
-    assert numbers == number_apart(stances)
+    assert numbers == assign_numbers(stances)

@@ -37,13 +37,13 @@ from metagraph.graph.check import check_project
 from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import LAYERS, Markov, Project
 from metagraph.graph.requests import Line
-from metagraph.motion.skeleton import unique_names
-from metagraph.playback.life.voice import silent
+from metagraph.motion.skeleton import make_names_unique
+from metagraph.playback.life.voice import make_silent_voice
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import choice, hashing, markov
 from metagraph.playback.posing.layers import ease_blend
 from sample_clips.make.conformance_projects import stick
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 from tests.projects import clip, projects
 from tests.thorough import many
 
@@ -214,7 +214,7 @@ def test_a_plan_of_what_was_read_back_is_the_same_and_looks_the_same(sample: Pro
             (c.action.id, round(c.start, 6)) for c in theirs.layers[layer].cues
         ]
     at = np.linspace(0, 20, 40)
-    a, b = pose_at(ours, sample, at), pose_at(theirs, back, at)
+    a, b = compute_pose_at(ours, sample, at), compute_pose_at(theirs, back, at)
     assert np.abs(np.einsum("...i,...i->...", a.rotations, b.rotations)).min() > 1 - 1e-5
 
 
@@ -285,7 +285,9 @@ def test_a_project_read_back_is_saved_and_opened_with_its_clips(sample: Project,
 
 def document_of(project: Project, expanded: bool = False) -> bytes:
     used = list_used_clips(project)
-    return msgspec.json.encode(to_document(project, "x.glb", unique_names([e.name for e in used]), expanded))
+    return msgspec.json.encode(
+        to_document(project, "x.glb", make_names_unique([e.name for e in used]), expanded)
+    )
 
 
 # Many random projects have no clips yet, and are passed over.
@@ -576,7 +578,7 @@ def exported_and_valid(project: Project, ids: list[str], tmp_path: Path, idle: i
 
 def test_stresses_of_a_voice_come_back_however_near_each_other() -> None:
     """A conversation's are the peaks of its clauses: blinks would come elsewhere without some of them."""
-    spoken = replace(silent(4.0), stresses=np.array([0.5, 1.2, 3.0]))
+    spoken = replace(make_silent_voice(4.0), stresses=np.array([0.5, 1.2, 3.0]))
     project = Project(lines={"said": Line(text="so")}, voices={"said": spoken})
     (back,) = read_voices(list_export_voices(project)).values()
     assert back.accents.tolist() == [0.5, 1.2, 3.0]

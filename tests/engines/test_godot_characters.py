@@ -153,7 +153,7 @@ out.append(character.pose().rotations.size())
 def test_letters_are_read_as_python_reads_them(game: Path) -> None:
     from metagraph.playback.life.alphabet import ALPHABET
     from metagraph.playback.life.graphemes import spelled
-    from metagraph.playback.life.voice import voice_from_text
+    from metagraph.playback.life.voice import guess_voice
 
     texts = [
         "Hello there, how are you?",
@@ -188,7 +188,7 @@ for text in words()[1]:
     ):
         expected = spelled(ALPHABET, text, 2.0)
         assert shapes == [p.viseme for p in expected.pieces], text
-        voice = voice_from_text(text, 2.0)
+        voice = guess_voice(text, 2.0)
         for ours, theirs in (
             (peaks, expected.peaks),
             (strengths, expected.strengths),

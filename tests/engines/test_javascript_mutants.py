@@ -197,7 +197,7 @@ MUTATIONS = [
     ),
     (
         "meaning.js",
-        "Math.max(0, stroke - longestLead(this.project, this.graphOf(layer), ask.tags))",
+        "Math.max(0, stroke - findLongestLead(this.project, this.graphOf(layer), ask.tags))",
         "at",
         "how early a gesture with a stroke may begin",
     ),

@@ -11,7 +11,7 @@ from metagraph.engines.targets.next_steps import README, STEPS, list_steps, make
 
 
 def test_every_target_says_what_to_do_next():
-    assert STEPS.keys() == registry.targets().keys()
+    assert STEPS.keys() == registry.list_targets().keys()
 
 
 @pytest.mark.parametrize("target", [name for name, steps in STEPS.items() if steps.guide])

@@ -187,12 +187,12 @@ def test_gdscript_says_that_it_does_not_read_it(packed: Path, game: Path) -> Non
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("name", sorted(registry.targets()))
+@pytest.mark.parametrize("name", sorted(registry.list_targets()))
 def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     sample: Project, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(web, "is_three_at_hand", lambda: False)
-    if not registry.target(name).unpacks:
+    if not registry.get_target(name).unpacks:
         with pytest.raises(ExportError, match="without --compress"):
             registry.write_for_target(sample, name, tmp_path / "out", Contents(compress=True))
         assert not (tmp_path / "out").exists()

@@ -77,13 +77,13 @@ def test_a_record_that_cannot_be_read_is_as_none(tmp_path, record):
 def test_an_export_that_fails_leaves_nothing_behind(tmp_path, toy, monkeypatch):
     from dataclasses import replace
 
-    target = registry.target("xstate")
+    target = registry.get_target("xstate")
 
     def broken(order):
         (order.folder / "half").write_text("half")
         raise RuntimeError("broken")
 
-    monkeypatch.setattr(registry, "targets", lambda: {"xstate": replace(target, write=broken)})
+    monkeypatch.setattr(registry, "list_targets", lambda: {"xstate": replace(target, write=broken)})
     with pytest.raises(RuntimeError):
         registry.write_for_target(toy.project(), "xstate", tmp_path / "out")
     assert not (tmp_path / "out").exists(), "nor the folder it made"

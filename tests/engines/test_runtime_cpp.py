@@ -17,10 +17,10 @@ import pytest
 
 from metagraph.engines.reading import read_export
 from metagraph.graph.model import LAYERS
-from metagraph.graph.requests import request_from
-from metagraph.playback.life.voice import voice_from_text
+from metagraph.graph.requests import make_request
+from metagraph.playback.life.voice import guess_voice
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import hear_asks, since
+from metagraph.playback.planning.extend_performance import drop_ended, hear_asks
 from tests.engines.cpp_program import MUTANTS, needs_compiler, ran
 from tests.engines.mutants import PLAYED, folders_to_try, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
@@ -112,7 +112,7 @@ def test_words_move_the_mouth_as_they_do_in_the_library(probe: Path, tmp_path: P
     assert done.returncode == 0, done.stderr
     for text, line in zip(texts, done.stdout.splitlines(), strict=True):
         accents, weights = json.loads(line)
-        voice = voice_from_text(text, 2.5)
+        voice = guess_voice(text, 2.5)
         assert np.allclose(accents, voice.accents, atol=1e-9), text
         assert np.abs(np.reshape(weights, (-1, 15)) - voice.weights).max() < 1e-5, text
 
@@ -266,10 +266,10 @@ def test_a_character_plans_what_the_library_hears(probe: Path, tmp_path: Path) -
         far = plan.end >= now + 18
         if asks or not far:
             plan = hear_asks(
-                project, plan, now, [request_from(ask) for ask in asks], plan.end if far else now + 20
+                project, plan, now, [make_request(ask) for ask in asks], plan.end if far else now + 20
             )
         if now - cut >= 15:
-            cut, plan = now, since(plan, now - 30)
+            cut, plan = now, drop_ended(plan, now - 30)
     expected = [
         [layer, c.action.id, c.start, c.end, c.meta] for layer in LAYERS for c in plan.layers[layer].cues
     ]

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from metagraph import engines
-from metagraph.engines.engine_machine import machines
+from metagraph.engines.engine_machine import list_machines
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.godot_tree import spell_for_godot
 from metagraph.engines.targets.target import Contents
@@ -208,7 +208,7 @@ def test_the_tree_plays_states_of_any_name_and_the_glb_is_read_without_an_error(
     project = sample
     for gesture, name in zip(gestures, odd, strict=True):
         project = edits.update_actions(project, [gesture.id], name=name)
-    named = {s.action.id: s.name for m in machines(project, spell_for_godot) for s in m.states}
+    named = {s.action.id: s.name for m in list_machines(project, spell_for_godot) for s in m.states}
     asked = [named[gesture.id] for gesture in gestures]
     out = tmp_path / "out"
     registry.write_for_target(project, "godot-tree", out, Contents(ADA))

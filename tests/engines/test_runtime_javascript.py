@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.playback.life.voice import voice_from_text
+from metagraph.playback.life.voice import guess_voice
 from tests.engines.javascript_runtime import RUNTIME, STICK, VARIED, changed, conformance, needs_node, run
 from tests.engines.mutants import PLAYED, share_of
 from tests.thorough import many
@@ -63,7 +63,7 @@ def test_letters_become_the_same_mouth_shapes() -> None:
         STICK,
         json.dumps(TEXTS),
     )
-    wanted = [voice_from_text(text, duration) for text in TEXTS for duration in (None, 1.3)]
+    wanted = [guess_voice(text, duration) for text in TEXTS for duration in (None, 1.3)]
     for voice, got in zip(wanted, found, strict=True):
         assert got["duration"] == pytest.approx(voice.duration)
         assert got["accents"] == pytest.approx(voice.accents.tolist())

@@ -14,15 +14,15 @@ import pytest
 
 from metagraph.engines.reading import read_export
 from metagraph.graph.model import LAYERS
-from metagraph.graph.requests import request_from
+from metagraph.graph.requests import make_request
 from metagraph.motion import rotation
-from metagraph.playback.life.voice import voice_from_text
+from metagraph.playback.life.voice import guess_voice
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import hear_asks, since
+from metagraph.playback.planning.extend_performance import drop_ended, hear_asks
 from tests.engines.csharp_runtime import RUNTIME, STICK, Host, compiled, mono, needs_mono
 from tests.engines.mutants import PLAYED, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 pytestmark = needs_mono
 
@@ -242,7 +242,7 @@ def test_words_move_the_mouth_as_they_do_in_the_library(probe: Probe, tmp_path: 
     assert code == 0, told
     for text, line in zip(texts, told.splitlines(), strict=True):
         accents, weights = json.loads(line)
-        voice = voice_from_text(text, 2.5)
+        voice = guess_voice(text, 2.5)
         assert np.allclose(accents, voice.accents, atol=1e-9), text
         assert np.abs(np.reshape(weights, (-1, 15)) - voice.weights).max() < 1e-5, text
 
@@ -361,8 +361,10 @@ def test_actions_of_a_clip_that_is_missing_show_their_stance(probe: Probe, tmp_p
     without = replace(project, clips=clips)
     for time, line in zip(times, posed.splitlines(), strict=True):
         rotations, translations = (np.array(x) for x in json.loads(line))
-        pose = pose_at(plan, without, time, alive=False)
-        assert np.degrees(rotation.angle_between(rotations.reshape(-1, 4), pose.rotations)).max() < 0.05
+        pose = compute_pose_at(plan, without, time, alive=False)
+        assert (
+            np.degrees(rotation.measure_angle_between(rotations.reshape(-1, 4), pose.rotations)).max() < 0.05
+        )
         assert np.abs(translations.reshape(-1, 3) - pose.translations).max() < 1e-4
 
 
@@ -395,10 +397,10 @@ def test_a_character_plans_what_the_library_hears(probe: Probe, tmp_path: Path) 
         far = plan.end >= now + 18
         if asks or not far:
             plan = hear_asks(
-                project, plan, now, [request_from(ask) for ask in asks], plan.end if far else now + 20
+                project, plan, now, [make_request(ask) for ask in asks], plan.end if far else now + 20
             )
         if now - cut >= 15:
-            cut, plan = now, since(plan, now - 30)
+            cut, plan = now, drop_ended(plan, now - 30)
     expected = [
         [layer, c.action.id, c.start, c.end, c.meta] for layer in LAYERS for c in plan.layers[layer].cues
     ]

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from metagraph.engines.targets import registry
-from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
+from metagraph.engines.translation.gesture_word_lists import make_gesture_word_modules
 from metagraph.graph.model import Project
-from metagraph.speech.text_gestures import TextStream, propose_gestures, timed_words, words_for_gesture
+from metagraph.speech.text_gestures import TextStream, load_gesture_words, propose_gestures, timed_words
 from tests.browsing import Browser
 from tests.engines.web_tools_kept import kept_web_tools
 from tests.speech.test_text_gestures import SPOKEN, TEXTS, tags_of
@@ -106,7 +106,7 @@ def test_words_and_their_gestures_are_those_of_python(told: Any, sample: Project
     for (language, text, times, seconds, seed), (words, gestures) in zip(cases(), told["cases"], strict=True):
         mine = timed_words(text, times, seconds)
         assert rounded([asdict(w) for w in mine]) == rounded(words), text
-        made = propose_gestures(mine, tags_of(sample), words_for_gesture(language), seed)
+        made = propose_gestures(mine, tags_of(sample), load_gesture_words(language), seed)
         assert rounded([asdict(g) for g in made]) == rounded(gestures), text
         some += len(made)
     assert some > 60
@@ -117,7 +117,7 @@ def test_text_that_comes_in_letter_by_letter_asks_for_what_python_asks_and_most_
 ) -> None:
     states: list[str] = []
     for text, found in zip(TEXTS, told["streams"], strict=True):
-        stream = TextStream(tags_of(sample), words_for_gesture("en"))
+        stream = TextStream(tags_of(sample), load_gesture_words("en"))
         wanted = [r for letter in text for r in stream.take(letter, 0.0)] + stream.take("", 0.0, over=True)
         got = [{k: v for k, v in ask.items() if k in wanted[n]} for n, ask in enumerate(found["asks"])]
         assert [r["id"] for r in wanted] == [ask["id"] for ask in found["asks"]]
@@ -131,7 +131,7 @@ def test_text_that_comes_in_letter_by_letter_asks_for_what_python_asks_and_most_
 
 
 def test_the_lists_of_words_are_made_of_the_files() -> None:
-    for place, text in gesture_word_lists().items():
+    for place, text in make_gesture_word_modules().items():
         assert place.read_text(encoding="utf-8") == text, (
             "make them anew (docs/contributing/translating-the-runtimes.md)"
         )

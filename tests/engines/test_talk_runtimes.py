@@ -12,7 +12,13 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.translation.gesture_word_lists import CPP, GODOT, JAVASCRIPT, UNITY, gesture_word_lists
+from metagraph.engines.translation.gesture_word_lists import (
+    CPP,
+    GODOT,
+    JAVASCRIPT,
+    UNITY,
+    make_gesture_word_modules,
+)
 from tests.engines import cpp_program, csharp_runtime, godot_runtime
 from tests.engines.godot_runtime import needs_godot
 from tests.speech.test_text_gestures import SPOKEN, TEXTS
@@ -340,4 +346,4 @@ def test_gdscript_says_what_javascript_says(wanted: Any, sample_export: Path, ga
 
 def test_every_language_has_the_lists() -> None:
     """That they are equal to the files is given by `test_talk`."""
-    assert set(gesture_word_lists()) == {JAVASCRIPT, GODOT, UNITY, CPP}
+    assert set(make_gesture_word_modules()) == {JAVASCRIPT, GODOT, UNITY, CPP}

@@ -17,20 +17,25 @@ import numpy as np
 import pytest
 
 from metagraph import engines
-from metagraph.engines.engine_machine import Machine, machines
-from metagraph.engines.export import stem_of
+from metagraph.engines.engine_machine import Machine, list_machines
+from metagraph.engines.export import make_export_stem
 from metagraph.engines.targets import godot_tree
-from metagraph.engines.targets.godot_tree import TARGETS, find_owned_joints, godot3_name, paths_of
+from metagraph.engines.targets.godot_tree import (
+    TARGETS,
+    find_owned_joints,
+    list_track_paths,
+    make_godot3_name,
+)
 from metagraph.engines.targets.target import Contents, ExportOrder
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
-from metagraph.graph.anatomy import base_pose
-from metagraph.graph.expand import chain, find_end_stance
+from metagraph.graph.anatomy import get_base_pose
+from metagraph.graph.expand import find_chain, find_end_stance
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.planner import make_plan
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 HERE = Path(__file__).parent
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
@@ -50,7 +55,7 @@ def folder(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copytree(ADDON, place / "addons")
     (place / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="test"\n')
     shutil.copy(HERE / "run" / "godot_tree.gd", place)
-    made = TARGETS[0].write(ExportOrder(sample, place, stem_of(sample), Contents(MANNEQUIN)))
+    made = TARGETS[0].write(ExportOrder(sample, place, make_export_stem(sample), Contents(MANNEQUIN)))
     assert all(path.is_file() and path.stat().st_size for path in made.files)
     return place
 
@@ -58,12 +63,12 @@ def folder(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def play(folder: Path, sample: Project, animations: set[str], *steps: dict[str, Any]) -> list[Any]:
     """Let Godot 3 play steps with its tree; `animations` are those that may be seen."""
     assert sample.skeleton is not None
-    stem, built = stem_of(sample), machines(sample)
+    stem, built = make_export_stem(sample), list_machines(sample)
     order = {
         "glb": f"res://{stem}.glb",
         "tree": f"res://{stem}.godot3.tres",
         "layers": [m.layer for m in built],
-        "bones": {joint: godot3_name(joint) for joint in sample.skeleton.names},
+        "bones": {joint: make_godot3_name(joint) for joint in sample.skeleton.names},
         "loops": [s.name for m in built for s in m.states if s.loop],
         "play": sorted(animations),
         "steps": steps,
@@ -80,15 +85,15 @@ def play(folder: Path, sample: Project, animations: set[str], *steps: dict[str, 
 
 
 def layer_of(sample: Project, name: str) -> Machine:
-    return next(m for m in machines(sample) if m.layer == name)
+    return next(m for m in list_machines(sample) if m.layer == name)
 
 
 def resting(sample: Project, seconds: float) -> Pose:
     """Return the pose of the start loops where each joint has one layer's alone."""
     assert sample.skeleton is not None
-    base = base_pose(sample)
+    base = get_base_pose(sample)
     turns, shifts = np.array(base.rotations, float), np.array(base.translations, float)
-    built = machines(sample)
+    built = list_machines(sample)
     for machine in built:
         clip = sample.clips[machine.start.action.clip].motion
         assert clip is not None
@@ -108,7 +113,9 @@ def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, 
     arms, head = layer_of(sample, "arms"), layer_of(sample, "head")
     nod = next(s.name for s in head.states if "nod_emphatic" in s.name)
     wave = next(s.name for s in arms.states if "wave_hello" in s.name)
-    seen = {s.name for m in machines(sample) for s in m.states if s.loop or s.action.kind == "transition"} | {
+    seen = {
+        s.name for m in list_machines(sample) for s in m.states if s.loop or s.action.kind == "transition"
+    } | {
         nod,
         wave,
     }
@@ -122,12 +129,12 @@ def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, 
         {"seconds": 2.5, "travel": {"arms": wave}},
         {"seconds": 5.0},
     )  # fmt: skip
-    assert rest["states"] == {m.layer: m.start.name for m in machines(sample)}
+    assert rest["states"] == {m.layer: m.start.name for m in list_machines(sample)}
     assert sample.skeleton is not None
     alone = sample.skeleton.globals(resting(sample, 1.0))[1]
-    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[
-        1
-    ]
+    preview = sample.skeleton.globals(
+        compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+    )[1]
     for place, joint in enumerate(sample.skeleton.names):
         position = np.array(rest["joints"][joint]["position"])
         assert np.linalg.norm(position - alone[place]) < 1e-4, joint
@@ -152,10 +159,10 @@ def test_travel_goes_from_every_state_to_every_stance_by_as_few_transitions_as_t
 ) -> None:
     asked = [
         (machine, state, machine.rest(goal), stances)
-        for machine in machines(sample)
+        for machine in list_machines(sample)
         for state in machine.states
         for goal in machine.stances
-        if (stances := chain(machine.graph, str(find_end_stance(state.action)), goal)) is not None
+        if (stances := find_chain(machine.graph, str(find_end_stance(state.action)), goal)) is not None
         and state is not machine.rest(goal)
     ]
     rows = [[machine.layer, state.name, goal.name] for machine, state, goal, _ in asked]
@@ -186,14 +193,14 @@ func _init():
 	print(to_json(out))
 	quit()
 """
-    (folder / "count.gd").write_text(lines % stem_of(sample))
+    (folder / "count.gd").write_text(lines % make_export_stem(sample))
     env = {**os.environ, "HOME": str(folder), "LC_ALL": "C.UTF-8"}
     command = [str(GODOT), "--no-window", "-s", "count.gd"]
     done = subprocess.run(
         command, cwd=folder, env=env, capture_output=True, text=True, errors="replace", timeout=120
     )
     found = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("{")))
-    for machine in machines(sample):
+    for machine in list_machines(sample):
         pairs = {(a.source.name, a.target.name) for a in machine.arrows}
         assert found[machine.layer] == [len(machine.states), len(pairs), machine.start.name]
 
@@ -222,7 +229,7 @@ def resources(text: str) -> list[tuple[str, str, dict[str, str]]]:
 def test_resources_are_there_before_they_are_named_and_states_before_transitions(
     folder: Path, sample: Project, ending: str, reference: str
 ) -> None:
-    text = (folder / f"{stem_of(sample)}{ending}").read_text()
+    text = (folder / f"{make_export_stem(sample)}{ending}").read_text()
     found = resources(text)
     assert text.count("SubResource(") == len(re.findall(reference, text))
     known: set[str] = set()
@@ -230,14 +237,14 @@ def test_resources_are_there_before_they_are_named_and_states_before_transitions
         assert {used for value in fields.values() for used in re.findall(reference, value)} <= known
         known.add(ident)
     assert len(known) == len(found)
-    clips = {clip.name for clip in read_gltf_clips(folder / f"{stem_of(sample)}.glb")}
+    clips = {clip.name for clip in read_gltf_clips(folder / f"{make_export_stem(sample)}.glb")}
     named = [
         fields["animation"].lstrip("&").strip('"')
         for kind, _, fields in found
         if kind == "AnimationNodeAnimation"
     ]
     assert len(named) == len(set(named)) and set(named) == clips
-    built = machines(sample)
+    built = list_machines(sample)
     trees = [fields for kind, _, fields in found if kind == "AnimationNodeStateMachine"]
     for machine, fields in zip(built, trees, strict=True):
         names = [f for f in fields if f.endswith("/node")]
@@ -259,7 +266,7 @@ def test_resources_are_there_before_they_are_named_and_states_before_transitions
 def test_the_tree_adds_every_layer_to_nothing_and_filters_what_it_moves(
     folder: Path, sample: Project
 ) -> None:
-    found = resources((folder / f"{stem_of(sample)}.tres").read_text())
+    found = resources((folder / f"{make_export_stem(sample)}.tres").read_text())
     wires = json.loads(found[-1][2]["node_connections"])
     assert len(wires) % 3 == 0
     into = {(wires[n], wires[n + 1]): wires[n + 2] for n in range(0, len(wires), 3)}
@@ -267,19 +274,19 @@ def test_the_tree_adds_every_layer_to_nothing_and_filters_what_it_moves(
     while at != "base":
         order.append(into[at, 1])
         at = into[at, 0]
-    assert order[::-1] == [m.layer for m in machines(sample)]
+    assert order[::-1] == [m.layer for m in list_machines(sample)]
     filters = [json.loads(fields["filters"]) for kind, _, fields in found if kind == "AnimationNodeAdd2"]
-    assert filters == [[f"Skeleton3D:{joint}" for joint in m.joints] for m in machines(sample)]
+    assert filters == [[f"Skeleton3D:{joint}" for joint in m.joints] for m in list_machines(sample)]
 
 
 @pytest.mark.nightly
 def test_gestures_and_transitions_alone_end_by_themselves_and_loops_loop(
     folder: Path, sample: Project
 ) -> None:
-    found = resources((folder / f"{stem_of(sample)}.tres").read_text())
+    found = resources((folder / f"{make_export_stem(sample)}.tres").read_text())
     by_id = {ident: fields for _, ident, fields in found}
     trees = [fields for kind, _, fields in found if kind == "AnimationNodeStateMachine"]
-    for machine, fields in zip(machines(sample), trees, strict=True):
+    for machine, fields in zip(list_machines(sample), trees, strict=True):
         ends = re.split(r",\s*", fields["transitions"].strip("[]"))
         auto = {
             ends[n].strip('"')
@@ -290,7 +297,7 @@ def test_gestures_and_transitions_alone_end_by_themselves_and_loops_loop(
     for kind, _, fields in found:
         if kind == "AnimationNodeAnimation":
             state = next(
-                s for m in machines(sample) for s in m.states if f'&"{s.name}"' == fields["animation"]
+                s for m in list_machines(sample) for s in m.states if f'&"{s.name}"' == fields["animation"]
             )
             assert (fields.get("loop_mode") == "1") == state.loop
             assert not state.loop or float(fields["timeline_length"]) == pytest.approx(
@@ -303,9 +310,9 @@ def test_godot_4_composes_as_the_contract_does(sample: Project) -> None:
     lets pass.
     """
     assert sample.skeleton is not None
-    base = base_pose(sample)
+    base = get_base_pose(sample)
     turns, shifts = np.array(base.rotations, float), np.array(base.translations, float)
-    for machine in machines(sample):
+    for machine in list_machines(sample):
         clip = sample.clips[machine.start.action.clip].motion
         assert clip is not None
         pose = clip.pose_at(sample.span(machine.start.action)[0] + 1.0)
@@ -316,16 +323,16 @@ def test_godot_4_composes_as_the_contract_does(sample: Project) -> None:
             )
             shifts[n] += pose.translations[n] - base.translations[n]
     got = sample.skeleton.globals(Pose(turns, shifts))[1]
-    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[
-        1
-    ]
+    preview = sample.skeleton.globals(
+        compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+    )[1]
     assert np.abs(got - preview).max() < 1e-4
 
 
 def test_a_joint_has_one_layer_in_godot_3_and_the_next_where_its_own_does_not_reach_it(
     sample: Project,
 ) -> None:
-    alone = find_owned_joints(sample, machines(sample))
+    alone = find_owned_joints(sample, list_machines(sample))
     every = [joint for joints in alone.values() for joint in joints]
     assert (
         len(every) == len(set(every))
@@ -334,12 +341,12 @@ def test_a_joint_has_one_layer_in_godot_3_and_the_next_where_its_own_does_not_re
     )
     assert "Spine" in alone["body"] and "LeftHand" in alone["arms"] and "Head" in alone["head"]
     without = edits.set_weight(sample, "head", "head", 0.0)
-    assert "Head" in find_owned_joints(without, machines(without))["body"]
-    assert "Spine" in find_owned_joints(sample, machines(sample)[1:])["arms"]
+    assert "Head" in find_owned_joints(without, list_machines(without))["body"]
+    assert "Spine" in find_owned_joints(sample, list_machines(sample)[1:])["arms"]
 
 
 def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_stance(sample: Project) -> None:
-    for machine in machines(sample):
+    for machine in list_machines(sample):
         places = list(godot_tree._places(machine))
         assert len({place for _, place in places}) == len(places) == len(machine.states)
         for goal in machine.stances:
@@ -365,25 +372,25 @@ def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_sta
      ("RightToeBase", "right_toe_base"), ("Spine02", "spine_02"), ("upperarm_l", "upperarm_l")],
 )  # fmt: skip
 def test_bones_are_named_as_godot_3_imports_them(joint: str, bone: str) -> None:
-    assert godot3_name(joint) == bone
+    assert make_godot3_name(joint) == bone
 
 
 def test_a_skeleton_of_two_roots_hangs_below_the_node_that_holds_them(sample: Project) -> None:
-    assert sample.skeleton is not None and paths_of(sample, "LeftHand", 3) == (
+    assert sample.skeleton is not None and list_track_paths(sample, "LeftHand", 3) == (
         "Skeleton:LeftHand",
         "Skeleton:left_hand",
     )
     parents = sample.skeleton.parents.copy()
     parents[sample.skeleton.index("LeftUpperLeg")] = -1
     two = replace(sample, skeleton=replace(sample.skeleton, parents=parents))
-    assert paths_of(two, "LeftHand", 4) == ("Armature/Skeleton3D:LeftHand",)
+    assert list_track_paths(two, "LeftHand", 4) == ("Armature/Skeleton3D:LeftHand",)
 
 
 def test_the_guide_names_every_state_and_the_losses_say_what_godot_does_not(
     folder: Path, sample: Project
 ) -> None:
-    text = (folder / f"{stem_of(sample)}.godot.md").read_text()
-    assert all(f"`{s.name}`" in text for m in machines(sample) for s in m.states)
+    text = (folder / f"{make_export_stem(sample)}.godot.md").read_text()
+    assert all(f"`{s.name}`" in text for m in list_machines(sample) for s in m.states)
     told = [words for loss in TARGETS[0].losses if (words := loss.told(sample))]
     assert told and all("{n}" not in words for words in told)
     assert any(words.startswith("Godot 3:") for words in told)

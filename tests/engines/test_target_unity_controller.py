@@ -15,7 +15,7 @@ import pytest
 import yaml
 from numpy.typing import NDArray
 
-from metagraph.engines.engine_machine import Arrow, EngineState, Machine, animations, machines
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, list_machines, make_animations
 from metagraph.engines.targets.target import Contents, ExportedFiles, ExportOrder
 from metagraph.engines.targets.unity_controller import TARGETS
 from metagraph.engines.targets.unity_yaml import format_yaml_text
@@ -25,7 +25,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.planner import make_plan
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 Array = NDArray[Any]
 MIRROR = {4: np.array([1, -1, -1, 1]), 3: np.array([-1, 1, 1])}
@@ -187,7 +187,7 @@ def test_there_is_a_clip_for_each_state_and_one_of_the_base_pose_and_they_are_sm
     sample: Project, made: ExportedFiles
 ) -> None:
     clips = [path for path in made.files if path.suffix == ".anim"]
-    assert len(clips) == sum(len(machine.states) for machine in machines(sample)) + 1
+    assert len(clips) == sum(len(machine.states) for machine in list_machines(sample)) + 1
     assert sum(path.stat().st_size for path in clips) / len(clips) < 0.15e6
 
 
@@ -207,7 +207,7 @@ def test_layers_have_parameters_masks_and_ways_to_blend(
         ("base", "0"), ("body", "0"), ("arms", "1"), ("head", "1"),
     ]  # fmt: skip
     known = guids(made)
-    for layer, machine in zip(whole["m_AnimatorLayers"][1:], machines(sample), strict=True):
+    for layer, machine in zip(whole["m_AnimatorLayers"][1:], list_machines(sample), strict=True):
         assert known[layer["m_Mask"]["guid"]].name == f"{machine.layer}.mask"
         assert layer["m_DefaultWeight"] == "1"
         start = controller.at(controller.at(layer["m_StateMachine"])["m_DefaultState"])
@@ -254,8 +254,8 @@ def found(controller: Objects, machine: Machine) -> list[tuple[Any, ...]]:
 def test_states_and_transitions_are_those_of_the_machine(
     sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:
-    built = machines(sample)
-    seconds = {clip.name: clip.duration for clip in animations(sample, built)}
+    built = list_machines(sample)
+    seconds = {clip.name: clip.duration for clip in make_animations(sample, built)}
     counted = 0
     assert len(controller.of(1102)) == len(seconds) + 1  # with the base pose
     for machine in built:
@@ -276,7 +276,7 @@ def test_states_and_transitions_are_those_of_the_machine(
 def test_what_is_asked_for_goes_before_going_back_and_loops_are_left_at_once(
     sample: Project, controller: Objects
 ) -> None:
-    for machine in machines(sample):
+    for machine in list_machines(sample):
         for name, state in states_of(controller, machine.layer).items():
             leaving = [controller.at(one) for one in state["m_Transitions"]]
             kinds = [len(one["m_Conditions"]) for one in leaving]
@@ -306,7 +306,7 @@ def test_masks_list_every_joint_once_and_have_those_of_the_layer_on(
 ) -> None:
     assert sample.skeleton is not None
     path = paths(sample.skeleton)
-    for machine in machines(sample):
+    for machine in list_machines(sample):
         (fields,) = Objects(named(made, f"{machine.layer}.mask")).of(319)
         assert fields["m_Mask"] == "01000000" * 13
         root, *rows = ((row["m_Path"], row["m_Weight"]) for row in fields["m_Elements"])
@@ -316,9 +316,9 @@ def test_masks_list_every_joint_once_and_have_those_of_the_layer_on(
 
 
 def pairs(project: Project) -> list[tuple[Machine, EngineState, Clip]]:
-    built = machines(project)
+    built = list_machines(project)
     states = [(machine, state) for machine in built for state in machine.states]
-    return [(m, s, clip) for (m, s), clip in zip(states, animations(project, built), strict=True)]
+    return [(m, s, clip) for (m, s), clip in zip(states, make_animations(project, built), strict=True)]
 
 
 @pytest.mark.nightly
@@ -337,7 +337,9 @@ def test_curves_mirrored_back_are_the_machines_clips(
         for joint in machine.joints:
             there = rotation.normalize(turns[path[joint]])
             assert (
-                np.degrees(rotation.angle_between(there, pose.rotations[:, skeleton.index(joint)])).max()
+                np.degrees(
+                    rotation.measure_angle_between(there, pose.rotations[:, skeleton.index(joint)])
+                ).max()
                 < 0.1
             ), (state.name, joint)
         for joint, shift in evaluated(fields["m_PositionCurves"], times).items():
@@ -380,7 +382,7 @@ def test_layers_put_together_as_unity_does_are_the_previews_pose(
     base, moved = pose("base", "base")
     assert {*base} == {*skeleton.names}
     turns, shifts = dict(base), dict(moved)
-    for machine in machines(sample):
+    for machine in list_machines(sample):
         own, shifted = pose(machine.layer, machine.start.name)
         for name, q in own.items():
             apart = rotation.multiply(rotation.conjugate(base[name]), q)
@@ -391,7 +393,7 @@ def test_layers_put_together_as_unity_does_are_the_previews_pose(
     translations = np.stack(
         [shifts.get(name, skeleton.rest_translations[j]) for j, name in enumerate(skeleton.names)]
     )
-    wanted = pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+    wanted = compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
     _, mine = skeleton.globals(replace(wanted, rotations=rotations, translations=translations))
     _, theirs = skeleton.globals(wanted)
     assert np.linalg.norm(mine - theirs, axis=1).max() < 0.003

@@ -15,7 +15,7 @@ from metagraph.engines.targets import registry
 from metagraph.engines.targets.target import Contents
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.usd import usda
-from metagraph.formats.usd.writer import joint_paths, write_usd
+from metagraph.formats.usd.writer import list_joint_paths, write_usd
 from metagraph.graph.edits import add_clips, add_stance, place_clips, update_actions
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
@@ -43,7 +43,7 @@ def still(ada: CharacterMesh) -> Clip:
         clip,
         skeleton=ada.skeleton,
         fps=24.0,
-        rotations=rotation.continuous(rotation.multiply(clip.rotations, bend)),
+        rotations=rotation.make_continuous(rotation.multiply(clip.rotations, bend)),
         morphs=("jawOpen", "nobody's"),
         weights=np.stack([t, 1 - t], 1),
     )
@@ -206,7 +206,7 @@ def test_names_that_are_no_identifiers_become_ones_and_none_is_twice() -> None:
     rest = np.zeros((5, 3))
     turns = np.tile([0, 0, 0, 1.0], (5, 1))
     skeleton = Skeleton(names, np.array([-1, 0, 0, 2, -1]), turns, rest)
-    paths = joint_paths(skeleton)
+    paths = list_joint_paths(skeleton)
     assert (
         paths[:4] == ["hips", "hips/hips_", "hips/joint_358277399", "hips/joint_358277399/_7"]
         and len(set(paths)) == 5

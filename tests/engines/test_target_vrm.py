@@ -91,7 +91,7 @@ def test_its_clips_play_as_they_were(project: Project, written: Path) -> None:
     [entry] = project.clips.values()
     assert entry.motion is not None and made.frames == entry.motion.dense.frames
     joints = [made.skeleton.index(n) for n in entry.motion.skeleton.names]
-    apart = rotation.angle_between(made.rotations[:, joints], entry.motion.dense.rotations)
+    apart = rotation.measure_angle_between(made.rotations[:, joints], entry.motion.dense.rotations)
     assert np.degrees(apart.max()) < 0.05
     assert len(read_character(written).morphs) == 52
 

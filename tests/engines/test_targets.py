@@ -17,23 +17,23 @@ import msgspec
 import numpy as np
 import pytest
 
-from metagraph.engines.engine_machine import animations, machines
+from metagraph.engines.engine_machine import list_machines, make_animations
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
-from metagraph.engines.targets.agents import gestures
+from metagraph.engines.targets.agents import make_gesture_file
 from metagraph.engines.targets.target import Contents, TargetReport
 from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
-from metagraph.graph.anatomy import base_pose, project_roles
-from metagraph.graph.expand import chain, find_end_stance, list_connections
+from metagraph.graph.anatomy import get_base_pose, project_roles
+from metagraph.graph.expand import find_chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Nod, Performance, Say
 from metagraph.motion import rotation
 from metagraph.playback.bml.reader import read_bml
 from metagraph.playback.planner import make_plan
 from tests.engines.test_export import gltf, khronos
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 from tests.recipes import code_of
 
 HERE = Path(__file__).parent
@@ -83,7 +83,7 @@ def named(report: TargetReport, ending: str) -> Path:
 # --- all of them
 
 
-@pytest.mark.parametrize("name", registry.targets())
+@pytest.mark.parametrize("name", registry.list_targets())
 def test_every_target_writes_what_it_says_and_glbs_the_validator_accepts(written: Any, name: str) -> None:
     report = written(name)
     assert report.files and all(path.is_file() and path.stat().st_size for path in report.files)
@@ -102,7 +102,7 @@ def _leads(page: Path, to: str) -> bool:
     ]
 
 
-@pytest.mark.parametrize("name", registry.targets())
+@pytest.mark.parametrize("name", registry.list_targets())
 def test_links_of_pages_that_are_exported_lead_to_what_is_exported(written: Any, name: str) -> None:
     for page in [path for path in written(name).files if path.suffix == ".md"]:
         links = re.findall(r"\]\(([^)\s]+)", page.read_text(encoding="utf-8"))
@@ -110,7 +110,7 @@ def test_links_of_pages_that_are_exported_lead_to_what_is_exported(written: Any,
         assert not lost, page
 
 
-@pytest.mark.parametrize("name", registry.targets())
+@pytest.mark.parametrize("name", registry.list_targets())
 def test_pages_that_are_exported_name_no_file_of_ours_that_is_not(written: Any, name: str) -> None:
     report = written(name)
     there = [path.as_posix() for path in report.files]
@@ -125,32 +125,36 @@ def test_a_runtime_brings_its_licence(written: Any, name: str) -> None:
     assert licence.read_bytes() == (HERE.parents[1] / "LICENSE").read_bytes()
 
 
-@pytest.mark.parametrize("name", registry.targets())
+@pytest.mark.parametrize("name", registry.list_targets())
 def test_every_target_but_those_that_play_it_all_says_what_it_loses(sample: Project, name: str) -> None:
-    told = registry.losses(sample, name)
+    told = registry.describe_losses(sample, name)
     assert all("{n}" not in words and words for words in told)
     assert told or name in ("metagraph", "python")
 
 
 def test_losses_count_what_the_project_has(sample: Project) -> None:
     partial = sum(a.limb != "both" or bool(a.joints) for a in sample.actions())
-    assert any(words.startswith(f"{partial} actions") for words in registry.losses(sample, "playcanvas"))
+    assert any(
+        words.startswith(f"{partial} actions") for words in registry.describe_losses(sample, "playcanvas")
+    )
     weighted = edits.set_weight(sample, "arms", "spine", 0.5)
-    assert any("1 layer weight other" in words for words in registry.losses(weighted, "playcanvas"))
-    assert not any("layer weight" in words for words in registry.losses(sample, "playcanvas"))
+    assert any("1 layer weight other" in words for words in registry.describe_losses(weighted, "playcanvas"))
+    assert not any("layer weight" in words for words in registry.describe_losses(sample, "playcanvas"))
     wave = next(a.id for a in sample.actions() if a.kind == "gesture")
     repeats = edits.update_actions(sample, [wave], timing={"repeat": 4.0})
-    assert any(words.startswith("1 action repeats") for words in registry.losses(repeats, "playcanvas"))
-    assert not any("repeats for" in words for words in registry.losses(sample, "playcanvas"))
+    assert any(
+        words.startswith("1 action repeats") for words in registry.describe_losses(repeats, "playcanvas")
+    )
+    assert not any("repeats for" in words for words in registry.describe_losses(sample, "playcanvas"))
 
 
-@pytest.mark.parametrize("name", sorted(registry.targets()))
+@pytest.mark.parametrize("name", sorted(registry.list_targets()))
 def test_every_target_says_that_conversations_are_left_out(sample: Project, name: str) -> None:
     assert sample.conversations
     words = f"{len(sample.conversations)} conversation"
-    assert any(loss.startswith(words) for loss in registry.losses(sample, name))
+    assert any(loss.startswith(words) for loss in registry.describe_losses(sample, name))
     assert not any(
-        "conversation" in loss for loss in registry.losses(replace(sample, conversations={}), name)
+        "conversation" in loss for loss in registry.describe_losses(replace(sample, conversations={}), name)
     )
 
 
@@ -167,11 +171,11 @@ def test_a_target_comes_by_its_module_and_its_line(
     exec(code_of("Add a target"), vars(module))
     monkeypatch.setitem(sys.modules, module.__name__, module)
     monkeypatch.setattr(registry, "MODULES", (*registry.MODULES, "uses"))
-    registry.targets.cache_clear()
+    registry.list_targets.cache_clear()
     try:
         report = registry.write_for_target(sample, "uses", tmp_path)
     finally:
-        registry.targets.cache_clear()
+        registry.list_targets.cache_clear()
     path, readme = report.files
     counts = json.loads(path.read_text())
     assert sum(counts.values()) == sum(1 for _ in sample.actions())
@@ -187,7 +191,7 @@ def test_a_project_with_errors_is_not_written(tmp_path: Path) -> None:
 
 
 def test_the_machine_has_a_state_for_each_action_and_an_arrow_for_each_connection(sample: Project) -> None:
-    built = machines(sample)
+    built = list_machines(sample)
     assert [m.layer for m in built] == list(LAYERS)
     names = [s.name for m in built for s in m.states]
     assert len(set(names)) == len(names) == sum(1 for _ in sample.actions())
@@ -197,7 +201,7 @@ def test_the_machine_has_a_state_for_each_action_and_an_arrow_for_each_connectio
 
 
 def test_a_stance_is_reached_from_every_other_by_following_its_arrows(sample: Project) -> None:
-    for machine in machines(sample):
+    for machine in list_machines(sample):
         for goal, number in machine.stances.items():
             for begin in machine.stances:
                 at, hops = begin, 0
@@ -216,14 +220,14 @@ def test_a_stance_is_reached_from_every_other_by_following_its_arrows(sample: Pr
 def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose(
     sample: Project, written: Any
 ) -> None:
-    built = machines(sample)
-    made = animations(sample, built)
+    built = list_machines(sample)
+    made = make_animations(sample, built)
     assert [c.name for c in made] == [s.name for m in built for s in m.states]
     for clip, state in zip(made, (s for m in built for s in m.states), strict=True):
         assert clip.duration == pytest.approx(state.seconds, abs=1e-6) or state.seconds == 0
     path = named(written("playcanvas"), ".glb")
     nodes = {n["name"]: n for n in gltf(path)["nodes"]}
-    base = base_pose(sample)
+    base = get_base_pose(sample)
     assert sample.skeleton is not None
     for place, joint in enumerate(sample.skeleton.names):
         assert np.allclose(nodes[joint]["rotation"], base.rotations[place], atol=1e-6)
@@ -241,17 +245,17 @@ def test_an_animation_of_an_action_that_moves_a_joint_in_part_has_it_as_far_from
     assert skeleton is not None
     joint = project_roles(sample)["right_upper_arm"]
     soft = edits.update_actions(sample, [action.id], joint_weights=((skeleton.names[joint], 0.5),))
-    built = machines(sample)
+    built = list_machines(sample)
     place = [s.action.id for m in built for s in m.states].index(action.id)
-    whole = animations(sample, built)[place].rotations[:, joint]
-    half = animations(soft, machines(soft))[place].rotations[:, joint]
+    whole = make_animations(sample, built)[place].rotations[:, joint]
+    half = make_animations(soft, list_machines(soft))[place].rotations[:, joint]
     loop = next(iter(sample.graphs["arms"].of(action.stance, "stance")))
     motion = sample.clips[loop.clip].motion
     assert motion is not None
     rest = motion.pose_at(sample.span(loop)[0]).rotations[joint]
-    far, gone = rotation.angle_between(rest, whole), rotation.angle_between(rest, half)
+    far, gone = rotation.measure_angle_between(rest, whole), rotation.measure_angle_between(rest, half)
     assert far.max() > 0.1 and np.allclose(gone, far / 2, atol=1e-3)
-    told = registry.losses(soft, "unity-controller")
+    told = registry.describe_losses(soft, "unity-controller")
     assert any(words.startswith("1 action has partial joint weights") for words in told)
 
 
@@ -279,7 +283,7 @@ def test_playcanvas_rests_as_the_preview_does_changes_stance_and_adds_a_gesture(
     )
     assert sample.skeleton is not None
     _, positions = sample.skeleton.globals(
-        pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+        compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
     )
     for place, joint in enumerate(sample.skeleton.names):
         assert np.linalg.norm(np.array(rest["joints"][joint]["position"]) - positions[place]) < 0.003, joint
@@ -364,10 +368,10 @@ def test_babylon_goes_to_a_stance_by_as_many_transitions_as_it_takes(
 ) -> None:
     report = written("interactivity")
     events = json.loads(named(report, "events.json").read_bytes())
-    (machine,) = (m for m in machines(sample) if m.layer == "arms")
+    (machine,) = (m for m in list_machines(sample) if m.layer == "arms")
     pairs = [(a, b) for a in machine.stances for b in machine.stances if a != b]
-    here, goal = max(pairs, key=lambda pair: len(chain(machine.graph, *pair) or ()))
-    assert len(chain(machine.graph, here, goal) or ()) == 2
+    here, goal = max(pairs, key=lambda pair: len(find_chain(machine.graph, *pair) or ()))
+    assert len(find_chain(machine.graph, here, goal) or ()) == 2
     wave = next(e for e in events if "wave_hello" in e)
     to_here, to_goal = (f"arms.stance.{machine.stance_words[x]}" for x in (here, goal))
     assert {to_here, to_goal} <= set(events)
@@ -470,9 +474,9 @@ def test_gesture_json_goes_in_holds_and_comes_out_in_order(written: Any) -> None
 def test_gesture_json_holds_a_gesture_that_repeats_for_its_whole_cycles(sample: Project) -> None:
     wave = next(a for a in sample.actions() if a.kind == "gesture")
     project = edits.update_actions(sample, [wave.id], timing={"start": 0.2, "end": 0.8, "repeat": 2.4})
-    built = machines(project)
+    built = list_machines(project)
     name = next(s.name for m in built for s in m.states if s.action.id == wave.id)
-    edges = [(each["from"], each["to"]) for each in gestures(project, built)[name]["queueOptions"]]
+    edges = [(each["from"], each["to"]) for each in make_gesture_file(project, built)[name]["queueOptions"]]
     assert edges == [(0, 18), (18, 54), (54, 72)]
 
 

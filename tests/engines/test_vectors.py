@@ -32,7 +32,7 @@ from metagraph.playback.posing import layers
 from sample_clips.make import conformance
 from sample_clips.make.conformance_projects import sparse
 from tests.engines.mutants import PLAYED, folders_to_try
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 
@@ -127,7 +127,7 @@ def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path)
     back = read_export(export_project(sample, tmp_path).json, resolved=True)
     assert sample.skeleton is not None
     times = np.linspace(0.0, 40.0, 161)
-    poses = [pose_at(make_plan(project, 40.0), project, times) for project in (sample, back)]
+    poses = [compute_pose_at(make_plan(project, 40.0), project, times) for project in (sample, back)]
     (_, ours), (_, theirs) = (sample.skeleton.globals(pose) for pose in poses)
     # Thinned keys are off by as much in each joint of an arm.
     assert np.linalg.norm(ours - theirs, axis=-1).max() < 1.5 * vectors.METRES
@@ -162,7 +162,7 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "never twice and spacing": (sampling.Performer, "_spaced", lambda self, candidates: candidates),
     "the loop's seam": (
         layers,
-        "loop_seconds",
+        "compute_loop_seconds",
         lambda p, a, t: (p.span(a)[0] + t * 0, p.span(a)[0] + t * 0, t * 0),
     ),
     "leading a clip in from its stance": (layers, "_lead", lambda shown, stance, edge, weight: shown),
@@ -170,10 +170,10 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "the shortest chain": (sampling.Performer, "_chain", lambda self, goal: []),
     "how late a request may start": (replan, "delay", lambda asked, free, settings: (list(asked), [])),
     "lengths of the models": (markov, "length", lambda chain, state, key: 2.0),
-    "a breath's shape": (evaluate, "breath_at", lambda lane, life, time: 0.0),
-    "a blink's shape": (evaluate, "blink_at", lambda lane, life, time: 0.0),
+    "a breath's shape": (evaluate, "compute_breath", lambda lane, life, time: 0.0),
+    "a blink's shape": (evaluate, "compute_blink", lambda lane, life, time: 0.0),
     "how the head settles": (gaze, "settle_gaze", gaze.ease_gaze),
-    "the head's share": (solve, "head_part", lambda angle, share: share * angle),
+    "the head's share": (solve, "compute_head_part", lambda angle, share: share * angle),
     "what eyes can do": (solve, "limit_eye_turn", lambda left, up: (left, up)),
 }
 

@@ -22,7 +22,7 @@ ELEMENT = Path(RUNTIMES[0]) / "javascript" / "element.js"
 
 @pytest.fixture
 def without_npm(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(programs, "system_program", lambda name: None)
+    monkeypatch.setattr(programs, "find_system_program", lambda name: None)
 
 
 def _lay_out(modules: Path, ran: Path) -> None:
@@ -41,7 +41,7 @@ def _lay_out(modules: Path, ran: Path) -> None:
 def test_nothing_is_taken_from_folders_around_the_export_or_the_working_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project, without_npm: None
 ) -> None:
-    monkeypatch.setattr(web_tools, "web_tools_folder", lambda: tmp_path / "kept")
+    monkeypatch.setattr(web_tools, "find_web_tools_folder", lambda: tmp_path / "kept")
     here, out, ran = tmp_path / "here", tmp_path / "project" / "out", tmp_path / "ran"
     for folder in (here, out, out.parent, tmp_path):
         _lay_out(folder / "node_modules", ran)
@@ -56,7 +56,7 @@ def test_nothing_is_taken_from_folders_around_the_export_or_the_working_folder(
 def test_without_them_the_page_says_so_and_the_browser_compares_digests(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project, without_npm: None
 ) -> None:
-    monkeypatch.setattr(web_tools, "web_tools_folder", lambda: tmp_path / "kept")
+    monkeypatch.setattr(web_tools, "find_web_tools_folder", lambda: tmp_path / "kept")
     registry.write_for_target(sample, "web", tmp_path / "out")
     page = (tmp_path / "out" / "index.html").read_text()
     assert f"This page loads three.js {web_tools.THREE} from" in page
@@ -73,7 +73,7 @@ def test_without_them_the_page_says_so_and_the_browser_compares_digests(
 def test_a_page_that_gets_no_three_js_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project, without_npm: None, browse: Browser
 ) -> None:
-    monkeypatch.setattr(web_tools, "web_tools_folder", lambda: tmp_path / "kept")
+    monkeypatch.setattr(web_tools, "find_web_tools_folder", lambda: tmp_path / "kept")
     registry.write_for_target(sample, "web", tmp_path / "out")
     page = tmp_path / "out" / "index.html"
     page.write_text(page.read_text().replace(web_tools.NET, "/nowhere/"))
@@ -138,6 +138,6 @@ def test_what_belongs_to_somebody_else_is_not_used(
 
 
 def test_an_npm_that_fails_is_as_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(web_tools, "web_tools_folder", lambda: tmp_path / "kept")
-    monkeypatch.setattr(programs, "system_program", lambda name: "/bin/false")
+    monkeypatch.setattr(web_tools, "find_web_tools_folder", lambda: tmp_path / "kept")
+    monkeypatch.setattr(programs, "find_system_program", lambda name: "/bin/false")
     assert not web_tools.is_three_at_hand()

@@ -25,7 +25,7 @@ from metagraph.graph.requests import Line
 from tests import wavs
 from tests.thorough import many
 
-TARGETS = tuple(registry.targets())
+TARGETS = tuple(registry.list_targets())
 SAMPLE = Path(__file__).parents[2] / "sample_clips" / "sample.metagraph.yaml"
 
 

@@ -29,5 +29,5 @@ def kept_web_tools(folder: Path) -> Iterator[Path]:
     for path in (folder, *folder.rglob("*")):
         path.chmod(path.stat().st_mode & ~0o022)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(web_tools, "web_tools_folder", lambda: folder)
+        patch.setattr(web_tools, "find_web_tools_folder", lambda: folder)
         yield folder

@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats import clip_readers
-from metagraph.formats.clip_readers import READERS, ClipReader, clip_suffixes
+from metagraph.formats.clip_readers import READERS, ClipReader, list_clip_suffixes
 from metagraph.formats.clips import find_clip_files, import_clips, read_clips
 from tests.recipes import code_of
 
@@ -27,7 +27,7 @@ def points(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_ending_is_read_by_two() -> None:
-    endings = clip_suffixes()
+    endings = list_clip_suffixes()
     assert len(set(endings)) == len(endings) and all(ending == ending.lower() for ending in endings)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clip_readers import clip_suffixes
+from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.gltf.reader import write_glb
 from metagraph.motion import rotation
@@ -22,7 +22,7 @@ SKELETON = mannequin_skeleton()
 
 
 def clip(name: str = "wave", frames: int = 8) -> Clip:
-    rotations = rotation.identity_rotations((frames, len(SKELETON)))
+    rotations = rotation.make_identity_rotations((frames, len(SKELETON)))
     rotations[:, 3] = rotation.from_axis_angle(np.tile([0, 1.0, 0], (frames, 1)), 0.1 * np.arange(frames))
     return Clip(name, SKELETON, 30, rotations, np.tile(SKELETON.rest_translations[:1], (frames, 1, 1)))
 
@@ -90,7 +90,7 @@ def test_clip_files_are_found_below_a_folder_in_a_stable_order(tmp_path: Path) -
         "b.bvh",
         "sub/c.FBX",
     ]
-    assert ".vrm" in clip_suffixes()
+    assert ".vrm" in list_clip_suffixes()
 
 
 def test_a_bad_file_among_many_fails_alone_with_its_reason(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.corpora import CorpusReading, _as_long, _early_words, read_corpus
-from metagraph.graph.conversation.model import Conversation, Side, Word, segments_heard_by
+from metagraph.graph.conversation.model import Conversation, Side, Word, list_segments_heard_by
 from metagraph.graph.face.takes import FACE_SKELETON
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -113,7 +113,7 @@ def test_genea_has_two_folders_and_a_table_of_words_each(tmp_path: Path) -> None
     assert one.name == "trn_2023_v0_000" and all(c is not None for c in one.clips)
     assert kinds(one.conversation, 0) == ["clause", "hesitation", "clause"]
     assert kinds(one.conversation, 1) == ["response", "clause"]
-    assert "hesitation" in [s.kind for s in segments_heard_by(one.conversation, 1)]
+    assert "hesitation" in [s.kind for s in list_segments_heard_by(one.conversation, 1)]
 
 
 def test_talking_with_hands_tells_persons_by_their_marks(tmp_path: Path) -> None:
@@ -233,7 +233,8 @@ def test_what_is_read_is_counted_as_the_paper_counts(tmp_path: Path) -> None:
     clip = one.clips[0]
     assert clip is not None
     counted = {
-        r.hypothesis: r.total for r in count_cooccurrence([clip], [segments_heard_by(one.conversation, 0)], 3)
+        r.hypothesis: r.total
+        for r in count_cooccurrence([clip], [list_segments_heard_by(one.conversation, 0)], 3)
     }
     assert counted["clause with either hand"] == 2 and counted["partner's hesitation with a nod"] == 0
 
@@ -243,7 +244,7 @@ def test_what_is_read_is_counted_as_the_paper_counts(tmp_path: Path) -> None:
 
 def still(frames: int, fps: float) -> Clip:
     places = np.zeros((frames, 1, 3))
-    return Clip("a", FACE_SKELETON, fps, rotation.identity_rotations((frames, 3)), places, (0,))
+    return Clip("a", FACE_SKELETON, fps, rotation.make_identity_rotations((frames, 3)), places, (0,))
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.formats.project.data import to_data
 from metagraph.formats.project.journal import Journal
 from metagraph.formats.recovery import read_journal
-from metagraph.formats.store import SUFFIX, content_digest, encode_project, read_project, save_project
+from metagraph.formats.store import SUFFIX, compute_content_digest, encode_project, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from tests.failing_system import Killed, System, failing
@@ -116,7 +116,7 @@ def sitting(path: Path, journal: Path, made: list[Project], done: list[int]) -> 
                 with suppress(FileError):
                     mark = kept.mark()
                     if mark is not None:
-                        kept.settle(mark, content_digest(encode_project(after, path)))
+                        kept.settle(mark, compute_content_digest(encode_project(after, path)))
                     save_project(after, path)
                     done[1] = n + 1
     finally:

@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.formats.characters import CharacterFile
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.import_words import count_alike, describe_import, remedies
+from metagraph.formats.import_words import count_alike, describe_import, list_remedies
 from metagraph.formats.imports import Imported, import_files
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Repair
@@ -56,7 +56,7 @@ def test_strangers_are_told_once_not_as_files_that_cannot_be_used_too(tmp_path: 
     assert all(
         piece in words for piece in ("2 clips.", "1 clip with another", "1 unusable file", "of 1 clip in")
     )
-    assert [r.do for r in remedies(result)] == ["map"]
+    assert [r.do for r in list_remedies(result)] == ["map"]
 
 
 @pytest.mark.parametrize(

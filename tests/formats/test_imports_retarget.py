@@ -23,7 +23,7 @@ from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, propose_joint_map
+from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint, propose_joint_map
 from metagraph.motion.skeleton import Skeleton
 
 
@@ -76,7 +76,7 @@ def test_asked_for_they_come_in_one_group_a_skeleton_with_a_proposed_map(folder:
     assert not result.loaded and not result.failures
     (group,) = result.strangers
     assert len(group.clips) == 2 and not group.remembered and not group.joint_map.missing
-    assert group.fingerprint == fingerprint(sample.skeleton) == group.joint_map.source
+    assert group.fingerprint == make_fingerprint(sample.skeleton) == group.joint_map.source
     assert len(group.failures) == 2
 
 
@@ -86,10 +86,11 @@ def test_said_yes_they_are_retargeted_and_the_map_is_kept(folder: Path, sample: 
     assert not result.failures and result.retargeted == 2
     assert any("2 clips (other0.glb …)" in note for note in result.notes)
     after = result.into(project)
-    assert after.skeleton is project.skeleton and set(after.joint_maps) == {fingerprint(sample.skeleton)}
+    assert after.skeleton is project.skeleton and set(after.joint_maps) == {make_fingerprint(sample.skeleton)}
     new = [e for e in after.clips.values() if e.id not in project.clips]
     assert all(
-        e.brought_from == fingerprint(sample.skeleton) and e.motion.skeleton is project.skeleton for e in new
+        e.brought_from == make_fingerprint(sample.skeleton) and e.motion.skeleton is project.skeleton
+        for e in new
     )  # type: ignore[union-attr]
     assert all("brought over" in " ".join(e.motion.notes) for e in new)  # type: ignore[union-attr]
     assert not [p for p in check_project(after) if p.code == "other-skeleton"]
@@ -116,7 +117,7 @@ def test_what_was_mapped_by_hand_in_another_project_is_offered_again(folder: Pat
 
     (again,) = import_files(project, folder, others(folder), retarget="ask", remembered=remembered).strangers
     assert again.remembered and again.joint_map == mine
-    assert asked == [(group.fingerprint, fingerprint(project.skeleton))]  # type: ignore[arg-type]
+    assert asked == [(group.fingerprint, make_fingerprint(project.skeleton))]  # type: ignore[arg-type]
 
 
 def test_what_cannot_be_mapped_says_what_is_missing(folder: Path) -> None:

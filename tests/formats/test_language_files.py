@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.language_files import packs_with, read_pack
+from metagraph.formats.language_files import gather_packs, read_pack
 from metagraph.speech.language_packs import FOLDER, list_language_packs
 
 GOOD = """\
@@ -73,7 +73,7 @@ def test_yaml_and_json_are_read(tmp_path: Path) -> None:
 
 def test_a_pack_takes_the_place_of_one_of_its_code(tmp_path: Path) -> None:
     own = pack(tmp_path, GOOD.replace("code: sv", "code: de"))
-    packs = packs_with([own])
+    packs = gather_packs([own])
     assert packs["de"].name == "Swedish" and set(packs) == set(list_language_packs())
     assert list_language_packs()["de"].name == "German"
-    assert "sv" in packs_with([pack(tmp_path, GOOD, "b.yaml")])
+    assert "sv" in gather_packs([pack(tmp_path, GOOD, "b.yaml")])

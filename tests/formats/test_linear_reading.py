@@ -19,7 +19,7 @@ from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.elan import read_elan
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.transcripts.speaker_names import _BRACKETED
-from metagraph.motion.roles import body_parts, find_roles, joint_sides
+from metagraph.motion.roles import assign_body_parts, find_joint_sides, find_roles
 from metagraph.motion.skeleton import Skeleton
 from metagraph.speech.sympathies import _LAUGHED
 from metagraph.speech.textgrid import read_textgrid
@@ -159,8 +159,8 @@ def test_what_joints_mean_is_found_in_steps_that_grow_with_their_number(shape: s
 
         def work() -> None:
             roles = find_roles(skeleton)
-            body_parts(skeleton, roles)
-            joint_sides(skeleton, roles)
+            assign_body_parts(skeleton, roles)
+            find_joint_sides(skeleton, roles)
 
         return _steps(work)
 

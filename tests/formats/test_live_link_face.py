@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
-from metagraph.formats.gltf.reader import morph_targets
+from metagraph.formats.gltf.reader import read_morph_targets
 from metagraph.formats.imports import import_files
 from metagraph.formats.live_link_face import TURNS, read_live_link
 from metagraph.formats.store import open_project, save_project
@@ -21,7 +21,7 @@ from metagraph.graph.face.takes import find_face_joints
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.playback.planner import make_plan
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 SAMPLES = Path(__file__).parents[2] / "sample_clips"
 HEADER = "Timecode,BlendShapeCount," + ",".join(n[0].upper() + n[1:] for n in ARKIT) + "," + ",".join(TURNS)
@@ -140,7 +140,7 @@ def test_other_tables_are_no_clips(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def sample() -> Project:
     project = open_project(SAMPLES / "sample.metagraph.yaml").project
-    return with_morphs(project, morph_targets(SAMPLES / "ada.glb"))
+    return with_morphs(project, read_morph_targets(SAMPLES / "ada.glb"))
 
 
 def test_on_a_character_the_face_moves_and_nothing_else(sample: Project, tmp_path: Path) -> None:
@@ -168,7 +168,7 @@ def test_on_a_character_the_face_moves_and_nothing_else(sample: Project, tmp_pat
     )
     assert ahead[0] > 0.2, "to its left"
     plan = make_plan(after, 1.0, [])
-    assert pose_at(plan, after, 0.5).rotations.shape[-2] == len(skeleton)
+    assert compute_pose_at(plan, after, 0.5).rotations.shape[-2] == len(skeleton)
 
 
 def test_it_is_there_again_when_the_project_is_opened(sample: Project, tmp_path: Path) -> None:

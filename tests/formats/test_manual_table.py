@@ -12,7 +12,7 @@ from metagraph.formats.project.journal import find_changes
 from metagraph.formats.project.replay import apply_change
 from metagraph.graph.manual import edits as m
 from metagraph.graph.manual import groups as g
-from metagraph.graph.manual.machine import ANY, links_expanded
+from metagraph.graph.manual.machine import ANY, expand_links
 from tests.graph.manual.test_machine import linked
 
 
@@ -83,7 +83,7 @@ def test_a_pattern_leaves_as_an_alias_and_arrives_at_each() -> None:
     )
     machine = out.project.manual["arms"]
     assert [a.name for a in machine.aliases.values()] == ["SIT"] and len(machine.links) == 4
-    assert len(links_expanded(machine)) == 9 and not out.problems
+    assert len(expand_links(machine)) == 9 and not out.problems
 
 
 def test_a_row_that_fails_leaves_no_alias_behind() -> None:

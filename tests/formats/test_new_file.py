@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.locking import Lock, new_owner
+from metagraph.formats.locking import Lock, make_owner
 from metagraph.formats.new_file import Access, access_of, open_new
 from metagraph.formats.project.journal import Journal
 from metagraph.formats.store import SUFFIX, save_project
@@ -81,9 +81,9 @@ def test_everything_beside_a_private_project_is_private(tmp_path: Path, wide_uma
     saved = tmp_path / f"show{SUFFIX}"
     save_project(Project("show"), saved)
     saved.chmod(0o600)
-    lock = Lock(saved, new_owner())
+    lock = Lock(saved, make_owner())
     lock.acquire()
-    journal = Journal(tmp_path / ".journal", saved, new_owner())
+    journal = Journal(tmp_path / ".journal", saved, make_owner())
     journal.edit(Project("show"), edits.rename_project(Project("show"), "x"))
     copy = tmp_path / f"copy{SUFFIX}"
     save_project(Project("copy"), copy, like=access_of(saved))
@@ -91,7 +91,7 @@ def test_everything_beside_a_private_project_is_private(tmp_path: Path, wide_uma
     assert {mode(path) for path in tmp_path.iterdir()} == {0o600}
     journal.path.unlink()
     saved.unlink()
-    again = Journal(tmp_path / ".journal", saved, new_owner(), like=Access(0o600, os.getgid()))
+    again = Journal(tmp_path / ".journal", saved, make_owner(), like=Access(0o600, os.getgid()))
     again.begin(Project("show"), 1)
     again.close()
     assert mode(again.path) == 0o600, "though the project is gone"

@@ -10,8 +10,8 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.formats import outputs as o
 from metagraph.formats.atomic import write_atomically, write_together
-from metagraph.formats.locking import Lock, new_owner
-from metagraph.formats.outputs import Outputs, writing
+from metagraph.formats.locking import Lock, make_owner
+from metagraph.formats.outputs import Outputs, check_outputs
 
 
 @pytest.fixture(autouse=True)
@@ -23,7 +23,7 @@ def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def write(
     path: Path, content: bytes = b"made", overwrite: bool = False, command: str = "render", **reads: Path
 ) -> None:
-    with writing(Outputs(overwrite, command)) as outputs:
+    with check_outputs(Outputs(overwrite, command)) as outputs:
         outputs.reads(*reads.values())
         outputs.claim(path)
         write_atomically(path, content)
@@ -95,7 +95,7 @@ def test_files_of_a_folder_that_is_read_stay_reports_in_it_may_be_replaced(tmp_p
     with pytest.raises(FileError):
         write(folder / "log.jsonl", overwrite=True, study=folder)
     write(folder / "old.html", overwrite=True, study=folder)
-    with writing(Outputs(True, "report")) as outputs:
+    with check_outputs(Outputs(True, "report")) as outputs:
         outputs.reads(folder)
         outputs.claim(folder / "report")  # a folder of its own below
         write_atomically(folder / "report" / "page.json", b"new")
@@ -115,7 +115,7 @@ def test_what_a_gltf_names_is_read_with_it(tmp_path: Path) -> None:
 def test_an_input_that_becomes_known_after_the_claim_is_refused_at_once(tmp_path: Path) -> None:
     path = tmp_path / "clip.bvh"
     path.write_bytes(b"motion")
-    with writing(Outputs(True)) as outputs:
+    with check_outputs(Outputs(True)) as outputs:
         outputs.claim(path)
         with pytest.raises(FileError):
             outputs.reads(path)
@@ -125,7 +125,7 @@ def test_an_input_that_becomes_known_after_the_claim_is_refused_at_once(tmp_path
 def test_a_project_that_is_open_elsewhere_stays(tmp_path: Path, overwrite: bool) -> None:
     path = tmp_path / "my.metagraph.yaml"
     path.write_bytes(b"work")
-    lock = Lock(path, new_owner())
+    lock = Lock(path, make_owner())
     assert lock.acquire() is None
     for name in (path, tmp_path / "link.metagraph.yaml"):
         if name != path:
@@ -138,7 +138,7 @@ def test_a_project_that_is_open_elsewhere_stays(tmp_path: Path, overwrite: bool)
 
 def test_it_is_looked_again_at_the_moment_of_writing(tmp_path: Path) -> None:
     path = tmp_path / "a.bvh"
-    with writing(Outputs()) as outputs:
+    with check_outputs(Outputs()) as outputs:
         outputs.claim(path)
         path.write_bytes(b"somebody was faster")
         with pytest.raises(FileError, match="--overwrite"):
@@ -148,20 +148,20 @@ def test_it_is_looked_again_at_the_moment_of_writing(tmp_path: Path) -> None:
 
 def test_the_same_bytes_take_nothing_away(tmp_path: Path) -> None:
     (tmp_path / "a.json").write_bytes(b"same")
-    with writing(Outputs()):
+    with check_outputs(Outputs()):
         write_atomically(tmp_path / "a.json", b"same")
 
 
 def test_pipes_and_devices_are_written_without_questions(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    with writing(Outputs()) as outputs:
+    with check_outputs(Outputs()) as outputs:
         for path in (tmp_path / "pipe", Path("/dev/null"), Path("/dev/stdout")):
             outputs.check(path)
 
 
 def test_all_files_or_none_are_written_together(tmp_path: Path) -> None:
     (tmp_path / "b").write_bytes(b"work")
-    with writing(Outputs()), pytest.raises(FileError):
+    with check_outputs(Outputs()), pytest.raises(FileError):
         write_together(tmp_path, {"a": b"1", "b": b"2"})
     assert sorted(p.name for p in tmp_path.iterdir()) == ["b"]
 

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from metagraph.formats import recovery
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data
-from metagraph.formats.project.journal import Journal, find_changes, journal_path
+from metagraph.formats.project.journal import Journal, find_changes, make_journal_path
 from metagraph.formats.project.replay import apply_change
 from metagraph.formats.project.text import read_text_data
 from metagraph.formats.recovery import read_journal
@@ -35,7 +35,7 @@ def edited(saved: Path, edit: Callable[[Project], Project]) -> tuple[Path, Proje
     """Edit the project in a file, and leave the edit in a journal; return that and the project."""
     before = read_project(saved)
     after = edit(before)
-    journal = Journal(journal_path(saved, "ab12"), saved)
+    journal = Journal(make_journal_path(saved, "ab12"), saved)
     journal.edit(before, after, "Edit")
     journal.close()
     return journal.path, after

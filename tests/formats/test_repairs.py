@@ -15,7 +15,7 @@ from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.fields import DataError
-from metagraph.formats.repairs import Repaired, repairs_of, reread
+from metagraph.formats.repairs import Repaired, list_repairs, reread
 from metagraph.formats.store import open_project, save_project
 from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph import edits
@@ -48,7 +48,7 @@ def imported(folder: Path, *names: str) -> Project:
 
 
 def by_name(project: Project, name: str) -> Repaired:
-    return next(r for r in repairs_of(project, project.clips) if r.repair.name == name)
+    return next(r for r in list_repairs(project, project.clips) if r.repair.name == name)
 
 
 def turned(project: Project, folder: Path, name: str, made: bool = False) -> Project:
@@ -66,7 +66,7 @@ def bind(toy: Any, tmp_path: Path) -> Path:
 
 def test_a_clip_without_repairs_has_none_to_leave_out(bind: Path) -> None:
     project = imported(bind, "b.glb")
-    assert repairs_of(project, project.clips) == []
+    assert list_repairs(project, project.clips) == []
     assert reread(project, bind, []).count == 0
     assert reread(project, bind, []).into(project) == project
 
@@ -112,15 +112,15 @@ def test_a_skipped_take_is_brought_in_keeps_the_others_numbers_and_can_go_again(
     write_glb(tmp_path / "a.glb", [still(walk, "Take 001"), walk, still(walk, "default"), nod])
     project = imported(tmp_path, "a.glb")
     assert [e.name for e in project.clips.values()] == ["walk", "nod"]
-    found = repairs_of(project, project.clips)
+    found = list_repairs(project, project.clips)
     assert [r.repair.words.split("'")[1] for r in found] == ["a", "a_2"]
     after = reread(project, tmp_path, [(found[1], False)]).into(project)
     assert [(e.name, e.take) for e in after.clips.values()] == [("walk", 0), ("nod", 1), ("a_2", 3)]
     path = tmp_path / "p.metagraph.yaml"
     save_project(after, path, path)
     assert open_project(path).project == after
-    assert [r.repair.made for r in repairs_of(after, project.clips)] == [True, False]
-    gone = reread(after, tmp_path, [(repairs_of(after, project.clips)[1], True)])
+    assert [r.repair.made for r in list_repairs(after, project.clips)] == [True, False]
+    gone = reread(after, tmp_path, [(list_repairs(after, project.clips)[1], True)])
     assert gone.into(after).clips == project.clips
     placed = edits.add_stance(after, "arms", "rest", [list(after.clips)[-1]])
     with pytest.raises(EditError, match="'a_2' is placed"):
@@ -178,10 +178,10 @@ def test_a_guessed_unit_can_be_centimetres_when_all_clips_change_alike(toy: Any,
         assert read_bvh(tmp_path / f"{name}.bvh").repairs == ()
         (tmp_path / f"{name}.bvh").write_text(metres(text))
     project = imported(tmp_path, "a.bvh", "b.bvh")
-    assert [r.repair.name for r in repairs_of(project, project.clips)] == [UNIT, UNIT]
-    one = reread(project, tmp_path, [(repairs_of(project, ["c1"])[0], False)])
+    assert [r.repair.name for r in list_repairs(project, project.clips)] == [UNIT, UNIT]
+    one = reread(project, tmp_path, [(list_repairs(project, ["c1"])[0], False)])
     assert one.count == 0 and [words[:4] for words in one.failures] == ["'a' "]
-    every = reread(project, tmp_path, [(r, False) for r in repairs_of(project, project.clips)])
+    every = reread(project, tmp_path, [(r, False) for r in list_repairs(project, project.clips)])
     after = every.into(project)
     assert not every.failures and after.skeleton is not None and project.skeleton is not None
     assert after.skeleton.height == pytest.approx(project.skeleton.height / 100, rel=1e-3)
@@ -228,7 +228,7 @@ def test_a_turned_axis_can_be_left_as_it_is(toy: Any, tmp_path: Path) -> None:
 def test_several_repairs_of_a_clip_are_left_out_one_by_one(toy: Any, tmp_path: Path) -> None:
     write_glb(tmp_path / "walk.glb", [bound(toy, "Take 001")])
     project = imported(tmp_path, "walk.glb")
-    assert {r.repair.name for r in repairs_of(project, ["c1"])} == {NAME, BIND_POSE}
+    assert {r.repair.name for r in list_repairs(project, ["c1"])} == {NAME, BIND_POSE}
     one = turned(project, tmp_path, NAME)
     assert one.clips["c1"].as_is == (NAME,) and one.clips["c1"].frames == project.clips["c1"].frames
     both = turned(one, tmp_path, BIND_POSE)

@@ -24,12 +24,12 @@ from metagraph.formats.imports import import_files
 from metagraph.formats.project.data import to_data
 from metagraph.formats.store import (
     SUFFIX,
-    absolute,
     load_motions,
+    make_path_relative,
+    make_paths_absolute,
     open_project,
     parse_project,
     read_project,
-    relative,
     relocate,
     save_project,
     to_text,
@@ -523,7 +523,7 @@ def test_relocating_takes_a_changed_file_of_the_same_name_from_the_likeliest_fol
 
 
 def test_a_project_never_saved_keeps_absolute_paths(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    bare = absolute(read_project(home / PATH), home)
+    bare = make_paths_absolute(read_project(home / PATH), home)
     for folder in (None, Path("/")):
         found = load_motions(bare, folder).project
         assert all(loaded(found))
@@ -546,8 +546,8 @@ def test_opening_tells_how_far_it_is(home: Path) -> None:
 
 
 def test_relative_paths_use_slashes_and_go_up(tmp_path: Path) -> None:
-    assert relative(tmp_path / "a" / "b c.glb", tmp_path / "x") == "../a/b c.glb"
-    assert relative(tmp_path / "a.glb", tmp_path) == "a.glb"
+    assert make_path_relative(tmp_path / "a" / "b c.glb", tmp_path / "x") == "../a/b c.glb"
+    assert make_path_relative(tmp_path / "a.glb", tmp_path) == "a.glb"
 
 
 @settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -579,5 +579,5 @@ def test_paths_are_made_absolute_as_each_by_itself_would_be(tmp_path: Path) -> N
     ]
     names += [(there / "clips" / "a.bvh").as_posix(), "/top.bvh", "clips//a.bvh", "./clips/a.bvh"]
     clips = {str(n): ClipEntry(str(n), "", name) for n, name in enumerate(names)}
-    found = absolute(Project(clips=clips), folder)
+    found = make_paths_absolute(Project(clips=clips), folder)
     assert [e.path for e in found.clips.values()] == [(folder / n).resolve().as_posix() for n in names]

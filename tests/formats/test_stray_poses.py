@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from metagraph.formats.stray_poses import stray_poses
+from metagraph.formats.stray_poses import find_stray_poses
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME, drop_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -123,7 +123,7 @@ def test_a_lone_frame_is_made_anew_between_its_neighbours_and_can_be_left(takes:
     [mended] = drop_stray_poses([broken])
     assert mended.frames == broken.frames and [r.name for r in mended.repairs] == [LONE_FRAME]
     assert f"frame {middle + 1} " in mended.repairs[0].words
-    near = rotation.angle_between(
+    near = rotation.measure_angle_between(
         mended.rotations[middle].astype(float), clip.rotations[middle].astype(float)
     )
     assert near.max() < np.radians(10)
@@ -137,8 +137,8 @@ def test_a_pose_that_the_nodes_hold_counts_as_a_bind_pose_where_the_reader_knows
     clip = quick(takes)
     odd = odd_pose(clip)
     take = made.joined(clip, [made.row(clip, odd, False, 0), made.whole(clip)])
-    assert stray_poses([take])[0].first == 0
-    assert stray_poses([take], [odd])[0].first == 1
+    assert find_stray_poses([take])[0].first == 0
+    assert find_stray_poses([take], [odd])[0].first == 1
 
 
 def odd_pose(clip: Clip) -> Pose:
@@ -154,7 +154,7 @@ def quick(takes: list[Clip]) -> Clip:
     """Return the take that turns most, at six times its speed."""
 
     def turned(clip: Clip) -> float:
-        return float(rotation.angle_between(clip.rotations[1:], clip.rotations[:-1]).sum(1).max())
+        return float(rotation.measure_angle_between(clip.rotations[1:], clip.rotations[:-1]).sum(1).max())
 
     clip = max(takes, key=turned)
     return replace(
@@ -169,5 +169,5 @@ def test_any_pose_that_a_step_far_above_all_others_leaves_is_stray(
     clip = next(c for c in takes if c.frames > 60)
     rows = [made.row(clip, odd_pose(clip), False, 0), made.whole(clip)]
     take = made.joined(clip, rows[::-1] if backwards else rows)
-    found = stray_poses([take])[0]
+    found = find_stray_poses([take])[0]
     assert (found.first, found.last) == ((0, 1) if backwards else (1, 0))

@@ -257,12 +257,17 @@ def _keypoints() -> dict[str, bytes]:
 def every_reader() -> dict[str, Fuzzed]:
     from app.features.lines.line_files import read_lines
     from app.project.pattern_files import read_patterns
-    from metagraph.common.pictures import picture_size
+    from metagraph.common.pictures import read_picture_size
     from metagraph.engines.reading import read_export
     from metagraph.formats.clips import read_clips
     from metagraph.formats.elan import read_elan
     from metagraph.formats.fbx.reader import read_fbx_clips
-    from metagraph.formats.gltf.reader import has_skinned_mesh, morph_targets, read_character, read_vrm_roles
+    from metagraph.formats.gltf.reader import (
+        has_skinned_mesh,
+        read_character,
+        read_morph_targets,
+        read_vrm_roles,
+    )
     from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.formats.language_files import read_pack
     from metagraph.formats.live_link_face import read_live_link
@@ -271,7 +276,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.formats.transcripts.reader import read_transcript
     from metagraph.generation.stored import read_card, read_model
     from metagraph.graph.requests import RequestError
-    from metagraph.live.osc_bytes import OscError, messages_of, pad_osc
+    from metagraph.live.osc_bytes import OscError, pad_osc, read_osc_messages
     from metagraph.playback.bml.reader import read_bml
     from metagraph.research.study.logs.log import read_log as read_log
     from metagraph.research.study.perceive.answers import read_answers
@@ -281,7 +286,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.speech.mouth_files.registry import read_mouth_file
 
     def drawn(path: Path) -> None:
-        for read in (read_character, read_vrm_roles, morph_targets, has_skinned_mesh):
+        for read in (read_character, read_vrm_roles, read_morph_targets, has_skinned_mesh):
             survives(read, path)
 
     def acclaim(path: Path) -> None:
@@ -297,12 +302,12 @@ def every_reader() -> dict[str, Fuzzed]:
 
     def osc(path: Path) -> None:
         try:
-            list(messages_of(path.read_bytes()))
+            list(read_osc_messages(path.read_bytes()))
         except OscError as error:
             assert str(error).isascii() and str(error).isprintable()
 
     def picture(path: Path) -> None:
-        size = picture_size(path.read_bytes())
+        size = read_picture_size(path.read_bytes())
         assert size is None or min(size) > 0
 
     def bml(path: Path) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from metagraph.common import budgets
-from metagraph.common.pictures import picture_size
+from metagraph.common.pictures import read_picture_size
 from metagraph.errors import FileError
 from metagraph.formats.clips import read_clips
 from metagraph.formats.elan import read_elan
@@ -226,7 +226,7 @@ def test_a_texture_of_kilobytes_is_not_unpacked_to_gigabytes(tmp_path: Path) -> 
     from preview.gpu import decode_texture
 
     data = png(30_000, 30_000)
-    assert picture_size(data) == (30_000, 30_000) and len(data) < 1 << 20
+    assert read_picture_size(data) == (30_000, 30_000) and len(data) < 1 << 20
     tracemalloc.start()
     assert decode_texture(data)[0] == (1, 1)
     assert tracemalloc.get_traced_memory()[1] < 8 << 20

@@ -33,8 +33,8 @@ MEMORY = 400 << 20  # bytes: a small file may cost this much at its very worst
 def sample() -> tuple[Clip, CharacterMesh]:
     names = ("Hips", "Spine", "Head", "LeftUpLeg", "LeftLeg", "LeftFoot")
     offsets = np.array([[0, 1, 0], [0, 0.4, 0], [0, 0.3, 0], [0.1, 0, 0], [0, -0.45, 0], [0, -0.45, 0]])
-    skeleton = Skeleton(names, np.array([-1, 0, 1, 0, 3, 4]), rotation.identity_rotations((6,)), offsets)
-    rotations = rotation.identity_rotations((6, 6))
+    skeleton = Skeleton(names, np.array([-1, 0, 1, 0, 3, 4]), rotation.make_identity_rotations((6,)), offsets)
+    rotations = rotation.make_identity_rotations((6, 6))
     rotations[:, 2] = rotation.from_axis_angle(np.tile([0, 1.0, 0], (6, 1)), 0.2 * np.arange(6))
     root = offsets[0] + 0.1 * np.arange(6)[:, None]
     clip = Clip(

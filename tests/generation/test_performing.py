@@ -30,7 +30,7 @@ from metagraph.generation.performing import (
 from metagraph.generation.poses import PoseError
 from metagraph.generation.sampler import hear_activity, sample_whole
 from metagraph.graph import anatomy, edits
-from metagraph.graph.generated import add_generated, origin
+from metagraph.graph.generated import add_generated, describe_origin
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
@@ -72,7 +72,7 @@ def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path)
     assert moves_skeleton(model, project)
     clip, notes = side_clip(model, project, hear_side(project, "v1", 0, tmp_path), Chance(3), "ada")
     assert clip.skeleton == project.skeleton and clip.duration == pytest.approx(6.0, abs=0.05) and not notes
-    base = anatomy.base_pose(project)
+    base = anatomy.get_base_pose(project)
     moved = {j for line in project_rig(project).lines for j in line}
     still = [j for j in range(len(project.skeleton)) if j not in moved]
     assert np.abs(clip.rotations[:, still] - base.rotations[still]).max() < 1e-6
@@ -88,7 +88,7 @@ def test_another_figure_gets_the_motion_retargeted_and_is_told(model, tmp_path):
     arm = anatomy.project_roles(project)["left_upper_arm"]
     assert np.ptp(clip.rotations[:, arm], axis=0).max() > 0.01
     feet = [j for j, part in enumerate(anatomy.project_parts(project)) if part == "legs"]
-    assert np.abs(clip.rotations[:, feet] - anatomy.base_pose(project).rotations[feet]).max() < 1e-6
+    assert np.abs(clip.rotations[:, feet] - anatomy.get_base_pose(project).rotations[feet]).max() < 1e-6
 
 
 def test_the_same_chance_gives_the_same_clip_and_pieces_do_not_matter(model):
@@ -165,10 +165,10 @@ def test_clips_say_who_made_them_and_still_do_when_read_again(sample, tmp_path):
     clip = moving(2.0)
     project = add_generated(sample, [("generated/a.glb", 0, "x", clip)], "anna", 7)
     entry = next(e for e in project.clips.values() if e.path == "generated/a.glb")
-    assert "'anna'" in origin(entry) and "seed 7" in origin(entry)
-    assert {origin(e) for e in project.clips.values() if e is not entry} == {""}
+    assert "'anna'" in describe_origin(entry) and "seed 7" in describe_origin(entry)
+    assert {describe_origin(e) for e in project.clips.values() if e is not entry} == {""}
     again = edits.add_clips(project, [("generated/a.glb", 0, "y", clip)])
-    assert origin(again.clips[entry.id]) == origin(entry)
+    assert describe_origin(again.clips[entry.id]) == describe_origin(entry)
 
 
 def test_models_are_offered_from_beside_the_project_and_its_folder(tmp_path, monkeypatch):

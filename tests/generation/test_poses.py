@@ -21,7 +21,7 @@ from metagraph.generation.poses import (
 )
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.mirror import mirror, pairs_of
+from metagraph.motion.mirror import find_joint_twins, mirror
 from metagraph.motion.skeleton import Pose, Skeleton
 from tests.bodies import column
 from tests.generation.makers import moving, rig, stance
@@ -75,7 +75,7 @@ def test_any_pose_comes_back():
     own = rig()
     turned = _turned(50)
     back = decode_poses(own, encode_rotations(own, turned))
-    assert np.degrees(rotation.angle_between(back, turned[:, list(own.joints)]).max()) < 0.01
+    assert np.degrees(rotation.measure_angle_between(back, turned[:, list(own.joints)]).max()) < 0.01
 
 
 def test_what_turns_between_two_joints_is_not_lost():
@@ -100,7 +100,7 @@ def test_what_turns_between_two_joints_is_not_lost():
     ends = [two.joints[two.roles.index(role)] for role in ("left_hand", "head")]
     there, again = (longer.globals(Pose(r, still))[0][:, ends] for r in (spread, back))
     assert np.abs(spread - back).max() > 0.1
-    assert np.degrees(rotation.angle_between(there, again).max()) < 0.01
+    assert np.degrees(rotation.measure_angle_between(there, again).max()) < 0.01
 
 
 def test_a_skeleton_without_hands_is_refused_in_words():
@@ -138,7 +138,7 @@ def test_clips_of_any_rate_are_at_the_same_places(fps):
     fine = resample_rotations(moving(4, seed=3, fps=1000.0), 25.0)
     own = resample_rotations(steady, 25.0)
     assert len(own) == 101
-    worst = np.degrees(rotation.angle_between(own, fine[: len(own)]).max())
+    worst = np.degrees(rotation.measure_angle_between(own, fine[: len(own)]).max())
     assert worst < 40 / fps**1.5
 
 
@@ -149,7 +149,7 @@ def test_a_quarter_turn_is_half_way_at_half_time():
     rotations[1, joint] = rotation.multiply(rotations[1, joint], rotation.from_axis_angle([0, 1, 0], 2.4))
     clip = Clip("turn", own.skeleton, 12.5, rotations, np.zeros((2, 1, 3)))
     seen = resample_rotations(clip, 25.0, (joint,))[:, 0]
-    assert rotation.angle_between(seen[0], seen[1]) == pytest.approx(1.2, abs=1e-5)
+    assert rotation.measure_angle_between(seen[0], seen[1]) == pytest.approx(1.2, abs=1e-5)
 
 
 def test_another_skeletons_clip_is_refused():
@@ -173,7 +173,7 @@ def test_joints_that_do_not_move_are_not_blown_up():
 
 def test_a_twins_twin_is_the_take():
     clip = moving(2)
-    pairs = pairs_of(clip.skeleton)
+    pairs = find_joint_twins(clip.skeleton)
     own = rig()
     there = mirror(clip, pairs)
     back = mirror(there, pairs)

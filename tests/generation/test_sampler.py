@@ -134,7 +134,7 @@ def test_it_goes_on_from_a_stance(kind):
     assert np.abs(own.rotations[0] - mean.rotations[0]).max() > 1e-5
     rig = MODELS[kind].rig
     others = [j for j in range(len(rig.skeleton)) if j not in rig.joints]
-    assert np.degrees(rotation.angle_between(own.rotations[:, others], first[others]).max()) < 0.05
+    assert np.degrees(rotation.measure_angle_between(own.rotations[:, others], first[others]).max()) < 0.05
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -9,11 +9,11 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.expand import (
     Size,
-    chain,
     count_machine_size,
+    find_chain,
     find_end_stance,
+    find_reachable,
     list_connections,
-    reachable,
 )
 from metagraph.graph.model import LAYERS, MetaGraph, Project
 
@@ -94,13 +94,13 @@ def test_the_shortest_chain_is_found_and_none_where_there_is_no_way(toy: Any) ->
     project = toy.project()
     graph = project.graphs["arms"]
     rest, up, far = (toy.id(project, name) for name in ("rest", "up", "far"))
-    assert chain(graph, rest, rest) == ()
-    assert chain(graph, rest, up) == (up,)
-    assert chain(graph, rest, far) == (up, far)
+    assert find_chain(graph, rest, rest) == ()
+    assert find_chain(graph, rest, up) == (up,)
+    assert find_chain(graph, rest, far) == (up, far)
     short = edits.place_clips(project, ["c1"], "arms", "transition", rest, far).graphs["arms"]
-    assert chain(short, rest, far) == (far,)
+    assert find_chain(short, rest, far) == (far,)
     cut = edits.remove_actions(project, [toy.id(project, "up to far")]).graphs["arms"]
-    assert chain(cut, rest, far) is None and chain(cut, far, rest) == (up, rest)
+    assert find_chain(cut, rest, far) is None and find_chain(cut, far, rest) == (up, rest)
 
 
 def test_of_two_ways_as_short_the_first_placed_is_taken(toy: Any) -> None:
@@ -108,15 +108,15 @@ def test_of_two_ways_as_short_the_first_placed_is_taken(toy: Any) -> None:
     rest, far, other = (toy.id(project, name) for name in ("rest", "far", "other"))
     project = edits.place_clips(project, ["c1"], "arms", "transition", rest, other)
     project = edits.place_clips(project, ["c1"], "arms", "transition", other, far)
-    assert chain(project.graphs["arms"], rest, far) == (toy.id(project, "up"), far)
+    assert find_chain(project.graphs["arms"], rest, far) == (toy.id(project, "up"), far)
 
 
 def test_what_can_be_reached_follows_transitions_whose_end_exists(toy: Any) -> None:
     project = toy.project()
     graph = project.graphs["arms"]
-    assert reachable(graph, toy.id(project, "rest")) == frozenset(graph.stances)
+    assert find_reachable(graph, toy.id(project, "rest")) == frozenset(graph.stances)
     lost = edits.update_actions(project, [toy.id(project, "rest to up")], end_stance="s999").graphs["arms"]
-    assert reachable(lost, toy.id(project, "rest")) == {toy.id(project, "rest")}
+    assert find_reachable(lost, toy.id(project, "rest")) == {toy.id(project, "rest")}
 
 
 def test_only_a_transition_ends_elsewhere(toy: Any) -> None:

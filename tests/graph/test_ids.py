@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from metagraph.graph import edits
 from metagraph.graph import timeline_edits as t
 from metagraph.graph.editing import performances as performance_edits
-from metagraph.graph.ids import derived_id, new_id
+from metagraph.graph.ids import derive_id, make_id
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.model import Project
@@ -75,8 +75,8 @@ def test_what_two_people_add_to_one_project_has_other_ids(toy: Any) -> None:
 def test_an_id_that_is_taken_is_not_made_again() -> None:
     project = two_clips()
     ident = next(iter(project.clips))
-    assert new_id(project, "c", "one.glb", 0) != ident == new_id(Project(), "c", "one.glb", 0)
-    assert new_id(Project(), "c", "one.glb", 0, more=[ident]) != ident
+    assert make_id(project, "c", "one.glb", 0) != ident == make_id(Project(), "c", "one.glb", 0)
+    assert make_id(Project(), "c", "one.glb", 0, more=[ident]) != ident
 
 
 def test_the_same_thing_made_a_thousand_times_has_a_thousand_ids() -> None:
@@ -98,9 +98,9 @@ def test_ids_of_old_files_stay_and_new_ones_are_made_beside_them(toy: Any) -> No
 
 @given(st.lists(st.text(), max_size=3), st.lists(st.text(), max_size=3))
 def test_other_things_have_other_ids(one: list[str], other: list[str]) -> None:
-    assert (derived_id("a", *one) == derived_id("a", *other)) == (one == other)
+    assert (derive_id("a", *one) == derive_id("a", *other)) == (one == other)
 
 
 @pytest.mark.parametrize("path", ["\ud800.glb", "", "a" * 10_000])
 def test_any_path_gives_an_id(path: str) -> None:
-    assert re.fullmatch("c[1-9][0-9]{8}", derived_id("c", path, 0))
+    assert re.fullmatch("c[1-9][0-9]{8}", derive_id("c", path, 0))

@@ -19,8 +19,8 @@ from metagraph.graph.life import (
     FacePose,
     Life,
     Manner,
-    limits,
-    manner,
+    get_manner,
+    list_limits,
     with_life,
 )
 from metagraph.graph.model import MODES, Project
@@ -41,7 +41,7 @@ def test_every_number_has_one_dial_and_every_dial_a_number(kind: Any, dials: tup
 
 @pytest.mark.parametrize(("kind", "dials"), TABLES)
 def test_dials_have_the_ranges_their_fields_accept(kind: Any, dials: tuple[Dial, ...]) -> None:
-    ranges = limits(kind)
+    ranges = list_limits(kind)
     for dial in dials:
         assert (dial.low, dial.high) == ranges[dial.name], dial.name
         assert 0 < dial.step < dial.high - dial.low
@@ -72,8 +72,8 @@ def test_a_blink_lasts_as_long_as_the_paper_says() -> None:
 
 def test_a_mode_has_the_manner_it_is_given_else_the_default() -> None:
     life = with_life(Life(), mode="talking", blinks=2.0)
-    assert manner(life, "talking") == msgspec.structs.replace(MANNERS["talking"], blinks=2.0)
-    assert manner(life, "idle") == MANNERS["idle"]
+    assert get_manner(life, "talking") == msgspec.structs.replace(MANNERS["talking"], blinks=2.0)
+    assert get_manner(life, "idle") == MANNERS["idle"]
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from metagraph.graph import edits
 from metagraph.graph.face.rig import find_face
 from metagraph.graph.model import Project
 from metagraph.graph.remembered import Remembered
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from tests.posing import body_of, rig
 
 
@@ -67,7 +67,7 @@ def test_poses_faces_and_phases_keep_no_closed_project(toy) -> None:
         body_of(project)
         find_face(project)
         for action in project.actions():
-            phases(project, action)
+            find_phases(project, action)
         return [ref(project), *(ref(entry.motion) for entry in project.clips.values())]
 
     seen = ask()

@@ -11,7 +11,7 @@ import pytest
 from metagraph.graph import requests as a
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as edits
-from metagraph.graph.request_text import holds_requests, paste_requests, request_text
+from metagraph.graph.request_text import holds_requests, paste_requests, write_request_text
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def two(toy):
 
 def test_gaps_are_kept_and_ids_are_new(two):
     project, first, second, _ = two
-    text = request_text(project, first, ("x", "y", "z"))
+    text = write_request_text(project, first, ("x", "y", "z"))
     made = paste_requests(project, second, text, 10.0)
     asks = made.project.performances[second].asks
     assert holds_requests(text) and len({x.id for x in asks}) == 4 and made.left_out == ()
@@ -41,7 +41,7 @@ def test_gaps_are_kept_and_ids_are_new(two):
 
 def test_another_project_s_action_is_found_by_its_name_and_what_is_missing_is_told(two):
     project, first, second, action = two
-    text = request_text(project, first, ("x", "z"))
+    text = write_request_text(project, first, ("x", "z"))
     renamed = text.replace(json.dumps(action.id), '"a999"')
     found = paste_requests(project, second, renamed, 0.0)
     assert found.project.performances[second].asks[1].action == action.id

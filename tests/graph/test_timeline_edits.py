@@ -29,7 +29,7 @@ def project():
 
 def test_a_range_ends_after_it_begins():
     project = t.change_timeline(Project(), "", range=(1.0, 3.0))
-    assert t.timeline_of(project, "").range == (1.0, 3.0)
+    assert t.get_timeline(project, "").range == (1.0, 3.0)
     with pytest.raises(EditError, match="range"):
         t.change_timeline(project, "", range=(3.0, 1.0))
 
@@ -38,9 +38,9 @@ def test_markers_stand_by_time_and_none_twice_at_a_time():
     project, late = t.add_marker(Project(), "p1", 5.0, "late")
     project, early = t.add_marker(project, "p1", 2.0)
     project, again = t.add_marker(project, "p1", 5.001)
-    assert again == late and [m.id for m in t.timeline_of(project, "p1").markers] == [early, late]
+    assert again == late and [m.id for m in t.get_timeline(project, "p1").markers] == [early, late]
     project = t.change_marker(project, "p1", early, at=9.0, name="last")
-    assert [m.name for m in t.timeline_of(project, "p1").markers] == ["late", "last"]
+    assert [m.name for m in t.get_timeline(project, "p1").markers] == ["late", "last"]
     assert t.remove_markers(project, "p1", {early, late}).timelines == {}, "defaults are not kept"
 
 
@@ -80,12 +80,13 @@ def test_closing_up_moves_what_follows_by_what_is_gone_before_it(project):
 
 def test_what_follows_a_request_goes_along_but_for_what_stays(project):
     kept = project[0].performances[project[1]]
-    assert edits.following(kept, ("n1",)) == ("n1", "g2", "s")
-    assert edits.following(kept, ("n1",), {"g2"}) == ("n1", "s")
+    assert edits.find_following_asks(kept, ("n1",)) == ("n1", "g2", "s")
+    assert edits.find_following_asks(kept, ("n1",), {"g2"}) == ("n1", "s")
 
 
 def test_requests_stand_on_the_lane_of_their_layer():
     lanes = [
-        t.lane_of(ask, Project()) for ask in (a.Gesture(), a.Nod(), a.Fidget(layer="body"), a.Say(text="so"))
+        t.find_lane(ask, Project())
+        for ask in (a.Gesture(), a.Nod(), a.Fidget(layer="body"), a.Say(text="so"))
     ]
     assert lanes == ["arms", "head", "body", "stage"]

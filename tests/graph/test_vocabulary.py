@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.vocabulary import Vocabulary, join_tokens, kinds_of_words, split_tokens
+from metagraph.graph.vocabulary import Vocabulary, join_tokens, make_word_vocabularies, split_tokens
 
 
 def made_of(phrases: list[str], text: str) -> bool:
@@ -81,10 +81,10 @@ def test_what_only_looks_like_a_phrase_is_none(phrase: str, text: str) -> None:
 
 
 def test_left_without_accents_an_answer_is_no_hesitation() -> None:
-    answers, pauses, either, both = kinds_of_words(("hã-hã", "tá", "eh"), ("ta", "éh"))
+    answers, pauses, either, both = make_word_vocabularies(("hã-hã", "tá", "eh"), ("ta", "éh"))
     assert not answers.made_of([("ta",)]) and pauses.made_of([("ta",)]) and either.made_of([("tá",)])
     assert not both.made_of([("ta",)]) and not pauses.made_of([("eh",)])
-    assert kinds_of_words(("嗯", "对"), ("嗯",))[3].made_of([split_tokens("嗯嗯嗯")])
+    assert make_word_vocabularies(("嗯", "对"), ("嗯",))[3].made_of([split_tokens("嗯嗯嗯")])
 
 
 def test_words_are_joined_as_they_are_written() -> None:

@@ -10,8 +10,8 @@ from typing import Any
 from metagraph.graph.model import Project
 from metagraph.suggest.flags import needs_look
 from metagraph.suggest.memory import Memory
-from metagraph.suggest.proposal import Proposal, Proposals, plain_stance_name
-from metagraph.suggest.propose import SOURCES, accept, propose, waiting
+from metagraph.suggest.proposal import Proposal, Proposals, simplify_stance_name
+from metagraph.suggest.propose import SOURCES, accept, list_waiting_clips, propose
 from metagraph.suggest.review import Review
 from metagraph.suggest.whole_body import CARRIER
 
@@ -229,7 +229,7 @@ def looked(
         review = review.settled(project)
         for name, value in fresh.items():
             memory = memory.corrected(project.clips[clip].name, name, value, names)
-        if fresh and (left := [c for c in review.found.proposals if c in set(waiting(project))]):
+        if fresh and (left := [c for c in review.found.proposals if c in set(list_waiting_clips(project))]):
             review = review.anew(_proposals(project, left, memory, propose_)).settled(project)
     for n in looks:
         out.setdefault(n, _state(project, truth, review, set(order), told))
@@ -251,7 +251,7 @@ def read(project: Project, truth: Truth, found: Proposals) -> dict[str, str]:
 
 def _alike(name: str) -> str:
     """Return a stance's name as a person compares it: 'Idle01' is 'idle 1'."""
-    return " ".join(str(int(w)) if w.isdecimal() else w for w in plain_stance_name(name).split())
+    return " ".join(str(int(w)) if w.isdecimal() else w for w in simplify_stance_name(name).split())
 
 
 def corrected(project: Project, truth: Truth, review: Review, clip: str) -> Review:

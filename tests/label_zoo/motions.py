@@ -10,7 +10,7 @@ import numpy as np
 from metagraph.formats.takes import drop_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.mirror import mirror, pairs_of
+from metagraph.motion.mirror import find_joint_twins, mirror
 from metagraph.motion.skeleton import Skeleton
 from tests.label_zoo.source import FPS, Array, joint, skeleton, turn
 
@@ -58,7 +58,7 @@ def recorded(clip: Clip, how: Recording, draw: np.random.Generator, loop: bool =
             [*draw.uniform(-2, 2, 1), 0, *draw.uniform(-2, 2, 1)]
         )
         turns[:, 0] = rotation.multiply(yaw, turns[:, 0])
-    out = Clip(clip.name, skeleton(), FPS, rotation.continuous(turns), root[:, None])
+    out = Clip(clip.name, skeleton(), FPS, rotation.make_continuous(turns), root[:, None])
     if how.trim:
         first, last = (int(x) for x in draw.integers(0, how.trim + 1, 2))
         out = out.trimmed(first, out.frames - last) if out.frames > 20 + first + last else out
@@ -67,7 +67,7 @@ def recorded(clip: Clip, how: Recording, draw: np.random.Generator, loop: bool =
 
 @cache
 def _pairs() -> tuple[int, ...]:
-    return pairs_of(skeleton())
+    return find_joint_twins(skeleton())
 
 
 def with_bind(clip: Clip, how: Recording) -> Clip:
@@ -80,7 +80,7 @@ def with_bind(clip: Clip, how: Recording) -> Clip:
         turns, places = np.concatenate([pose, turns]), np.concatenate([rest[None], places])
     if "after" in how.bind:
         turns, places = np.concatenate([turns, pose]), np.concatenate([places, rest[None]])
-    turns = rotation.continuous(np.asarray(turns, np.float64))
+    turns = rotation.make_continuous(np.asarray(turns, np.float64))
     return drop_stray_poses([replace(clip, rotations=turns, translations=places, weights=None)])[0]
 
 
@@ -154,7 +154,7 @@ def _sampled(clip: Clip, fps: float, warp: float, draw: np.random.Generator) -> 
     return replace(
         clip,
         fps=fps,
-        rotations=rotation.continuous(poses.rotations.astype(np.float64)),
+        rotations=rotation.make_continuous(poses.rotations.astype(np.float64)),
         translations=poses.translations[:, list(clip.translated)],
         weights=None,
     )

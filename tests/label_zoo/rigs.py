@@ -72,7 +72,7 @@ def on(clip: Clip, figure: Figure) -> Clip:
     return replace(
         clip,
         skeleton=rig.skeleton,
-        rotations=rotation.continuous(rotation.normalize(full)),
+        rotations=rotation.make_continuous(rotation.normalize(full)),
         translations=places,
         translated=translated,
     )
@@ -117,7 +117,7 @@ def _rig(figure: Figure) -> _Rig:
                 offsets[j] *= factors.get(limb, 1.0)
     legs = factors.get("legs", 1.0)
     offsets[0] *= legs
-    rests = np.repeat(rotation.identity_rotations()[None], len(source), 0)
+    rests = np.repeat(rotation.make_identity_rotations()[None], len(source), 0)
     if figure.rest in ("T", "I"):
         for side, way in (("Left", 1.0), ("Right", -1.0)):
             rests[joint(f"{side}UpperArm")] = turn("z", way * (42.0 if figure.rest == "T" else -45.0))
@@ -136,7 +136,7 @@ def _rig(figure: Figure) -> _Rig:
     mine = [place[int(parents[j])] if j else -1 for j in stay]
     rests, offsets = rests[stay], offsets[stay]
     axes = _axes(figure, mine, rests, offsets, draw)
-    over = np.where(np.array(mine)[:, None] >= 0, axes[mine], rotation.identity_rotations())
+    over = np.where(np.array(mine)[:, None] >= 0, axes[mine], rotation.make_identity_rotations())
     rests = rotation.multiply(rotation.conjugate(over), rotation.multiply(rests, axes))
     offsets[1:] = rotation.rotate_vectors(rotation.conjugate(over), offsets)[1:]
     names = [called(figure.names, source.names[j]) for j in stay]
@@ -144,7 +144,7 @@ def _rig(figure: Figure) -> _Rig:
     placed = np.arange(len(stay))
     if "root" in figure.extra:
         rows = [(n, p + 1, r, o) for n, p, r, o in rows]
-        rows.insert(0, (CONVENTIONS[figure.names].root, -1, rotation.identity_rotations(), np.zeros(3)))
+        rows.insert(0, (CONVENTIONS[figure.names].root, -1, rotation.make_identity_rotations(), np.zeros(3)))
         placed = placed + 1
     swinging = _add_extras(figure, rows, stay, placed)
     shape = Skeleton(
@@ -182,7 +182,7 @@ def _add_extras(
                     (
                         name,
                         at[f"{side}{part}"],
-                        rotation.identity_rotations(),
+                        rotation.make_identity_rotations(),
                         rows[at[f"{side}{below}"]][3] / 2,
                     )
                 )
@@ -191,7 +191,7 @@ def _add_extras(
                 (
                     f"weapon_{side[0]}",
                     at[f"{side}Hand"],
-                    rotation.identity_rotations(),
+                    rotation.make_identity_rotations(),
                     np.array([0, 0.05, 0]),
                 )
             )
@@ -199,7 +199,7 @@ def _add_extras(
     if "props" in figure.extra:
         above = at["Head"]
         for k in range(3):
-            rows.append((f"hair_{k}", above, rotation.identity_rotations(), np.array([0, 0.08, -0.04])))
+            rows.append((f"hair_{k}", above, rotation.make_identity_rotations(), np.array([0, 0.08, -0.04])))
             above = len(rows) - 1
             swinging.append(above)
     return tuple(swinging)
@@ -213,18 +213,18 @@ def _axes(
     if figure.axes == "random":
         return rotation.normalize(draw.normal(size=(count, 4)))
     if figure.axes == "bones":
-        out = np.repeat(rotation.identity_rotations()[None], count, 0)
+        out = np.repeat(rotation.make_identity_rotations()[None], count, 0)
         for j in range(count):
             below = [c for c in range(count) if parents[c] == j]
             along = offsets[below[0]] if below else None
             if along is not None and np.linalg.norm(along) > 1e-6:
-                out[j] = rotation.rotation_between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
+                out[j] = rotation.find_rotation_between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
             elif parents[j] >= 0:
                 out[j] = out[parents[j]]
         return out
     if figure.axes == "none":
-        whole = np.repeat(rotation.identity_rotations()[None], count, 0)
+        whole = np.repeat(rotation.make_identity_rotations()[None], count, 0)
         for j in range(count):
             whole[j] = rotation.multiply(whole[parents[j]], rests[j]) if parents[j] >= 0 else rests[j]
         return rotation.conjugate(whole)
-    return np.repeat(rotation.identity_rotations()[None], count, 0)
+    return np.repeat(rotation.make_identity_rotations()[None], count, 0)

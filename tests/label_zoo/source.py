@@ -123,5 +123,5 @@ def turn(axis: str, degrees: Any) -> Array:
 
 def clip_of(name: str, motion: Motion) -> Clip:
     """Return a motion as a clip."""
-    turns = rotation.continuous(rotation.normalize(motion.turns))
+    turns = rotation.make_continuous(rotation.normalize(motion.turns))
     return Clip(name, skeleton(), FPS, turns, motion.root[:, None])

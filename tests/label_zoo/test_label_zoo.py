@@ -200,7 +200,10 @@ def test_another_rig_of_the_same_size_moves_alike(figure: Figure) -> None:
 def test_rests_differ_between_rigs_of_the_same_motion() -> None:
     clip = clip_of("x", loop("hands_at_sides").motion)
     t, bare = (rigs.on(clip, Figure(rest="T", axes=axes)) for axes in ("world", "none"))
-    assert rotation.angle_between(bare.skeleton.rest_rotations, rotation.identity_rotations()).max() < 1e-6
+    assert (
+        rotation.measure_angle_between(bare.skeleton.rest_rotations, rotation.make_identity_rotations()).max()
+        < 1e-6
+    )
     hand = skeleton().index("LeftHand")
     for other in (t, bare):  # in a T-pose both have the hand at the height of the shoulder
         _, at = other.skeleton.globals(other.skeleton.rest)
@@ -252,12 +255,12 @@ def test_who_sits_sits() -> None:
 def test_steps_leave_turn_or_bend() -> None:
     draw = np.random.default_rng(1)
     made: dict[str, Motion] = {name: bodies.steps(name, Whole(), draw) for name in bodies.STEPS}
-    turned = rotation.angle_between(made["turn_place"].turns[0, 0], made["turn_place"].turns[-1, 0])
+    turned = rotation.measure_angle_between(made["turn_place"].turns[0, 0], made["turn_place"].turns[-1, 0])
     assert float(np.degrees(turned)) > 80
     assert np.ptp(made["squat"].root[:, 1]) > 0.25 and np.ptp(made["jump"].root[:, 1]) > 0.3
     for name in ("walk", "run"):
         leg = made[name].turns[:, skeleton().index("LeftUpperLeg")]
-        assert np.degrees(rotation.angle_between(leg, leg[:1]).max()) > 15
+        assert np.degrees(rotation.measure_angle_between(leg, leg[:1]).max()) > 15
 
 
 def test_wrong_names_are_those_of_other_clips_and_all_else_stays() -> None:
@@ -342,7 +345,7 @@ def test_bind_keys_are_taken_away_as_reading_takes_them_and_told() -> None:
         clip = entry.motion
         assert clip is not None and any("bind pose" in note for note in clip.notes), entry.name
         rest = clip.skeleton.rest_rotations
-        ends = [rotation.angle_between(clip.rotations[n], rest).max() for n in (0, -1)]
+        ends = [rotation.measure_angle_between(clip.rotations[n], rest).max() for n in (0, -1)]
         assert min(np.degrees(ends)) > 1, entry.name
 
 

@@ -41,7 +41,7 @@ def test_the_published_schemas_are_those_of_the_code() -> None:
 def test_every_request_and_its_fields_are_in_the_table() -> None:
     rows = page("requests")
     common = {"id", "at", "in", "priority", "told", "do"}
-    parts = messages.live_schema()["$defs"]
+    parts = messages.make_live_schema()["$defs"]
     for name in (ref["$ref"].rpartition("/")[2] for ref in parts["Request"]["anyOf"]):
         word = parts[name]["properties"]["do"]["enum"][0]
         row = next((line for line in rows.splitlines() if re.match(rf"\| (`\w+`, )?`{word}`[, ]", line)), "")
@@ -70,7 +70,9 @@ def test_what_synthesisers_tell_is_said_as_the_page_shows_it(sample: Project) ->
 def test_every_field_that_is_sent_back_is_described(part: str, title: str) -> None:
     text = section("replies", title) if title else page("poses")
     assert not [
-        field for field in messages.live_schema()["$defs"][part]["properties"] if f"`{field}`" not in text
+        field
+        for field in messages.make_live_schema()["$defs"][part]["properties"]
+        if f"`{field}`" not in text
     ]
 
 
@@ -79,7 +81,7 @@ def test_every_address_is_listed_and_understood() -> None:
     for word in re.findall(r"`/metagraph/(\w+)`", text):
         if word in ("pose", "root", "joint", "weight", "reply", "event", "json", "replies"):
             continue
-        assert osc.request(f"/metagraph/{word}", ("x",))["do"]
+        assert osc.read_osc_request(f"/metagraph/{word}", ("x",))["do"]
     known = re.findall(r'case ((?:"\w+"(?: \| )?)+):', Path(osc.__file__).read_text())
     assert not {
         word for words in known for word in re.findall(r"\w+", words) if f"`/metagraph/{word}`" not in text

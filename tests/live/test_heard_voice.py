@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from metagraph.live.heard_voice import RATE, SIZE, HeardVoice
-from metagraph.speech.clauses import segment_by_sound
-from metagraph.speech.pitch import pitch
+from metagraph.speech.clauses import find_segments_by_sound
+from metagraph.speech.pitch import measure_pitch
 from metagraph.speech.sound import analyse_sound, read_sound
 from metagraph.speech.soundtrack import resample_sound
 from metagraph.synthesis.extending.speech_so_far import SpeechNews
@@ -73,7 +73,7 @@ def test_frames_of_any_size_and_wild_numbers_do_no_harm() -> None:
 @pytest.mark.parametrize("name", ["bobby.wav", "mary.wav", "damon_set_test.wav"])
 def test_recorded_voices_begin_end_and_are_stressed_where_all_of_the_sound_tells(name: str) -> None:
     samples, rate = read_sound(REAL / name)
-    (clause,) = segment_by_sound((), pitch(samples, rate), analyse_sound(samples, rate), None)
+    (clause,) = find_segments_by_sound((), measure_pitch(samples, rate), analyse_sound(samples, rate), None)
     heard = np.concatenate([resample_sound(samples, rate, RATE), np.zeros(RATE, "f4")])
     news = [n for _, n in told(heard, 0.0)]
     begins = next(n.at for n in news if n.what == "begins") - 10

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES
-from metagraph.live.mcp import BROKEN, NO_METHOD, NO_PARAMETERS, NO_REQUEST, VERSIONS, McpLine, mcp_tools
+from metagraph.live.mcp import BROKEN, NO_METHOD, NO_PARAMETERS, NO_REQUEST, VERSIONS, McpLine, list_mcp_tools
 from metagraph.live.stdio import StdioLine
 
 HERE = Path(__file__).parent
@@ -63,7 +63,7 @@ def test_it_speaks_the_clients_revision_where_it_knows_it(session: Session, want
 
 def test_its_tools_are_what_runtimes_take_and_two_to_look(session: Session, sample: Project) -> None:
     told = session.called("tools/list")
-    assert told is not None and told["result"]["tools"] == json.loads(json.dumps(mcp_tools(sample)))
+    assert told is not None and told["result"]["tools"] == json.loads(json.dumps(list_mcp_tools(sample)))
     tools = {tool["name"]: tool for tool in told["result"]["tools"]}
     assert set(tools) == {*ENGINES, "status", "describe"}
     assert "greeting" in tools["gesture"]["inputSchema"]["properties"]["tags"]["items"]["enum"]

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from metagraph.graph import requests as a
 from metagraph.live.hub import Hub
 from metagraph.live.messages import HeardMessage, Hello, Poses, Reply, encode, read_live_request
-from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, request, texts_of
+from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, read_osc_request, read_osc_texts
 from metagraph.live.osc_bytes import pad_osc
 
 
 def said(address: str, *values: Any) -> Any:
-    found = read_live_request(encode(request(f"/metagraph/{address}", values)))
+    found = read_live_request(encode(read_osc_request(f"/metagraph/{address}", values)))
     assert isinstance(found, HeardMessage), found
     return found.message if found.after is None else found
 
@@ -72,7 +72,7 @@ def test_an_address_says_a_request(address: str, values: tuple[Any, ...], messag
 )
 def test_other_addresses_say_none(address: str) -> None:
     with pytest.raises(OscError):
-        request(address, ())
+        read_osc_request(address, ())
 
 
 @given(st.binary(max_size=200))
@@ -82,7 +82,7 @@ def test_any_datagram_is_taken_apart_or_refused(data: bytes) -> None:
         b"#bundle\0" + b"\0" * 7 + b"\1" + data,
         pad_osc("/metagraph/gesture") + pad_osc(",s") + data,
     ):
-        for _, text in texts_of(each):
+        for _, text in read_osc_texts(each):
             assert isinstance(text, bytes | str | bool | OscError)
 
 
@@ -91,7 +91,7 @@ def test_bundles_within_bundles_end() -> None:
     for _ in range(2000):
         inner = b"" if not data else len(data).to_bytes(4, "big") + data
         data = b"#bundle\0" + (1).to_bytes(8, "big") + inner
-    assert all(isinstance(text, OscError) for _, text in texts_of(data))
+    assert all(isinstance(text, OscError) for _, text in read_osc_texts(data))
 
 
 def test_senders_are_forgotten_when_they_are_silent_and_only_so_many_are_known() -> None:
@@ -131,38 +131,38 @@ def test_senders_are_forgotten_when_they_are_silent_and_only_so_many_are_known()
 def test_junk_is_told_in_words_and_never_shown(
     data: bytes, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
-    from metagraph.live.osc import texts_of
+    from metagraph.live.osc import read_osc_texts
     from metagraph.live.osc_bytes import OscError
 
-    for _, found in texts_of(data):
+    for _, found in read_osc_texts(data):
         if isinstance(found, OscError):
             assert str(found).isascii() and str(found).isprintable()
     assert capfd.readouterr() == ("", "") and not caplog.records
 
 
 def test_bundles_within_bundles_end_somewhere() -> None:
-    from metagraph.live.osc_bytes import OscError, messages_of, pad_osc
+    from metagraph.live.osc_bytes import OscError, pad_osc, read_osc_messages
 
     data = pad_osc("/a") + pad_osc(",")
     for _ in range(30):
         data = b"#bundle\0" + bytes(8) + len(data).to_bytes(4, "big") + data
     with pytest.raises(OscError, match="deep"):
-        list(messages_of(data))
+        list(read_osc_messages(data))
     many = b"#bundle\0" + bytes(8) + (b"\0\0\0\x08" + pad_osc("/a") + pad_osc(",")) * 1001
     with pytest.raises(OscError, match="more than"):
-        list(messages_of(many))
+        list(read_osc_messages(many))
 
 
 def test_values_of_every_type_are_taken_apart() -> None:
     from pythonosc.osc_message_builder import OscMessageBuilder
 
-    from metagraph.live.osc_bytes import messages_of
+    from metagraph.live.osc_bytes import read_osc_messages
 
     built = OscMessageBuilder("/x/é")
     values = [1, 2.5, "wört", b"abc", True, False, None, [3, ["four"]], ""]
     for value in values:
         built.add_arg(value)
-    assert list(messages_of(built.build().dgram)) == [("/x/é", values)]
+    assert list(read_osc_messages(built.build().dgram)) == [("/x/é", values)]
 
 
 @pytest.mark.parametrize(("ahead", "begins"), [(3.0, 3.0), (0.0, None), (-5.0, None), (None, None)])
@@ -175,7 +175,7 @@ def test_a_bundle_begins_when_its_time_tag_says(ahead: float | None, begins: flo
         pad_osc("/metagraph/status") + pad_osc(","),
     ]
     data = b"#bundle\0" + tag.to_bytes(8, "big") + b"".join(len(m).to_bytes(4, "big") + m for m in messages)
-    gesture, nod, status = (json.loads(text) for _, text in texts_of(data, now))  # type: ignore[arg-type]
+    gesture, nod, status = (json.loads(text) for _, text in read_osc_texts(data, now))  # type: ignore[arg-type]
     assert gesture.get("in") == begins and nod["in"] == 0.5 and "in" not in status
 
 
@@ -188,11 +188,11 @@ def message(address: str, value: Any) -> bytes:
 
 @pytest.mark.parametrize("value", [0, 0.0, False])
 def test_a_button_that_is_let_go_asks_for_nothing_and_is_told_so(value: Any) -> None:
-    ((_, let_go),) = texts_of(message("/metagraph/nod", value))
+    ((_, let_go),) = read_osc_texts(message("/metagraph/nod", value))
     assert isinstance(let_go, Reply) and let_go.state == "done" and "released button" in let_go.why
-    ((_, pressed),) = texts_of(message("/metagraph/nod", 1))
+    ((_, pressed),) = read_osc_texts(message("/metagraph/nod", 1))
     assert isinstance(pressed, bytes)
-    ((_, line),) = texts_of(message("/metagraph/say", value))
+    ((_, line),) = read_osc_texts(message("/metagraph/say", value))
     assert isinstance(line, bytes), "a line may be called 0"
 
 
@@ -200,5 +200,5 @@ def test_a_bundle_for_too_far_ahead_is_refused_with_a_reason() -> None:
     message = pad_osc("/metagraph/blink") + pad_osc(",")
     tag = (2_208_988_800 + 1000) << 32
     data = b"#bundle\0" + tag.to_bytes(8, "big") + len(message).to_bytes(4, "big") + message
-    ((_, found),) = texts_of(data, 500.0)
+    ((_, found),) = read_osc_texts(data, 500.0)
     assert isinstance(found, OscError) and "500 s ahead" in str(found) and "60 s" in str(found)

@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.graph.model import Project
 from metagraph.live.live_session import LiveSession
-from metagraph.playback.life.lips import mouth
+from metagraph.playback.life.lips import compute_mouth_shapes
 
 RATE = 16_000
 PIECE = 0.1  # seconds
@@ -49,12 +49,14 @@ def test_the_mouth_is_open_where_the_voice_is_and_shut_where_it_is_silent(
         assert reply.state == "planned", reply.why
     (speech,) = session.plan.track.speeches
     assert speech.end - speech.start == pytest.approx(3.0, abs=0.2)
-    shown = mouth(session.plan.track, {}, 0.03, speech.start + np.array([0.4, 0.6, 1.3, 1.6, 2.1, 2.4]))
+    shown = compute_mouth_shapes(
+        session.plan.track, {}, 0.03, speech.start + np.array([0.4, 0.6, 1.3, 1.6, 2.1, 2.4])
+    )
     assert shown is not None
     opened = shown.sum(1)
     assert (opened[[0, 1, 4, 5]] > 0.4).all(), opened
     assert (opened[[2, 3]] < 0.05).all(), opened
-    fine = mouth(session.plan.track, {}, 0.03, np.arange(0.9, 4.5, 1 / 240))
+    fine = compute_mouth_shapes(session.plan.track, {}, 0.03, np.arange(0.9, 4.5, 1 / 240))
     assert fine is not None and np.abs(np.diff(fine, axis=0)).max() < 0.2
 
 
@@ -68,7 +70,7 @@ def test_pieces_that_come_at_once_are_all_heard(sample: Project) -> None:
     session.receive(1, json.dumps(asks))
     assert session.tick(1.0).replies[-1].state == "planned"  # type: ignore[union-attr]
     (speech,) = session.plan.track.speeches
-    shown = mouth(session.plan.track, {}, 0.03, speech.start + np.array([0.2, 0.4, 0.6]))
+    shown = compute_mouth_shapes(session.plan.track, {}, 0.03, speech.start + np.array([0.2, 0.4, 0.6]))
     assert shown is not None and (shown.sum(1) > 0.4).all()
 
 

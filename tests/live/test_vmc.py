@@ -12,17 +12,17 @@ import pytest
 from pythonosc.osc_bundle import OscBundle
 
 from metagraph.graph import anatomy
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.live_session import LiveSession
-from metagraph.live.osc_bytes import messages_of
+from metagraph.live.osc_bytes import read_osc_messages
 from metagraph.live.server import LiveError, Options, Server, check_live_options
 from metagraph.live.vmc import LARGEST, VmcBody, name_unity_bone, split_bundles
 from metagraph.live.wire import exchange
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.motion.t_pose import t_pose
+from metagraph.motion.t_pose import make_t_pose
 
 
 class Receiver:
@@ -32,7 +32,7 @@ class Receiver:
         self.bones, self.blends, self.seen = {}, {}, []
 
     def hear(self, bundle: bytes) -> None:
-        for address, values in messages_of(bundle):
+        for address, values in read_osc_messages(bundle):
             self.seen.append(address)
             if address == "/VMC/Ext/Bone/Pos":
                 self.bones[values[0]] = np.array(values[1:4]), np.array(values[4:8])
@@ -70,7 +70,7 @@ def heard(body: VmcBody, pose: Pose, weights=None) -> Receiver:
 def t_pose_of(project: Project) -> Pose:
     roles = anatomy.project_roles(project)
     _, at = project.skeleton.globals(project.skeleton.rest)
-    return t_pose(project.skeleton, roles, axes_of(project.skeleton, roles, at)[0])
+    return make_t_pose(project.skeleton, roles, find_body_axes(project.skeleton, roles, at)[0])
 
 
 def test_in_a_t_pose_no_bone_is_turned_and_the_left_hand_is_at_unitys_left(sample):
@@ -174,9 +174,11 @@ def test_a_receiver_is_sent_sixty_poses_a_second(sample):
         transport.close()
 
     asyncio.run(play())
-    moments = {values[0] for data in got for address, values in messages_of(data) if address == "/VMC/Ext/T"}
+    moments = {
+        values[0] for data in got for address, values in read_osc_messages(data) if address == "/VMC/Ext/T"
+    }
     assert len(moments) >= 20
-    assert any(address == "/VMC/Ext/Bone/Pos" for address, _ in messages_of(got[0]))
+    assert any(address == "/VMC/Ext/Bone/Pos" for address, _ in read_osc_messages(got[0]))
 
 
 def test_a_port_that_cannot_be_is_refused():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.mimicry.gaze_reading import EVERY, FAR, HeadFollower, head_turn
+from metagraph.mimicry.gaze_reading import EVERY, FAR, HeadFollower, measure_head_turn
 from metagraph.mimicry.keypoint_layouts import PLACE
 from metagraph.mimicry.pose_measures import turn_about_y
 from metagraph.motion import rotation
@@ -31,15 +31,15 @@ def face(turn: float = 0.0, pitch: float = 0.0) -> np.ndarray:
 @pytest.mark.parametrize("turn", [-0.8, -0.3, 0.0, 0.5])
 @pytest.mark.parametrize("pitch", [-0.3, 0.0, 0.3])
 def test_turn_and_pitch_are_found_in_space_and_about_in_a_picture(turn: float, pitch: float) -> None:
-    assert head_turn(face(turn, pitch), np.ones(17), 3) == pytest.approx((turn, pitch), abs=1e-6)
+    assert measure_head_turn(face(turn, pitch), np.ones(17), 3) == pytest.approx((turn, pitch), abs=1e-6)
     flat = face(turn, pitch) * [1, 1, 0] * 700
-    assert head_turn(flat, np.ones(17), 2) == pytest.approx((turn, pitch), abs=0.2)
+    assert measure_head_turn(flat, np.ones(17), 2) == pytest.approx((turn, pitch), abs=0.2)
 
 
 def test_a_head_that_is_hidden_or_turned_away_says_nothing() -> None:
-    assert head_turn(face(), np.zeros(17), 3) is None
-    assert head_turn(face(2.0), np.ones(17), 3) is None
-    assert head_turn(np.zeros((17, 3)), np.ones(17), 2) is None
+    assert measure_head_turn(face(), np.zeros(17), 3) is None
+    assert measure_head_turn(face(2.0), np.ones(17), 3) is None
+    assert measure_head_turn(np.zeros((17, 3)), np.ones(17), 2) is None
 
 
 def test_the_gaze_follows_in_steps_and_not_too_often() -> None:

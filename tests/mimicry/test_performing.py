@@ -11,7 +11,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.editing.performances import add_performance
 from metagraph.graph.model import LAYERS, Project
 from metagraph.mimicry.keypoint_layouts import POINTS, KeypointTrack
-from metagraph.mimicry.performing import goals, mimic_performance, place_requests
+from metagraph.mimicry.performing import find_goal_stances, mimic_performance, place_requests
 from metagraph.playback.planning.extend_performance import answer_ask
 from metagraph.playback.planning.running_plan import plan_performance
 from sample_clips.make.sample_keypoints import SECONDS, View, played, seen, truth
@@ -124,15 +124,19 @@ def test_goals_are_where_the_character_is_or_goes_and_where_its_own_requests_lea
         next(s.id for s in sample.graphs["arms"].stances.values() if s.name == n)
         for n in ("on hips", "arms crossed")
     )
-    assert goals(plan, 0.0, "nobody")["arms"] == sample.graphs["arms"].start
+    assert find_goal_stances(plan, 0.0, "nobody")["arms"] == sample.graphs["arms"].start
     assert (
-        goals(plan, 0.0, "mine")["arms"]
-        == goals(plan, 3.2, "nobody")["arms"]
-        == goals(plan, 6.0, "mine")["arms"]
+        find_goal_stances(plan, 0.0, "mine")["arms"]
+        == find_goal_stances(plan, 3.2, "nobody")["arms"]
+        == find_goal_stances(plan, 6.0, "mine")["arms"]
         == hips
     )
-    assert goals(plan, 8.5, "mine")["arms"] == goals(plan, 11.0, "mine")["arms"] == crossed
-    assert set(goals(plan, 0.0, "mine")) == set(LAYERS)
+    assert (
+        find_goal_stances(plan, 8.5, "mine")["arms"]
+        == find_goal_stances(plan, 11.0, "mine")["arms"]
+        == crossed
+    )
+    assert set(find_goal_stances(plan, 0.0, "mine")) == set(LAYERS)
 
 
 def test_with_no_models_only_the_person_moves_the_character(somebody: Project) -> None:

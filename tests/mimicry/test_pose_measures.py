@@ -41,17 +41,17 @@ def figure() -> np.ndarray:
 
 
 def measures(points: np.ndarray, dims: int = 3, sure: np.ndarray = SURE) -> dict[str, np.ndarray]:
-    frame = m.frame_of(points, sure, dims, WIDTH)
+    frame = m.measure_body_frame(points, sure, dims, WIDTH)
     assert frame is not None
     return {layer: m.measure_pose(layer, points, frame) for layer in m.MEASURES}
 
 
 def test_points_that_make_no_torso_have_no_frame() -> None:
-    assert m.frame_of(figure(), np.zeros(17), 3, WIDTH) is None
-    assert m.frame_of(np.zeros((17, 3)), SURE, 3, WIDTH) is None
+    assert m.measure_body_frame(figure(), np.zeros(17), 3, WIDTH) is None
+    assert m.measure_body_frame(np.zeros((17, 3)), SURE, 3, WIDTH) is None
     lying = figure()[:, [1, 0, 2]]
-    assert m.frame_of(lying, SURE, 3, WIDTH) is None
-    assert m.frame_of(figure() * [1, -1, 1], SURE, 3, WIDTH) is None
+    assert m.measure_body_frame(lying, SURE, 3, WIDTH) is None
+    assert m.measure_body_frame(figure() * [1, -1, 1], SURE, 3, WIDTH) is None
 
 
 @given(st.floats(-3, 3), st.floats(0.01, 1000), st.floats(-100, 100), st.floats(-100, 100))
@@ -64,7 +64,7 @@ def test_place_size_and_heading_change_nothing_in_space(turn: float, size: float
 
 def test_the_heading_is_found_in_space() -> None:
     for angle in (-1.2, -0.3, 0.0, 0.7):
-        frame = m.frame_of(m.turn_about_y(figure(), angle), SURE, 3, WIDTH)
+        frame = m.measure_body_frame(m.turn_about_y(figure(), angle), SURE, 3, WIDTH)
         assert frame is not None and frame.heading == pytest.approx(angle, abs=1e-9)
         assert frame.size == pytest.approx(0.5) and frame.width == pytest.approx(WIDTH * np.cos(angle))
 
@@ -92,13 +92,13 @@ def test_a_picture_gives_the_first_two_of_three_when_facing_it() -> None:
 def test_without_hips_the_torso_is_guessed_from_shoulders_and_ears() -> None:
     sure = SURE.copy()
     sure[[PLACE["left_hip"], PLACE["right_hip"]]] = 0
-    frame = m.frame_of(figure(), sure, 2, WIDTH)
+    frame = m.measure_body_frame(figure(), sure, 2, WIDTH)
     assert frame is not None and frame.size == pytest.approx(0.5, rel=0.02) and tuple(frame.up) == (0, 1, 0)
     aside = m.turn_about_y(figure(), 0.9) * [1, 1, 0]  # the shoulders say less, the ears as much
-    turned = m.frame_of(aside, sure, 2, WIDTH)
+    turned = m.measure_body_frame(aside, sure, 2, WIDTH)
     assert turned is not None and turned.size == pytest.approx(0.5, rel=0.2)
     sure[[PLACE["left_ear"], PLACE["right_ear"]]] = 0
-    assert m.frame_of(figure(), sure, 2, WIDTH).size == pytest.approx(0.5)  # type: ignore[union-attr]
+    assert m.measure_body_frame(figure(), sure, 2, WIDTH).size == pytest.approx(0.5)  # type: ignore[union-attr]
 
 
 def test_a_measure_is_trusted_as_far_as_its_least_certain_point() -> None:
@@ -125,6 +125,6 @@ def test_straightening_takes_up_to_y_and_keeps_lengths(x: float, y: float, z: fl
 
 
 def test_lines_are_believed_less_the_more_somebody_is_turned_in_a_picture() -> None:
-    ahead, aside = (m.sharp_in_a_picture("head", turn) for turn in (0.0, 0.8))
+    ahead, aside = (m.weigh_in_picture("head", turn) for turn in (0.0, 0.8))
     assert np.allclose(ahead, m.SHARP["head"][:, :2])
     assert (aside <= ahead).all() and (aside[1:3, 1] < ahead[1:3, 1]).all()

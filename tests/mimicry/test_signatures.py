@@ -12,7 +12,7 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
 from metagraph.mimicry.keypoint_layouts import PLACE, POINTS
 from metagraph.mimicry.pose_measures import COUNT, SHARP
-from metagraph.mimicry.signatures import BodySignature, signatures
+from metagraph.mimicry.signatures import BodySignature, compute_signatures
 from tests.mimicry import people
 
 
@@ -35,7 +35,7 @@ def test_what_is_no_human_is_told_what_it_lacks(somebody: Project) -> None:
 
 def test_points_are_where_the_joints_are(somebody: Project) -> None:
     body = BodySignature(somebody)
-    base = anatomy.base_pose(somebody)
+    base = anatomy.get_base_pose(somebody)
     _, at = somebody.skeleton.globals(base)  # type: ignore[union-attr]
     points = body.points(base)
     assert (points[PLACE["left_wrist"]] == at[somebody.skeleton.index("LeftHand")]).all()  # type: ignore[union-attr]
@@ -52,7 +52,7 @@ def test_the_face_looks_ahead_and_turns_with_the_head(somebody: Project) -> None
 
 
 def test_every_stance_of_the_sample_is_told_from_the_others(sample: Project) -> None:
-    found, width = signatures(sample, BodySignature(sample))
+    found, width = compute_signatures(sample, BodySignature(sample))
     assert 0.6 < width < 0.8
     for layer, signature in found.items():
         assert signature.stances == tuple(sample.graphs[layer].stances)
@@ -65,8 +65,8 @@ def test_every_stance_of_the_sample_is_told_from_the_others(sample: Project) -> 
 
 
 def test_only_layers_that_are_wanted_and_have_loops_are_looked_at(somebody: Project) -> None:
-    assert set(signatures(somebody, BodySignature(somebody))[0]) == {"arms", "head"}
-    assert set(signatures(somebody, BodySignature(somebody), ["head"])[0]) == {"head"}
+    assert set(compute_signatures(somebody, BodySignature(somebody))[0]) == {"arms", "head"}
+    assert set(compute_signatures(somebody, BodySignature(somebody), ["head"])[0]) == {"head"}
 
 
 def test_stances_whose_clips_are_missing_are_left_out(somebody: Project) -> None:
@@ -75,6 +75,6 @@ def test_stances_whose_clips_are_missing_are_left_out(somebody: Project) -> None
         a for a in graph.actions.values() if a.kind == "stance" and graph.stances[a.stance].name == "hips"
     )
     clips = {**somebody.clips, lost.clip: replace(somebody.clips[lost.clip], motion=None)}
-    found, _ = signatures(replace(somebody, clips=clips), BodySignature(somebody))
+    found, _ = compute_signatures(replace(somebody, clips=clips), BodySignature(somebody))
     names = [graph.stances[s].name for s in found["arms"].stances]
     assert names == ["down", "raised", "ahead"]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
+from metagraph.motion.adopt import SkeletonMismatchError, adopt, describe_difference, measure_bone_difference
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
@@ -86,7 +86,7 @@ def with_tail() -> Skeleton:
 
 
 def test_the_motion_of_an_end_of_its_own_is_left_out_and_named() -> None:
-    assert difference(with_tail(), skeleton()) is None
+    assert describe_difference(with_tail(), skeleton()) is None
     adopted = adopt(clip(with_tail()), skeleton())
     assert adopted.skeleton == skeleton() and any("'tail'" in note for note in adopted.notes)
     assert not adopt(clip(skeleton()), with_tail()).notes
@@ -112,7 +112,9 @@ def bent(on: Skeleton) -> Clip:
 @pytest.mark.parametrize("more", [True, False])
 def test_a_joint_between_shared_ones_is_no_other_skeleton_and_all_stand_where_they_stood(more: bool) -> None:
     source, target = (with_chest(), skeleton()) if more else (skeleton(), with_chest())
-    assert difference(source, target) is None and bone_difference(source, target) == pytest.approx(0)
+    assert describe_difference(source, target) is None and measure_bone_difference(
+        source, target
+    ) == pytest.approx(0)
     before = bent(source)
     adopted = adopt(before, target)
     _, places = source.globals(before.poses())
@@ -138,18 +140,18 @@ def test_many_joints_between_shared_ones_are_another_skeleton() -> None:
         np.tile([0.0, 0, 0, 1], (11, 1)),
         np.array([offsets[o] for o in order]),
     )
-    assert "5 joints between" in str(difference(other, ours))
+    assert "5 joints between" in str(describe_difference(other, ours))
 
 
 def test_other_names_are_said_to_be_other_names() -> None:
     strange = skeleton(tuple(f"bone{i}" for i in range(6)))
-    assert re.search("'bone0'.*'hips'", difference(strange, skeleton()))
+    assert re.search("'bone0'.*'hips'", describe_difference(strange, skeleton()))
 
 
 def test_another_hierarchy_is_said_with_both_parents() -> None:
-    found = difference(skeleton(parents=[-1, 0, 1, 1, 2, 0]), skeleton())
+    found = describe_difference(skeleton(parents=[-1, 0, 1, 1, 2, 0]), skeleton())
     assert re.search("'hand'.*'head'.*'arm'", found)
-    found = difference(skeleton(), skeleton(parents=[-1, 0, 1, 1, -1, 0]))
+    found = describe_difference(skeleton(), skeleton(parents=[-1, 0, 1, 1, -1, 0]))
     assert re.search("'hand'.*'arm'.*nothing", found)
 
 
@@ -180,7 +182,7 @@ def test_both_signs_of_a_rotation_stay_on_one_side() -> None:
 def test_names_that_differ_by_what_all_joints_bear_are_the_same_skeleton(ours: str, theirs: str) -> None:
     project = skeleton(tuple(ours.format(n) for n in NAMES))
     own = clip(skeleton(tuple(theirs.format(n) for n in NAMES)))
-    assert difference(own.skeleton, project) is None
+    assert describe_difference(own.skeleton, project) is None
     adopted = adopt(own, project)
     assert adopted.skeleton is project
     np.testing.assert_array_equal(adopted.rotations, own.rotations)
@@ -189,16 +191,18 @@ def test_names_that_differ_by_what_all_joints_bear_are_the_same_skeleton(ours: s
 def test_a_prefix_does_not_make_another_tree_or_other_joints_the_same() -> None:
     project = skeleton()
     other = skeleton(tuple(f"x:{n}" for n in NAMES), [-1, 0, 1, 1, 0, 3])
-    assert "hangs on" in str(difference(other, project))
-    assert difference(skeleton(("x:hips", "x:spine", "x:tail"), PARENTS[:3]), project) is not None
+    assert "hangs on" in str(describe_difference(other, project))
+    assert describe_difference(skeleton(("x:hips", "x:spine", "x:tail"), PARENTS[:3]), project) is not None
 
 
 def test_how_far_bones_differ_is_told_by_the_longest_share() -> None:
     longer = OFFSETS.copy()
     longer[4] *= 1.05
-    assert bone_difference(skeleton(), skeleton()) == 0
-    assert bone_difference(skeleton(offsets=longer), skeleton()) == pytest.approx(0.05)
-    assert bone_difference(skeleton(tuple(f"x:{n}" for n in NAMES), offsets=longer), skeleton()) > 0.04
+    assert measure_bone_difference(skeleton(), skeleton()) == 0
+    assert measure_bone_difference(skeleton(offsets=longer), skeleton()) == pytest.approx(0.05)
+    assert (
+        measure_bone_difference(skeleton(tuple(f"x:{n}" for n in NAMES), offsets=longer), skeleton()) > 0.04
+    )
 
 
 def with_names(on: Skeleton, names: tuple[str, ...]) -> Skeleton:
@@ -209,11 +213,11 @@ def test_other_names_for_the_same_roles_at_rest_alike_are_the_same_character(toy
     vrm = with_names(toy.skeleton, tuple(name[0].lower() + name[1:] for name in toy.skeleton.names))
     wave = toy.clip("wave")
     there = replace(wave, skeleton=vrm)
-    assert difference(vrm, toy.skeleton) is None
+    assert describe_difference(vrm, toy.skeleton) is None
     adopted = adopt(there, toy.skeleton)
     assert adopted.skeleton is toy.skeleton and np.allclose(adopted.rotations, wave.rotations, atol=1e-6)
     odd = with_names(toy.skeleton, tuple(f"bone{n:02}" for n in range(len(toy.skeleton))))
-    assert difference(odd, toy.skeleton) is None, "the shape says which joint is which"
+    assert describe_difference(odd, toy.skeleton) is None, "the shape says which joint is which"
 
 
 @pytest.mark.parametrize("change", ["turned", "longer"])
@@ -226,7 +230,7 @@ def test_other_names_and_another_rest_are_another_character(toy: Any, change: st
     else:
         offsets[arm + 1] *= 1.5
     other = Skeleton(names, toy.skeleton.parents, turns, offsets)
-    assert "other names" in str(difference(other, toy.skeleton))
+    assert "other names" in str(describe_difference(other, toy.skeleton))
 
 
 def test_a_joint_of_the_clip_named_like_another_of_the_project_keeps_out_of_its_way(toy: Any) -> None:
@@ -237,6 +241,6 @@ def test_a_joint_of_the_clip_named_like_another_of_the_project_keeps_out_of_its_
         np.concatenate([toy.skeleton.rest_rotations, [[0, 0, 0, 1.0]]]),
         np.concatenate([toy.skeleton.rest_translations, [[0, 0, -0.3]]]),
     )
-    assert difference(tail, toy.skeleton) is None
+    assert describe_difference(tail, toy.skeleton) is None
     adopted = adopt(clip(tail), toy.skeleton)
     assert any("'Head (of the clip)'" in note for note in adopted.notes)

@@ -74,7 +74,7 @@ def test_a_control_far_away_makes_no_stand_in_of_a_body() -> None:
     far = Skeleton(
         (*skeleton.names, "goal"),
         np.append(skeleton.parents, 0),
-        rotation.identity_rotations((7,)),
+        rotation.make_identity_rotations((7,)),
         np.vstack([skeleton.rest_translations, [[0, 0, 40.0]]]),
     )
     assert explain_no_character(body(far, dict.fromkeys(range(6), 0.15))) is None

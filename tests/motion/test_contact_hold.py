@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph import anatomy, edits
-from metagraph.graph.clip_source import source_of
+from metagraph.graph.clip_source import get_source_clip
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.retiming import keep_hand
 from metagraph.motion.contact_hold import Contact, hold_hands
@@ -29,7 +29,7 @@ def beside(clip, hand, to):
 def test_a_hand_stays_where_it_is_and_goes_on_afterwards(toy, project, side):
     clip = toy.id(project, "wide")
     kept = keep_hand(project, clip, side, 0.6, 1.2)
-    before, after = source_of(project.clips[clip]), kept.clips[clip].motion
+    before, after = get_source_clip(project.clips[clip]), kept.clips[clip].motion
     (contact,) = kept.clips[clip].retime.contacts
     names = before.skeleton.names
     hand, to = names.index(contact.hand), names.index(contact.to)
@@ -46,7 +46,7 @@ def test_a_hand_stays_where_it_is_and_goes_on_afterwards(toy, project, side):
 def test_bones_keep_their_lengths_and_nothing_else_moves(toy, project):
     clip = toy.id(project, "wide")
     kept = keep_hand(project, clip, "right", 0.6, 1.2).clips[clip].motion
-    before = source_of(project.clips[clip])
+    before = get_source_clip(project.clips[clip])
     roles = anatomy.project_roles(project)
     arm = {roles[f"right_{part}"] for part in ("upper_arm", "lower_arm", "hand")}
     others = [j for j in range(len(before.skeleton)) if j not in arm]
@@ -55,7 +55,7 @@ def test_bones_keep_their_lengths_and_nothing_else_moves(toy, project):
 
 
 def test_what_is_no_limb_is_left_out(toy, project):
-    clip = source_of(project.clips[toy.id(project, "wide")])
+    clip = get_source_clip(project.clips[toy.id(project, "wide")])
     names = clip.skeleton.names
     assert hold_hands(clip, [Contact("no", "such", "joint", names[0], 0, 1)]) is clip
     assert hold_hands(clip, [Contact(names[0], names[0], names[0], names[0], 0, 1)]) is clip

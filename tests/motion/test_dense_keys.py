@@ -56,7 +56,7 @@ def test_a_sine_of_thirty_frames_a_second_is_eight_times_nearer_than_by_straight
     lines = (clip.translations[1:] + clip.translations[:-1]) / 2
     cubic = np.abs(clip.dense.translations - exact.translations)[1::2].max()
     assert cubic < np.abs(lines - exact.translations[1::2]).max() / 8
-    turns = rotation.angle_between(clip.dense.rotations[:, 0], exact.rotations[:, 0])
+    turns = rotation.measure_angle_between(clip.dense.rotations[:, 0], exact.rotations[:, 0])
     assert turns.max() < np.radians(0.15)
 
 

@@ -41,7 +41,7 @@ def test_whatever_the_tree_the_types_and_how_many_poses(
     skeleton = Skeleton(
         tuple(f"j{n}" for n in range(count)),
         np.array(tree),
-        rotation.identity_rotations((count,)),
+        rotation.make_identity_rotations((count,)),
         np.zeros((count, 3)),
     )
     turns = rotation.normalize(drawn.normal(size=(*shape, count, 4))).astype(types[0])

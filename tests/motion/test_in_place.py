@@ -47,7 +47,7 @@ def test_it_ends_where_it_began_whichever_way_it_went_and_turned(
     turns, places = ends(kept)
     np.testing.assert_allclose(places[0, :, (0, 2)], places[1, :, (0, 2)], atol=2e-3)
     assert measure_travel(kept, 0, 0.0, kept.duration) < 1e-3
-    assert rotation.angle_between(turns[0, :1], turns[1, :1]).max() < 0.01
+    assert rotation.measure_angle_between(turns[0, :1], turns[1, :1]).max() < 0.01
 
 
 def test_hips_that_rest_lying_turn_as_far_as_they_turn(toy: Any) -> None:
@@ -56,7 +56,9 @@ def test_hips_that_rest_lying_turn_as_far_as_they_turn(toy: Any) -> None:
     turned = clip.rotations.astype(float).copy()
     turned[:, 0] = rotation.multiply(over, turned[:, 0])
     lying = replace(clip, rotations=turned.astype(np.float32))
-    assert rotation.angle_between(keep_in_place(lying).rotations[-1], lying.rotations[-1]).max() < 0.01
+    assert (
+        rotation.measure_angle_between(keep_in_place(lying).rotations[-1], lying.rotations[-1]).max() < 0.01
+    )
 
 
 def test_what_is_not_the_way_stays(toy: Any) -> None:

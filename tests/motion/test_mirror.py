@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.mirror import mirror, pairs_of, swap_sides
+from metagraph.motion.mirror import find_joint_twins, mirror, swap_sides
 from metagraph.motion.skeleton import Pose, Skeleton
 from tests.zoo import ANIMALS
 
@@ -30,7 +30,7 @@ def random_clip(skeleton: Skeleton, seed: int, frames: int = 3, morphs: tuple[st
         "c",
         skeleton,
         30,
-        rotation.continuous(rotations),
+        rotation.make_continuous(rotations),
         translations,
         moved,
         morphs,
@@ -53,7 +53,7 @@ def twisted(skeleton: Skeleton, seed: int) -> Skeleton:
 
 def apart(a: Clip, b: Clip) -> tuple[float, float]:
     """Return how far two clips are apart: degrees, metres."""
-    turned = rotation.angle_between(a.rotations.astype(float), b.rotations.astype(float)).max()
+    turned = rotation.measure_angle_between(a.rotations.astype(float), b.rotations.astype(float)).max()
     return float(np.degrees(turned)), float(np.abs(a.poses().translations - b.poses().translations).max())
 
 
@@ -83,7 +83,7 @@ def test_any_text_can_be_swapped_without_losing_other_letters(text: str) -> None
 
 def test_every_joint_of_the_mannequin_has_its_twin_or_is_in_the_middle(sample: Any) -> None:
     skeleton = sample.skeleton
-    for joint, twin in enumerate(pairs_of(skeleton)):
+    for joint, twin in enumerate(find_joint_twins(skeleton)):
         assert skeleton.names[twin] == swap_sides(skeleton.names[joint])
 
 
@@ -92,12 +92,12 @@ def test_joints_whose_names_say_nothing_are_paired_by_where_they_are(toy: Any) -
     skeleton = Skeleton(
         names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations
     )
-    assert pairs_of(skeleton) == pairs_of(toy.skeleton)
+    assert find_joint_twins(skeleton) == find_joint_twins(toy.skeleton)
 
 
 def test_a_mirrored_pose_is_the_mirror_image(toy: Any) -> None:
     clip = random_clip(toy.skeleton, 1)
-    pairs = pairs_of(toy.skeleton)
+    pairs = find_joint_twins(toy.skeleton)
     _, before = toy.skeleton.globals(clip.poses())
     _, after = toy.skeleton.globals(mirror(clip, pairs).poses())
     np.testing.assert_allclose(after, before[:, pairs] * MIRROR, atol=1e-5)
@@ -110,7 +110,9 @@ def test_a_clip_mirrored_twice_is_itself_whatever_the_axes_of_its_bones(
 ) -> None:
     skeleton = twisted(toy.skeleton, seed)
     clip = random_clip(skeleton, seed, frames)
-    degrees, metres = apart(clip, mirror(mirror(clip, pairs_of(skeleton)), pairs_of(skeleton)))
+    degrees, metres = apart(
+        clip, mirror(mirror(clip, find_joint_twins(skeleton)), find_joint_twins(skeleton))
+    )
     assert degrees < 1e-4 and metres < 1e-6
 
 
@@ -118,7 +120,7 @@ def test_a_clip_mirrored_twice_is_itself_whatever_the_axes_of_its_bones(
 @given(st.integers(0, 2**31))
 def test_the_mirror_image_does_not_depend_on_the_axes_of_the_bones(toy: Any, seed: int) -> None:
     skeleton = twisted(toy.skeleton, seed)
-    pairs = pairs_of(skeleton)
+    pairs = find_joint_twins(skeleton)
     clip = random_clip(skeleton, seed)
     _, before = skeleton.globals(clip.poses())
     _, after = skeleton.globals(mirror(clip, pairs).poses())
@@ -131,7 +133,7 @@ def test_a_figure_that_looks_along_another_axis_is_mirrored_across_its_own_body(
     local[0], offsets[0] = rotation.multiply(turn, local[0]), rotation.rotate_vectors(turn, offsets[0])
     skeleton = Skeleton(toy.skeleton.names, toy.skeleton.parents, local, offsets)
     clip = random_clip(skeleton, 3)
-    pairs = pairs_of(skeleton)
+    pairs = find_joint_twins(skeleton)
     _, before = skeleton.globals(clip.poses())
     _, after = skeleton.globals(mirror(clip, pairs).poses())
     np.testing.assert_allclose(after, before[:, pairs] * np.array([1, 1, -1.0]), atol=1e-5)
@@ -141,13 +143,13 @@ def test_morph_targets_change_sides_too_and_those_without_a_twin_stay(toy: Any) 
     morphs = ("smile_L", "jaw", "smile_R", "wink_L")
     clip = random_clip(toy.skeleton, 2, morphs=morphs)
     assert clip.weights is not None
-    twin = mirror(clip, pairs_of(toy.skeleton))
+    twin = mirror(clip, find_joint_twins(toy.skeleton))
     assert twin.morphs == morphs and twin.weights is not None
     np.testing.assert_array_equal(twin.weights, clip.weights[:, [2, 1, 0, 3]])
 
 
 def test_a_clip_of_one_frame_is_mirrored(toy: Any) -> None:
-    assert mirror(random_clip(toy.skeleton, 4, 1), pairs_of(toy.skeleton)).frames == 1
+    assert mirror(random_clip(toy.skeleton, 4, 1), find_joint_twins(toy.skeleton)).frames == 1
 
 
 def test_pairs_of_another_skeleton_are_refused(toy: Any) -> None:
@@ -166,7 +168,7 @@ def longer(skeleton: Skeleton, name: str, by: float) -> Skeleton:
 def test_a_figure_with_one_long_arm_is_told_in_words(toy: Any) -> None:
     skeleton = longer(toy.skeleton, "LeftHand", 2)
     with pytest.raises(ValueError, match=r"'LeftHand' and 'RightHand' .*25 cm"):
-        mirror(random_clip(skeleton, 6), pairs_of(skeleton))
+        mirror(random_clip(skeleton, 6), find_joint_twins(skeleton))
 
 
 def with_joint(skeleton: Skeleton, name: str, parent: str, offset: tuple[float, float, float]) -> Skeleton:
@@ -182,11 +184,11 @@ def test_a_joint_on_one_side_alone_is_told_when_it_moves_and_left_at_rest_when_i
     skeleton = with_joint(toy.skeleton, "SwordRight", "RightHand", (0, -0.3, 0))
     clip = random_clip(skeleton, 7)
     with pytest.raises(ValueError, match="'SwordRight'"):
-        mirror(clip, pairs_of(skeleton))
+        mirror(clip, find_joint_twins(skeleton))
     rotations = clip.rotations.copy()
     rotations[:, -1] = rotation.IDENTITY
     clip = replace(clip, rotations=rotations, translated=(0,), translations=clip.translations[:, :1])
-    twin = mirror(clip, pairs_of(skeleton))
+    twin = mirror(clip, find_joint_twins(skeleton))
     np.testing.assert_allclose(twin.rotations[:, -1], clip.rotations[:, -1], atol=1e-6)
 
 
@@ -195,7 +197,7 @@ def test_a_head_beside_the_middle_is_told(toy: Any) -> None:
     offsets[toy.skeleton.index("Head"), 0] = 0.4
     skeleton = Skeleton(toy.skeleton.names, toy.skeleton.parents, toy.skeleton.rest_rotations, offsets)
     with pytest.raises(ValueError, match="'Head' is 40 cm"):
-        mirror(random_clip(skeleton, 8), pairs_of(skeleton))
+        mirror(random_clip(skeleton, 8), find_joint_twins(skeleton))
 
 
 def test_arms_posed_differently_at_rest_do_not_matter(toy: Any) -> None:
@@ -204,7 +206,7 @@ def test_arms_posed_differently_at_rest_do_not_matter(toy: Any) -> None:
     local[skeleton.index("LeftUpperArm")] = rotation.from_axis_angle(np.array([0, 0, 1.0]), -0.9)
     posed = Skeleton(skeleton.names, skeleton.parents, local, skeleton.rest_translations)
     clip = toy.clip("swing")
-    pairs = pairs_of(posed)
+    pairs = find_joint_twins(posed)
     on = replace(clip, skeleton=posed)
     _, before = posed.globals(on.poses())
     _, after = posed.globals(mirror(on, pairs).poses())
@@ -237,7 +239,7 @@ def test_clips_of_the_zoo_come_back_when_mirrored_twice_and_put_hands_where_the_
 
 def mirrored_twice(file: Path) -> None:
     for clip in read_clips(file)[:5]:
-        pairs = pairs_of(clip.skeleton)
+        pairs = find_joint_twins(clip.skeleton)
         twin = mirror(clip, pairs)
         degrees, metres = apart(clip, mirror(twin, pairs))
         assert degrees < 1e-4 and metres < 1e-6 * max(
@@ -255,11 +257,11 @@ def mirrored_twice(file: Path) -> None:
 def test_a_rest_pose_in_which_the_body_lies_across_the_middle_is_told(shared_data: Path) -> None:
     clip = read_clips(next(iter(sorted((shared_data / "bandai-namco-1").glob("*.bvh")))))[0]
     with pytest.raises(ValueError, match="beside the middle"):
-        mirror(clip, pairs_of(clip.skeleton))
+        mirror(clip, find_joint_twins(clip.skeleton))
 
 
 def test_the_rest_pose_is_its_own_mirror_image(toy: Any) -> None:
     rest = toy.skeleton.rest
     clip = Clip("rest", toy.skeleton, 30, rest.rotations[None], rest.translations[None, :1])
-    assert apart(clip, mirror(clip, pairs_of(toy.skeleton)))[1] < 1e-9
+    assert apart(clip, mirror(clip, find_joint_twins(toy.skeleton)))[1] < 1e-9
     assert isinstance(rest, Pose)

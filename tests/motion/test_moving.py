@@ -8,7 +8,7 @@ import pytest
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.moving import find_moved_parts
-from preview.framing import nearness
+from preview.framing import choose_nearness
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 SKELETON = mannequin_skeleton()
@@ -38,7 +38,7 @@ def clip(joint: str, degrees: float, walk: float = 0.0, frames: int = 9) -> Clip
 def test_a_clip_moves_the_parts_whose_joints_turn_and_is_seen_as_near(joint, degrees, walk, parts, near):
     made = clip(joint, degrees, walk)
     assert find_moved_parts(made) == parts
-    assert nearness(made) == near
+    assert choose_nearness(made) == near
 
 
 def test_one_frame_moves_nothing():

@@ -18,7 +18,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, propose_joint_map
 from metagraph.motion.own_contact import OwnContact
 from metagraph.motion.retarget import retarget
-from metagraph.motion.standing import standing_pose
+from metagraph.motion.standing import find_standing_pose
 from tests.retarget_measures import contact_errors, figures, motion, variant
 
 CLIPS = Path(__file__).parents[2] / "sample_clips" / "clips"
@@ -70,7 +70,7 @@ def test_hands_that_only_hang_beside_the_thighs_stay_where_they_are() -> None:
 def test_onto_itself_nothing_moves() -> None:
     clip = ours("hands_clasped__stance")
     off, on = both(clip, clip.skeleton)
-    assert np.degrees(rotation.angle_between(off.rotations, on.rotations).max()) < 0.3
+    assert np.degrees(rotation.measure_angle_between(off.rotations, on.rotations).max()) < 0.3
 
 
 def test_frames_far_from_a_touch_and_all_but_the_arms_stay_to_the_bit() -> None:
@@ -94,7 +94,7 @@ def test_hands_keep_their_turn_in_the_room() -> None:
     clip = ours("hands_clasped__stance")
     off, on = both(clip, variant(clip.skeleton))
     hands = [clip.skeleton.index(f"{side}Hand") for side in ("Left", "Right")]
-    turned = rotation.angle_between(*(x.skeleton.globals(x.poses())[0][:, hands] for x in (off, on)))
+    turned = rotation.measure_angle_between(*(x.skeleton.globals(x.poses())[0][:, hands] for x in (off, on)))
     assert np.degrees(turned.max()) < 0.2
 
 
@@ -140,6 +140,8 @@ def test_hands_of_a_real_talker_touch_on_another(shared_data: Path) -> None:
     for name in ("Idle01_ScratchChest01", "Idle01_Contemplate01", "Idle01_SqueezeHand01"):
         clip = read_clips(next((shared_data / "smartbody-brad").rglob(f"*{name}.bvh")))[0]
         for carried in (False, True):
-            gaps[carried].append(contact_errors(clip, target, standing_pose(clip), target.rest, carried)[0])
+            gaps[carried].append(
+                contact_errors(clip, target, find_standing_pose(clip), target.rest, carried)[0]
+            )
     off, on = (np.concatenate(some) for some in gaps)
     assert len(on) > 30 and np.median(on) < 0.5 * np.median(off)

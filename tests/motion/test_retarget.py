@@ -20,10 +20,10 @@ from hypothesis import strategies as st
 from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, propose_joint_map
+from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint, propose_joint_map
 from metagraph.motion.retarget import retarget
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import is_standing, standing_pose
+from metagraph.motion.standing import find_standing_pose, is_standing
 from tests.retarget_measures import round_trip
 from tests.thorough import some
 from tests.zoo import ANIMALS
@@ -173,21 +173,21 @@ def test_a_map_is_remembered_by_what_stays_the_same_in_every_file_and_size_of_a_
         *(getattr(toy.skeleton, f) for f in ("names", "parents", "rest_rotations", "rest_translations"))
     )
     assert (
-        fingerprint(same)
-        == fingerprint(toy.skeleton)
-        == fingerprint(rebuilt(toy.skeleton, scale=2, arms_down=1.0))
+        make_fingerprint(same)
+        == make_fingerprint(toy.skeleton)
+        == make_fingerprint(rebuilt(toy.skeleton, scale=2, arms_down=1.0))
     )
-    assert fingerprint(sample.skeleton) != fingerprint(toy.skeleton)
+    assert make_fingerprint(sample.skeleton) != make_fingerprint(toy.skeleton)
     names = (*toy.skeleton.names[:-1], "Renamed")
     renamed = Skeleton(
         names, toy.skeleton.parents, toy.skeleton.rest_rotations, toy.skeleton.rest_translations
     )
-    assert fingerprint(renamed) != fingerprint(toy.skeleton)
+    assert make_fingerprint(renamed) != make_fingerprint(toy.skeleton)
 
 
 def test_a_retargeted_clip_knows_what_it_was_brought_from(toy: Any, sample: Any) -> None:
     out = retarget(toy.clip("c"), sample.skeleton, propose_joint_map(toy.skeleton, sample.skeleton))
-    assert out.brought_from == fingerprint(toy.skeleton)
+    assert out.brought_from == make_fingerprint(toy.skeleton)
     assert toy.clip("c").brought_from == ""
 
 
@@ -231,7 +231,7 @@ def test_a_target_whose_rest_pose_does_not_stand_needs_a_pose_that_does(toy: Any
 def test_onto_itself_a_clip_stays_what_it_is(sample: Any) -> None:
     for entry in list(sample.clips.values())[::12]:
         out = retarget(entry.motion, sample.skeleton, propose_joint_map(sample.skeleton, sample.skeleton))
-        assert np.degrees(rotation.angle_between(out.rotations, entry.motion.rotations).max()) < 0.2
+        assert np.degrees(rotation.measure_angle_between(out.rotations, entry.motion.rotations).max()) < 0.2
         np.testing.assert_allclose(places(out), places(entry.motion), atol=1e-4)
 
 
@@ -261,7 +261,7 @@ def test_there_and_back_a_clip_is_itself_within_two_degrees(
     clip = gesture(toy.skeleton, seed)
     joint_map = propose_joint_map(toy.skeleton, target)
     back = retarget(retarget(clip, target, joint_map), toy.skeleton, joint_map.reversed)
-    assert np.degrees(rotation.angle_between(clip.rotations, back.rotations).mean()) < 2
+    assert np.degrees(rotation.measure_angle_between(clip.rotations, back.rotations).mean()) < 2
 
 
 @pytest.mark.nightly
@@ -458,7 +458,7 @@ def there_and_back(clip: Clip, other: Clip) -> None:
     """The mean of all joints, also of what cannot survive; and every joint in nearly all frames that can: an
     arm all but stretched out loses a little.
     """
-    degrees, fine = round_trip(clip, other.skeleton, standing_pose(clip), standing_pose(other))
+    degrees, fine = round_trip(clip, other.skeleton, find_standing_pose(clip), find_standing_pose(other))
     assert np.mean(list(degrees.values())) < 2
     worst = {r: float(np.percentile(a[fine[r]], 95)) if fine[r].any() else 0 for r, a in degrees.items()}
     assert max(worst.values()) < 4, max(worst, key=worst.__getitem__)
@@ -480,7 +480,7 @@ def test_hands_and_feet_of_the_zoo_keep_their_height_and_planted_feet_stay(
 
 def heights_and_feet(clip: Clip, other: Clip) -> None:
     joint_map = propose_joint_map(clip.skeleton, other.skeleton)
-    pose = standing_pose(other)
+    pose = find_standing_pose(other)
     out = retarget(clip, other.skeleton, replace(joint_map, contacts=False), target_pose=pose)
     ours, theirs = roles_of(joint_map.reversed, clip.skeleton), roles_of(joint_map, other.skeleton)
     before, after = places(clip), places(out)
@@ -492,7 +492,7 @@ def heights_and_feet(clip: Clip, other: Clip) -> None:
 
     def scale(*parts: str) -> float:
         return length(other.skeleton, pose, theirs, parts) / length(
-            clip.skeleton, standing_pose(clip), ours, parts
+            clip.skeleton, find_standing_pose(clip), ours, parts
         )
 
     arm, leg = scale("upper_arm", "lower_arm", "hand"), scale("upper_leg", "lower_leg", "foot")
@@ -510,7 +510,7 @@ def heights_and_feet(clip: Clip, other: Clip) -> None:
                 for p, r in ((before, ours), (after, theirs))
             ]
             facing = clip.skeleton.globals(clip.poses())[0][:, ours[foot]]
-            turning = np.degrees(rotation.angle_between(facing[1:], facing[:-1])) * clip.fps
+            turning = np.degrees(rotation.measure_angle_between(facing[1:], facing[:-1])) * clip.fps
             planted = (
                 (low[1:] - low.min() < 0.02) & (speeds[0] < 0.05) & (turning < 15)
             )  # a foot that pivots may shift

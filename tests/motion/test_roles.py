@@ -15,11 +15,11 @@ from metagraph.motion.roles import (
     PARTS,
     REQUIRED,
     ROLES,
-    body_parts,
+    assign_body_parts,
+    find_joint_sides,
+    find_missing_roles,
     find_roles,
     is_humanoid,
-    joint_sides,
-    missing_roles,
 )
 from metagraph.motion.skeleton import Skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
@@ -43,7 +43,7 @@ def tree(text: str) -> Skeleton:
     count = len(names)
     offsets = np.zeros((count, 3))
     offsets[:, 1] = 0.1
-    return Skeleton(tuple(names), np.array(parents), rotation.identity_rotations((count,)), offsets)
+    return Skeleton(tuple(names), np.array(parents), rotation.make_identity_rotations((count,)), offsets)
 
 
 def both(block: str, left: str, right: str) -> str:
@@ -166,12 +166,12 @@ def build(name: str) -> Skeleton:
 def test_every_naming_family_is_a_humanoid_with_its_limbs_in_order(name: str) -> None:
     skeleton = build(name)
     roles = find_roles(skeleton)
-    assert is_humanoid(roles), missing_roles(roles)
+    assert is_humanoid(roles), find_missing_roles(roles)
     for side in ("left", "right"):
         for chain in (("upper_arm", "lower_arm", "hand"), ("upper_leg", "lower_leg", "foot", "toes")):
             places = [roles[f"{side}_{r}"] for r in chain]
             assert all(a in skeleton.chain(b) for a, b in pairwise(places))
-            assert all(joint_sides(skeleton)[p] == side for p in places)
+            assert all(find_joint_sides(skeleton)[p] == side for p in places)
     trunk, neck, arm, leg, (left, _) = FAMILIES[name]
     assert skeleton.names[roles["hips"]] == trunk[0]
     assert skeleton.names[roles["spine"]] == trunk[1]
@@ -181,7 +181,7 @@ def test_every_naming_family_is_a_humanoid_with_its_limbs_in_order(name: str) ->
     foot = {"cmu": 3, "acclaim": 3}.get(name, 2)
     assert skeleton.names[roles["left_foot"]] == leg[foot].replace("@", left)
     assert skeleton.names[roles["left_upper_leg"]] == leg[foot - 2].replace("@", left)
-    parts = dict(zip(skeleton.names, body_parts(skeleton), strict=True))
+    parts = dict(zip(skeleton.names, assign_body_parts(skeleton), strict=True))
     assert parts[trunk[0]] == "legs" and parts[trunk[1]] == "spine" and parts[neck[0]] == "head"
     assert {parts[n.replace("@", left)] for n in arm} == {"arms"}
     assert {parts[n.replace("@", left)] for n in leg} == {"legs"}
@@ -269,14 +269,14 @@ def test_a_four_legged_animal_is_no_humanoid_and_its_missing_roles_say_why() -> 
     )
     roles = find_roles(skeleton)
     assert not is_humanoid(roles)
-    assert "left_hand" in missing_roles(roles)
+    assert "left_hand" in find_missing_roles(roles)
 
 
 @pytest.mark.parametrize("names", ["a", "a\n b\n  c\n", "左腕\n 頭\n", "L\n R\n  left\n", ".\n _\n  :\n"])
 def test_names_that_say_nothing_are_no_error(names: str) -> None:
     skeleton = tree(names)
     find_roles(skeleton)
-    assert len(body_parts(skeleton)) == len(joint_sides(skeleton)) == len(skeleton)
+    assert len(assign_body_parts(skeleton)) == len(find_joint_sides(skeleton)) == len(skeleton)
 
 
 def test_a_skeleton_without_telling_names_is_known_by_its_shape() -> None:
@@ -307,7 +307,7 @@ def with_twists(skeleton: Skeleton) -> Skeleton:
         if j in limbs:
             names.append(f"{j}.5")
             parents.append(parent)
-            rotations.append(rotation.identity_rotations())
+            rotations.append(rotation.make_identity_rotations())
             offsets.append(offset / 2)
             parent, offset = len(names) - 1, offset / 2
         place[j] = len(names)
@@ -403,12 +403,12 @@ def test_a_bare_stick_figure_is_known_by_its_shape_and_its_toes_tell_left_from_r
     parents = np.array([p for p, _ in places.values()])
     offsets = np.array([o for _, o in places.values()], float)
     names = tuple(f"n{i}" for i in range(len(places)))
-    roles = find_roles(Skeleton(names, parents, rotation.identity_rotations((len(places),)), offsets))
+    roles = find_roles(Skeleton(names, parents, rotation.make_identity_rotations((len(places),)), offsets))
     assert is_humanoid(roles)
     assert roles["left_hand"] == 8 and roles["right_foot"] == 19 and roles["head"] == 4
     offsets = offsets * np.array([1, 1, -1])
     assert (
-        find_roles(Skeleton(names, parents, rotation.identity_rotations((len(places),)), offsets))[
+        find_roles(Skeleton(names, parents, rotation.make_identity_rotations((len(places),)), offsets))[
             "right_hand"
         ]
         == 8
@@ -418,11 +418,11 @@ def test_a_bare_stick_figure_is_known_by_its_shape_and_its_toes_tell_left_from_r
 def test_the_mannequin_has_every_role_and_every_part() -> None:
     skeleton = mannequin_skeleton()
     assert set(find_roles(skeleton)) == set(ROLES)
-    parts = dict(zip(skeleton.names, body_parts(skeleton), strict=True))
+    parts = dict(zip(skeleton.names, assign_body_parts(skeleton), strict=True))
     assert set(parts.values()) == set(PARTS)
     assert parts["Jaw"] == parts["LeftBrow"] == parts["RightUpperLid"] == "face"
     assert parts["LeftThumb3"] == "arms" and parts["LeftToes"] == "legs" and parts["Hips"] == "legs"
-    sides = dict(zip(skeleton.names, joint_sides(skeleton), strict=True))
+    sides = dict(zip(skeleton.names, find_joint_sides(skeleton), strict=True))
     assert sides["LeftThumb3"] == "left" and sides["RightBrow"] == "right" and sides["Head"] == "centre"
 
 
@@ -465,15 +465,15 @@ def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: 
         pytest.importorskip("ufbx", reason="the extra metagraph-studio[fbx] is not installed")
     skeleton = read_clips(shared_data / file)[0].skeleton
     roles = find_roles(skeleton)
-    assert is_humanoid(roles), missing_roles(roles)
+    assert is_humanoid(roles), find_missing_roles(roles)
     hips, hand, arm = PEOPLE[file]
     named = {role: skeleton.names[joint] for role, joint in roles.items()}
     assert (named["hips"], named["left_hand"], named["left_upper_arm"]) == (hips, hand, arm)
     assert named["right_hand"] != named["left_hand"]
-    parts = body_parts(skeleton, roles)
+    parts = assign_body_parts(skeleton, roles)
     assert set(parts) >= {"legs", "spine", "arms", "head"}
-    assert joint_sides(skeleton, roles).count("left") == pytest.approx(
-        joint_sides(skeleton, roles).count("right"), abs=3
+    assert find_joint_sides(skeleton, roles).count("left") == pytest.approx(
+        find_joint_sides(skeleton, roles).count("right"), abs=3
     )
 
 
@@ -481,12 +481,12 @@ def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: 
 def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str, Path], name: str) -> None:
     skeleton = read_clips(zoo_files[name])[0].skeleton
     roles = find_roles(skeleton)
-    assert is_humanoid(roles), missing_roles(roles)
+    assert is_humanoid(roles), find_missing_roles(roles)
     named = {role: skeleton.names[joint] for role, joint in roles.items()}
     wanted = {role: ANIMALS[name].called(role) for role in ROLES if role in FIGURE and role in REQUIRED}
     assert {role: named[role] for role in wanted} == wanted
-    assert {"legs", "spine", "arms", "head"} <= set(body_parts(skeleton, roles))
-    assert joint_sides(skeleton, roles).count("left") == joint_sides(skeleton, roles).count("right")
+    assert {"legs", "spine", "arms", "head"} <= set(assign_body_parts(skeleton, roles))
+    assert find_joint_sides(skeleton, roles).count("left") == find_joint_sides(skeleton, roles).count("right")
 
 
 @pytest.mark.parametrize("file", ["bird-animations.glb", "quad-creature-animations.glb"])

@@ -24,7 +24,7 @@ vector = arrays(np.float64, 3, elements=st.floats(-10, 10, allow_subnormal=False
 
 
 def same(a: np.ndarray, b: np.ndarray, within: float = 1e-6) -> bool:
-    return bool(np.all(rotation.angle_between(a, b) < within))
+    return bool(np.all(rotation.measure_angle_between(a, b) < within))
 
 
 def test_a_zero_quaternion_becomes_the_identity() -> None:
@@ -51,7 +51,7 @@ def test_identity_and_half_turns_of_both_signs_survive_every_round_trip(q: np.nd
 def test_both_signs_of_a_quaternion_are_the_same_rotation(q: np.ndarray) -> None:
     assert np.allclose(rotation.to_matrix(q), rotation.to_matrix(-q))
     assert np.allclose(rotation.log(q), rotation.log(-q)) or np.linalg.norm(rotation.log(q)) > 3.14
-    assert rotation.angle_between(q, -q) < 1e-7
+    assert rotation.measure_angle_between(q, -q) < 1e-7
 
 
 @given(unit, vector)
@@ -99,14 +99,14 @@ def test_euler_angles_are_applied_outermost_first() -> None:
 
 @given(unit, st.floats(-1, 2), st.floats(-1, 2))
 def test_powers_add_up_and_go_the_short_way(q: np.ndarray, a: float, b: float) -> None:
-    whole = rotation.angle_between(q, rotation.IDENTITY)
+    whole = rotation.measure_angle_between(q, rotation.IDENTITY)
     if whole > 3.1:
         return  # half a turn has no short way
     both = rotation.multiply(rotation.scale_rotation(q, a), rotation.scale_rotation(q, b))
     assert same(both, rotation.scale_rotation(q, a + b), 1e-6)
-    assert rotation.angle_between(rotation.scale_rotation(q, 0.5), rotation.IDENTITY) == pytest.approx(
-        whole / 2, abs=1e-6
-    )
+    assert rotation.measure_angle_between(
+        rotation.scale_rotation(q, 0.5), rotation.IDENTITY
+    ) == pytest.approx(whole / 2, abs=1e-6)
 
 
 @given(arrays(np.float64, 3, elements=st.floats(-1.8, 1.8)))
@@ -128,25 +128,29 @@ def test_blends_start_and_end_where_they_should_and_keep_unit_length(a: np.ndarr
 
 @given(unit, unit, st.floats(0, 1))
 def test_slerp_turns_at_constant_speed(a: np.ndarray, b: np.ndarray, w: float) -> None:
-    whole = rotation.angle_between(a, b)
+    whole = rotation.measure_angle_between(a, b)
     if whole < 3.1:
-        assert rotation.angle_between(a, rotation.slerp(a, b, w)) == pytest.approx(w * whole, abs=1e-6)
+        assert rotation.measure_angle_between(a, rotation.slerp(a, b, w)) == pytest.approx(
+            w * whole, abs=1e-6
+        )
 
 
 def test_blending_takes_the_shorter_arc_whatever_the_signs() -> None:
     a, b = rotation.from_axis_angle([0, 0, 1], 0.1), -rotation.from_axis_angle([0, 0, 1], 0.5)
     for blend in (rotation.nlerp, rotation.slerp):
-        assert rotation.angle_between(blend(a, b, 0.5), rotation.from_axis_angle([0, 0, 1], 0.3)) < 1e-6
+        assert (
+            rotation.measure_angle_between(blend(a, b, 0.5), rotation.from_axis_angle([0, 0, 1], 0.3)) < 1e-6
+        )
 
 
 def test_neighbours_are_brought_to_the_same_side() -> None:
     q = np.tile(rotation.from_axis_angle([1, 0, 0], 0.3), (5, 2, 1))
     q[1, 0] *= -1
     q[3:, 1] *= -1
-    out = rotation.continuous(q)
+    out = rotation.make_continuous(q)
     assert np.all(np.einsum("...i,...i->...", out[1:], out[:-1]) > 0)
     assert np.array_equal(out[0], q[0])
-    assert np.array_equal(rotation.continuous(q[:1]), q[:1])
+    assert np.array_equal(rotation.make_continuous(q[:1]), q[:1])
 
 
 @given(vector, vector)
@@ -154,18 +158,18 @@ def test_the_turn_between_two_directions_takes_one_to_the_other(a: np.ndarray, b
     if np.linalg.norm(a) < 1e-3 or np.linalg.norm(b) < 1e-3:
         return
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
-    assert np.allclose(rotation.rotate_vectors(rotation.rotation_between(a, b), a), b, atol=1e-4)
+    assert np.allclose(rotation.rotate_vectors(rotation.find_rotation_between(a, b), a), b, atol=1e-4)
 
 
 @pytest.mark.parametrize("a", [[1.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0], [0.6, 0.8, 0]])
 def test_opposite_directions_are_half_a_turn_apart(a: list[float]) -> None:
-    turn = rotation.rotation_between(a, -np.array(a))
+    turn = rotation.find_rotation_between(a, -np.array(a))
     assert np.allclose(rotation.rotate_vectors(turn, a), -np.array(a), atol=1e-9)
 
 
 @pytest.mark.parametrize("shape", [(), (1,), (0,), (2, 3), (4, 0, 2)])
 def test_every_function_keeps_leading_dimensions(shape: tuple[int, ...]) -> None:
-    q, v, w = rotation.identity_rotations(shape), np.zeros((*shape, 3)), np.zeros(shape)
+    q, v, w = rotation.make_identity_rotations(shape), np.zeros((*shape, 3)), np.zeros(shape)
     assert rotation.multiply(q, q).shape == (*shape, 4)
     assert rotation.rotate_vectors(q, v).shape == (*shape, 3)
     assert rotation.from_euler(v, "ZXY").shape == (*shape, 4)
@@ -173,7 +177,7 @@ def test_every_function_keeps_leading_dimensions(shape: tuple[int, ...]) -> None
     assert rotation.from_matrix(rotation.to_matrix(q)).shape == (*shape, 4)
     assert rotation.exp(rotation.log(q)).shape == (*shape, 4)
     assert rotation.nlerp(q, q, w).shape == rotation.slerp(q, q, w).shape == (*shape, 4)
-    assert rotation.angle_between(q, q).shape == shape
+    assert rotation.measure_angle_between(q, q).shape == shape
 
 
 def test_leading_dimensions_broadcast() -> None:
@@ -186,6 +190,6 @@ def test_leading_dimensions_broadcast() -> None:
 
 
 def test_single_precision_stays_single() -> None:
-    q = rotation.identity_rotations((3,), np.float32)
+    q = rotation.make_identity_rotations((3,), np.float32)
     assert rotation.multiply(q, q).dtype == rotation.nlerp(q, q, np.float32(0.5)).dtype == np.float32
     assert rotation.conjugate(q).dtype == rotation.to_matrix(q).dtype == np.float32

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.motion import rotation
-from metagraph.motion.skeleton import Pose, Skeleton, unique_names
+from metagraph.motion.skeleton import Pose, Skeleton, make_names_unique
 
 REST = [0.0, 0, 0, 1]
 
@@ -94,7 +94,7 @@ def test_forward_kinematics_of_a_bent_arm() -> None:
     bent = np.tile(rotation.from_axis_angle([0, 0, 1], np.pi / 2), (3, 1))
     r, p = arm.globals(Pose(bent, arm.rest_translations))
     assert np.allclose(p, [[0, 1, 0], [-1, 1, 0], [-1, 0, 0]], atol=1e-12)
-    assert rotation.angle_between(r[2], rotation.from_axis_angle([0, 0, 1], 1.5 * np.pi)) < 1e-7
+    assert rotation.measure_angle_between(r[2], rotation.from_axis_angle([0, 0, 1], 1.5 * np.pi)) < 1e-7
 
 
 @given(st.data())
@@ -126,4 +126,11 @@ def test_a_pose_is_picked_along_its_leading_dimensions() -> None:
 
 
 def test_names_are_made_unique_and_never_empty() -> None:
-    assert unique_names(["a", "a", " ", "", "a_2", "a"]) == ("a", "a_2", "joint", "joint_2", "a_2_2", "a_3")
+    assert make_names_unique(["a", "a", " ", "", "a_2", "a"]) == (
+        "a",
+        "a_2",
+        "joint",
+        "joint_2",
+        "a_2_2",
+        "a_3",
+    )

@@ -23,7 +23,7 @@ from metagraph.playback.continuity import (
     MOST_WAY,
     RATE,
     ContinuityLaw,
-    blending,
+    find_blending,
     find_moved_joints,
     measure_added_moves,
 )
@@ -102,7 +102,7 @@ def test_blends_are_told_from_clips_that_play(sample: Project) -> None:
     empty: dict[Layer, LayerPlan] = {layer: LayerPlan(layer) for layer in LAYERS}
     plan = Plan(SEED, 20.0, {**empty, "arms": LayerPlan("arms", cues=(cue,))})
     times = np.array([cue.start + 0.01, (cue.start + cue.end) / 2, cue.end - 0.01])
-    assert blending(sample, plan, times).tolist() == [True, False, True]
+    assert find_blending(sample, plan, times).tolist() == [True, False, True]
 
 
 def test_seams_of_loops_and_of_what_repeats_are_blends(toy: Any) -> None:
@@ -114,10 +114,10 @@ def test_seams_of_loops_and_of_what_repeats_are_blends(toy: Any) -> None:
     empty: dict[Layer, LayerPlan] = {layer: LayerPlan(layer) for layer in LAYERS}
     plan = Plan(SEED, 4.0, {**empty, loop.layer: LayerPlan(loop.layer, rests=(rest,))})
     times = np.array([0.1, 0.5, 0.85, 0.95, 1.1, 1.7, 1.9])  # its second round begins at 0.8 s
-    assert blending(project, plan, times).tolist() == [False, False, True, True, False, True, False]
+    assert find_blending(project, plan, times).tolist() == [False, False, True, True, False, True, False]
     cue = Cue(loop, 0.0, 3.0, 0.0, 0.0, 0.0, "", "", "", cycle_from=0.0, cycle_to=1.0)
     plan = Plan(SEED, 4.0, {**empty, loop.layer: LayerPlan(loop.layer, cues=(cue,))})
-    assert blending(project, plan, times + 0.5).tolist() == [False, True, True, False, False, True, True]
+    assert find_blending(project, plan, times + 0.5).tolist() == [False, True, True, False, False, True, True]
 
 
 def blended(project: Project, plan: Plan) -> float:

@@ -8,15 +8,15 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.graph.requests import Gesture, Go, Play, request_from
+from metagraph.graph.requests import Gesture, Go, Play, make_request
 from metagraph.playback.plan import Cue, MetaRequest, Plan, Report
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 
 def stroke_of(project: Project, cue: Cue) -> float:
-    return cue.start + phases(project, cue.action).stroke - cue.entry
+    return cue.start + find_phases(project, cue.action).stroke - cue.entry
 
 
 def planned(project: Project, *asks: Any, end: float = 40.0) -> Plan:
@@ -88,7 +88,7 @@ def test_the_retraction_is_cut_for_the_next_stroke_and_not_where_nothing_follows
     cut, second = cue_of(plan, "a"), cue_of(plan, "b")
     assert cut.end < cut.start + (alone.end - alone.start) - 0.3
     assert cut.blend_out >= 0.4
-    found = phases(sample, cut.action)
+    found = find_phases(sample, cut.action)
     assert cut.end - cut.blend_out >= cut.start + found.stroke_end - cut.entry - 1e-9  # after its own stroke
     assert second.start >= cut.end and stroke_of(sample, second) == pytest.approx(6.6)
     usual = planned(sample, beat("a", 5.0, None), beat("b", 6.6, None))
@@ -150,7 +150,7 @@ def test_what_a_model_began_is_left_for_a_stroke(sample: Project) -> None:
 
 
 def test_poses_up_to_now_stay_when_something_is_left_early(sample: Project) -> None:
-    from tests.posing import pose_at
+    from tests.posing import compute_pose_at
 
     plan = hear_asks(sample, Plan(3, 0.0), 0.0, [], 60.0)
     cue = next(c for c in plan.layers["arms"].cues if c.action.kind == "fidget" and c.end - c.start > 2.0)
@@ -158,7 +158,7 @@ def test_poses_up_to_now_stay_when_something_is_left_early(sample: Project) -> N
     after = hear_asks(sample, plan, now, [Gesture(id="a", stroke=now + 1.2, late=0.0)], 60.0)
     assert after.layers["arms"].cues != plan.layers["arms"].cues
     for t in (now - 0.3, now, now + sample.settings.lookahead - 1e-6):
-        a, b = pose_at(plan, sample, t), pose_at(after, sample, t)
+        a, b = compute_pose_at(plan, sample, t), compute_pose_at(after, sample, t)
         assert a.rotations == pytest.approx(b.rotations, abs=1e-6)
 
 
@@ -213,7 +213,7 @@ def test_plans_without_the_field_stay_as_they_were(sample: Project) -> None:
 @pytest.mark.parametrize("late", [-1, 601, "soon"])
 def test_a_lateness_that_is_none_is_refused_by_name(late: object) -> None:
     with pytest.raises(ValueError, match="late"):
-        request_from({"do": "gesture", "late": late})
+        make_request({"do": "gesture", "late": late})
 
 
 def test_cooling_down_refuses_what_may_be_late_too(sample: Project) -> None:

@@ -15,7 +15,13 @@ from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import PARTS, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan, play_state_alone, route
+from metagraph.playback.manual_playback import (
+    Fire,
+    make_manual_plan,
+    plan_link_alone,
+    play_state_alone,
+    route,
+)
 from tests.posing import manual_morphs_at, manual_pose_at
 
 
@@ -55,7 +61,7 @@ def starts(plan: Any) -> list[float]:
 
 def apart(a: Pose, b: Pose) -> float:
     return max(
-        float(rotation.angle_between(a.rotations, b.rotations).max()),
+        float(rotation.measure_angle_between(a.rotations, b.rotations).max()),
         float(np.abs(a.translations - b.translations).max()),
     )
 
@@ -131,7 +137,7 @@ def test_both_clips_run_on_in_a_crossfade(drawn: Any) -> None:
     )
     assert apart(manual_pose_at(plan, project, 1.5001), alone(project, "up loop", 0.5001)) < 1e-3
     steps = manual_pose_at(plan, project, np.linspace(0.9, 1.6, 71))
-    assert float(rotation.angle_between(steps.rotations[1:], steps.rotations[:-1]).max()) < 0.08, (
+    assert float(rotation.measure_angle_between(steps.rotations[1:], steps.rotations[:-1]).max()) < 0.08, (
         "nothing jumps"
     )
 
@@ -236,8 +242,8 @@ def test_joints_that_a_state_does_not_move_stay_in_the_base_pose(drawn: Any) -> 
     plan, base = make_manual_plan(project, 5), alone(project, "rest loop", 0.0)
     pose = manual_pose_at(plan, project, 0.6)
     left, right = (project.skeleton.index(n) for n in ("LeftUpperArm", "RightUpperArm"))  # type: ignore[union-attr]
-    assert float(rotation.angle_between(pose.rotations[left], base.rotations[left])) < 1e-5
-    assert float(rotation.angle_between(pose.rotations[right], base.rotations[right])) > 0.2
+    assert float(rotation.measure_angle_between(pose.rotations[left], base.rotations[left])) < 1e-5
+    assert float(rotation.measure_angle_between(pose.rotations[right], base.rotations[right])) > 0.2
 
 
 def test_a_joint_that_a_state_moves_in_part_goes_so_far_from_the_base_pose(drawn: Any) -> None:
@@ -246,8 +252,8 @@ def test_a_joint_that_a_state_moves_in_part_goes_so_far_from_the_base_pose(drawn
     soft = m.update_states(project, [ids["rest wave rt"]], joint_weights=(("RightUpperArm", 0.5),))
     pose = manual_pose_at(make_manual_plan(soft, 5), soft, 0.6)
     arm = project.skeleton.index("RightUpperArm")  # type: ignore[union-attr]
-    far = rotation.angle_between(base.rotations[arm], whole.rotations[arm])
-    assert rotation.angle_between(base.rotations[arm], pose.rotations[arm]) == pytest.approx(
+    far = rotation.measure_angle_between(base.rotations[arm], whole.rotations[arm])
+    assert rotation.measure_angle_between(base.rotations[arm], pose.rotations[arm]) == pytest.approx(
         far / 2, abs=1e-4
     )
 
@@ -282,13 +288,13 @@ def test_a_state_is_looked_at_alone_and_a_link_with_what_is_around_it(drawn: Any
     only = play_state_alone(project, ids["rest long"])
     assert only.end == pytest.approx(2.4)
     project = m.update_links(project, [ids["rest long>rest loop"]], blend=0.4)
-    link = link_alone(project, ids["rest long>rest loop"])
+    link = plan_link_alone(project, ids["rest long>rest loop"])
     assert [p.action.name for p in link.layers["arms"].played] == ["rest long", "rest loop"]
     assert (link.layers["arms"].played[0].entry, link.layers["arms"].played[1].start) == (
         pytest.approx(1.0),
         1.0,
     )
-    assert [p.action.name for p in link_alone(project, ids["any>rest long"]).layers["arms"].played] == [
+    assert [p.action.name for p in plan_link_alone(project, ids["any>rest long"]).layers["arms"].played] == [
         "rest loop",
         "rest long",
     ]

@@ -9,20 +9,25 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.engine_machine import animations, clip_as_played, count_unrepeated, machines
+from metagraph.engines.engine_machine import (
+    count_unrepeated,
+    list_machines,
+    make_animations,
+    make_clip_as_played,
+)
 from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
 from metagraph.formats.project.data import decode_action, encode_action
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
-from metagraph.graph.requests import Play, request_from
+from metagraph.graph.requests import Play, make_request
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Cue, MetaRequest, Plan
 from metagraph.playback.planner import extend_plan, make_plan
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.posing.cue_times import cue_seconds
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 RATE = 120.0
 CYCLE = 0.4  # seconds of the toy's clip that repeat here: from 0.3 on, amid its swing
@@ -80,7 +85,7 @@ def test_a_hold_makes_it_go_on_where_no_duration_is_asked_for(
 
 
 def test_a_request_for_an_action_says_how_long(project: Project, wave: str) -> None:
-    ask = request_from({"do": "action", "action": wave, "at": 1.0, "duration": 4.0})
+    ask = make_request({"do": "action", "action": wave, "at": 1.0, "duration": 4.0})
     cue = played(plan_performance(project, [ask], 9.0, idle=False))
     assert cue.end - cue.start == pytest.approx(10 * CYCLE)
 
@@ -99,7 +104,7 @@ def test_its_first_stroke_lands_as_asked(project: Project, wave: str) -> None:
     action = project.action(wave)
     assert action is not None
     cue = played(planned(project, asked(wave, stroke=5.0)))
-    stroke = phases(project, action).stroke
+    stroke = find_phases(project, action).stroke
     assert cue.start + stroke - cue.entry == pytest.approx(5.0)
     assert cue.clip_seconds(5.0) == pytest.approx(stroke)
 
@@ -193,8 +198,8 @@ def test_an_export_says_that_it_repeats_and_nothing_of_what_plays_once(
 
 
 def test_engines_that_cannot_repeat_get_an_animation_of_the_usual_length(project: Project, wave: str) -> None:
-    built = machines(project)
-    made = {clip.name: clip for clip in animations(project, built)}
+    built = list_machines(project)
+    made = {clip.name: clip for clip in make_animations(project, built)}
     state = next(s for m in built for s in m.states if s.action.id == wave)
     clip = made[state.name]
     assert state.seconds == pytest.approx(2.0) == pytest.approx(clip.duration)
@@ -206,10 +211,10 @@ def test_a_clip_that_is_written_alone_shows_its_movement_as_often_as_it_plays(
     project: Project, wave: str
 ) -> None:
     entry = project.clips[project.action(wave).clip]  # type: ignore[union-attr]
-    shown = clip_as_played(project, entry)
+    shown = make_clip_as_played(project, entry)
     assert shown is not None and shown.duration == pytest.approx(2.0, abs=1 / shown.fps)
     other = next(e for e in project.clips.values() if e.id != entry.id)
-    assert other.motion is not None and clip_as_played(project, other) is other.motion.dense
+    assert other.motion is not None and make_clip_as_played(project, other) is other.motion.dense
 
 
 def test_a_clip_that_another_action_uses_too_is_written_whole_and_counted(
@@ -219,7 +224,7 @@ def test_a_clip_that_another_action_uses_too_is_written_whole_and_counted(
     assert action is not None and count_unrepeated(project) == 0
     twice = edits.place_clips(project, [action.clip], "arms", "gesture", toy.id(project, "up"))
     entry = twice.clips[action.clip]
-    assert entry.motion is not None and clip_as_played(twice, entry) is entry.motion.dense
+    assert entry.motion is not None and make_clip_as_played(twice, entry) is entry.motion.dense
     assert count_unrepeated(twice) == 1
 
 

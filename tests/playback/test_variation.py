@@ -17,8 +17,8 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
 from metagraph.playback.planner import extend_plan, make_plan
-from metagraph.playback.timing.phases import phases
-from tests.posing import pose_at
+from metagraph.playback.timing.phases import find_phases
+from tests.posing import compute_pose_at
 
 
 @pytest.fixture
@@ -146,7 +146,7 @@ def test_a_stroke_lands_where_it_is_asked_for(sample: Project) -> None:
     for seed in range(12):
         request = MetaRequest("x", "arms", "gesture", 2.0, stroke=4.25)
         cue = make_plan(sample, 20, [request], seed, idle=False).layers["arms"].cues[0]
-        assert cue.clip_seconds(4.25) == pytest.approx(phases(sample, cue.action).stroke)
+        assert cue.clip_seconds(4.25) == pytest.approx(find_phases(sample, cue.action).stroke)
 
 
 def test_a_stroke_that_is_nearly_too_late_cuts_the_preparation_and_one_too_late_comes_late(toy: Any) -> None:
@@ -163,7 +163,7 @@ def test_a_stroke_that_is_nearly_too_late_cuts_the_preparation_and_one_too_late_
 
 def test_a_hold_lasts_as_long_as_asked_and_the_rest_keeps_its_speed(sample: Project) -> None:
     action = next(x for x in sample.actions() if x.name == "open_palms_bt_01" and x.limb == "both")
-    found, (start, end) = phases(sample, action), sample.span(action)
+    found, (start, end) = find_phases(sample, action), sample.span(action)
     natural = found.relax - found.stroke_end
     assert natural > 0.2
     for asked in (natural, 1.0, 4.0):
@@ -182,7 +182,7 @@ def test_a_hold_lasts_as_long_as_asked_and_the_rest_keeps_its_speed(sample: Proj
 
 def test_a_hold_is_never_hurried_beyond_twice_its_speed(sample: Project) -> None:
     action = next(x for x in sample.actions() if x.name == "open_palms_bt_01")
-    natural = phases(sample, action).relax - phases(sample, action).stroke_end
+    natural = find_phases(sample, action).relax - find_phases(sample, action).stroke_end
     cue = (
         make_plan(
             sample, 20, [MetaRequest("x", "arms", "gesture", 1.0, action=action.id, hold=0.0)], idle=False
@@ -204,7 +204,7 @@ def test_a_held_pose_does_not_stop_dead_or_jump(sample: Project) -> None:
         )
         cue = plan.layers["arms"].cues[-1]
         times = np.arange(cue.start - 0.5, cue.end + 0.5, 1 / 60)
-        _, places = sample.skeleton.globals(pose_at(plan, sample, times, alive=False))
+        _, places = sample.skeleton.globals(compute_pose_at(plan, sample, times, alive=False))
         return float(np.linalg.norm(np.diff(places[:, hands], axis=0), axis=-1).max() * 60)
 
     assert fastest(3.0) <= fastest(None) * 1.05

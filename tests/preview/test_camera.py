@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from preview.camera import Camera, close_up, frame_upper_body, frame_whole_figure
+from preview.camera import Camera, close_up, make_upper_body_camera, make_whole_figure_camera
 
 angles = st.floats(-3.0, 3.0)
 
@@ -91,12 +91,12 @@ def test_a_point_behind_the_eye_is_not_seen():
 
 
 def test_the_presets_aim_where_they_say():
-    whole = frame_whole_figure((np.array([-0.5, 0, -0.2]), np.array([0.5, 1.7, 0.2])), 16 / 9)
+    whole = make_whole_figure_camera((np.array([-0.5, 0, -0.2]), np.array([0.5, 1.7, 0.2])), 16 / 9)
     face = close_up(np.array([0, 1.6, 0.02]), 1.7, 1.0)
-    half = frame_upper_body(np.array([0, 1.6, 0.02]), 1.7, 1.0)
+    half = make_upper_body_camera(np.array([0, 1.6, 0.02]), 1.7, 1.0)
     assert whole.target == pytest.approx((0, 0.85, 0))
     assert face.distance < half.distance < whole.distance
     assert face.project([0, 1.6, 0.02], 1.0)[1] < 0.5
     assert abs(
-        frame_whole_figure((-np.ones(3), np.ones(3)), 1.0, heading=1.0).yaw - whole.yaw
+        make_whole_figure_camera((-np.ones(3), np.ones(3)), 1.0, heading=1.0).yaw - whole.yaw
     ) == pytest.approx(1.0)

@@ -12,7 +12,7 @@ from metagraph.common.child_channel import Child
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from preview import drawing_apart
-from preview.camera import frame_whole_figure
+from preview.camera import make_whole_figure_camera
 from preview.drawing_apart import WORTH_LEVELS, draw_scenes
 from preview.figure import SkinnedFigure, StickFigure
 from preview.offscreen import Offscreen
@@ -33,7 +33,7 @@ def waving(figure, count=COUNT):
         turns = skeleton.rest_rotations.copy()
         turns[1] = rotation.multiply(turns[1], rotation.from_axis_angle(np.array([0.0, 0, 1]), n / count))
         actor = Actor(figure, *skeleton.globals(Pose(turns, skeleton.rest_translations)))
-        yield Scene((actor,)), frame_whole_figure(Scene((actor,)).bounds(), SIZE[0] / SIZE[1])
+        yield Scene((actor,)), make_whole_figure_camera(Scene((actor,)).bounds(), SIZE[0] / SIZE[1])
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface, bind_character
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.figure import SkinnedFigure, StickFigure
-from preview.mesh import ball, capsule
+from preview.mesh import make_ball, make_capsule
 from sample_clips.make.conformance_projects import stick_skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.preview.conftest import chain
@@ -223,7 +223,7 @@ def test_morphs_follow_vertices_into_the_mesh():
 
 
 def test_shapes_are_closed_and_face_outwards():
-    for positions, normals, triangles in (ball(0.5), capsule(1.0, 0.2, 0.1)):
+    for positions, normals, triangles in (make_ball(0.5), make_capsule(1.0, 0.2, 0.1)):
         corner = positions[triangles]
         face = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
         assert (np.einsum("ij,ij->i", face, normals[triangles].sum(1)) > 0).all()

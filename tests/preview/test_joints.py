@@ -45,7 +45,7 @@ def test_sides_come_from_names_and_pass_down():
         ("l_arm", "Hips"),
         ("Neck", "Hips"),
     )
-    assert joints.sides_of_joints(skeleton).tolist() == [0, 1, 1, -1, 1, 0]
+    assert joints.find_side_signs(skeleton).tolist() == [0, 1, 1, -1, 1, 0]
 
 
 def test_a_root_on_the_ground_is_not_drawn_but_the_hips_are():
@@ -79,4 +79,4 @@ def test_a_head_that_is_not_called_one_is_drawn_by_its_role():
 def test_a_bone_goes_past_what_is_not_drawn_to_the_nearest_joint_that_is():
     rows = ("Hips", None), ("ik_spine", "Hips"), ("Spine", "ik_spine"), ("Head", "Spine"), ("Prop", None)
     shown = np.array([True, False, True, True, True])
-    assert joints.nearest_above(rig(*rows), shown).tolist() == [-1, 0, 0, 2, -1]
+    assert joints.find_nearest_above(rig(*rows), shown).tolist() == [-1, 0, 0, 2, -1]

@@ -9,8 +9,8 @@ import pytest
 
 from preview import levels
 from preview.figure import MeshFigure
-from preview.levels import ERRORS, Level, find_levels_folder, levels_of
-from preview.mesh import ball, egg
+from preview.levels import ERRORS, Level, find_levels_folder, make_levels
+from preview.mesh import make_ball, make_egg
 from tests.preview.test_simplify import mesh_of
 
 
@@ -21,7 +21,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def a_ball():
-    positions, _, triangles = ball(0.5, 48, 32)
+    positions, _, triangles = make_ball(0.5, 48, 32)
     return mesh_of(positions, triangles)
 
 
@@ -36,54 +36,54 @@ def same(one: tuple[Level, ...], other: tuple[Level, ...]) -> bool:
 
 
 def test_levels_are_made_once_and_read_from_then_on(folder, monkeypatch):
-    first = levels_of(a_ball(), 1.0)
+    first = make_levels(a_ball(), 1.0)
     errors = [level.error for level in first]
     assert errors and errors == sorted(set(errors) & set(ERRORS))
     monkeypatch.setattr(levels, "simplify", lambda *_: pytest.fail("it was there"))
-    assert same(levels_of(a_ball(), 1.0), first)
+    assert same(make_levels(a_ball(), 1.0), first)
 
 
 @pytest.mark.nightly
 def test_another_mesh_or_height_is_another_matter(folder):
-    levels_of(a_ball(), 1.0)
-    levels_of(a_ball(), 2.0)
-    positions, _, triangles = egg(1.0, 0.4, 40, 40)
-    levels_of(mesh_of(positions, triangles), 1.0)
+    make_levels(a_ball(), 1.0)
+    make_levels(a_ball(), 2.0)
+    positions, _, triangles = make_egg(1.0, 0.4, 40, 40)
+    make_levels(mesh_of(positions, triangles), 1.0)
     assert len(list(folder.glob("*/*"))) == 3
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("content", [b"", b"no archive", b"PK\x03\x04 cut"])
 def test_what_is_broken_is_made_again(folder, content):
-    first = levels_of(a_ball(), 1.0)
+    first = make_levels(a_ball(), 1.0)
     (kept,) = folder.glob("*/*")
     kept.write_bytes(content)
-    assert same(levels_of(a_ball(), 1.0), first)
+    assert same(make_levels(a_ball(), 1.0), first)
     assert kept.read_bytes() != content
 
 
 @pytest.mark.nightly
 def test_what_points_beyond_the_mesh_is_made_again(folder):
-    first = levels_of(a_ball(), 1.0)
+    first = make_levels(a_ball(), 1.0)
     (kept,) = folder.glob("*/*")
     with np.load(kept) as held:
         content = dict(held)
     content["used0"] = content["used0"] + 100_000
     np.savez(kept, **content)
-    assert same(levels_of(a_ball(), 1.0), first)
+    assert same(make_levels(a_ball(), 1.0), first)
 
 
 def test_little_is_drawn_as_it_is_and_what_is_cancelled_leaves_nothing(folder):
-    positions, _, triangles = ball(0.5, 8, 6)
-    assert levels_of(mesh_of(positions, triangles), 1.0) == ()
-    assert levels_of(a_ball(), 1.0, lambda: True) == ()
+    positions, _, triangles = make_ball(0.5, 8, 6)
+    assert make_levels(mesh_of(positions, triangles), 1.0) == ()
+    assert make_levels(a_ball(), 1.0, lambda: True) == ()
     assert not list(folder.glob("*/*"))
 
 
 def test_a_mesh_with_places_that_are_no_numbers_is_drawn_as_it_is(folder):
     mesh = a_ball()
     mesh.vertices["position"][7] = np.nan
-    assert levels_of(mesh, 1.0) == ()
+    assert make_levels(mesh, 1.0) == ()
 
 
 def test_a_level_with_hardly_fewer_triangles_is_none(folder):
@@ -91,7 +91,7 @@ def test_a_level_with_hardly_fewer_triangles_is_none(folder):
     corners = np.array([[x, 0.0, z] for x in (0, 1) for z in (0, 1)])
     squares = [corners + [n, n % 3, n % 5] for n in range(400)]
     triangles = [np.array([[0, 1, 3], [0, 3, 2]]) + 4 * n for n in range(400)]
-    assert levels_of(mesh_of(np.concatenate(squares), np.concatenate(triangles)), 1.0) == ()
+    assert make_levels(mesh_of(np.concatenate(squares), np.concatenate(triangles)), 1.0) == ()
 
 
 def test_a_folder_is_named_by_the_environment_or_there_is_none(monkeypatch):
@@ -119,7 +119,7 @@ def test_a_figure_is_drawn_with_the_fewest_triangles_that_are_near_enough(manneq
 @pytest.mark.gl
 def test_levels_may_come_while_a_picture_is_drawn(offscreen, mannequin, monkeypatch):
     """They are made on another thread."""
-    from preview.camera import frame_whole_figure
+    from preview.camera import make_whole_figure_camera
     from preview.figure import SkinnedFigure
     from preview.scene import DARK, Actor, Scene
     from preview.shadows import Shadows
@@ -128,7 +128,7 @@ def test_levels_may_come_while_a_picture_is_drawn(offscreen, mannequin, monkeypa
     scene = Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
     cast = Shadows.cast
     monkeypatch.setattr(Shadows, "cast", lambda *told: figure.simplify() or cast(*told))
-    camera = frame_whole_figure(scene.bounds(), 4 / 3)
+    camera = make_whole_figure_camera(scene.bounds(), 4 / 3)
     before = offscreen.render(scene, camera, DARK, (160, 120)).astype(int)
     assert figure.levels
     after = offscreen.render(scene, camera, DARK, (160, 120)).astype(int)

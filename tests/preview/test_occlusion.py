@@ -10,7 +10,7 @@ from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from preview.camera import Camera
 from preview.figure import SkinnedFigure, StickFigure
-from preview.occlusion import FROM_END, FROM_START, LIMBS, OWN, WHOLE, occlusion_ways
+from preview.occlusion import FROM_END, FROM_START, LIMBS, OWN, WHOLE, tabulate_occlusion
 from preview.offscreen import Offscreen
 from preview.scene import DARK, Actor, Scene
 from tests.preview.conftest import chain
@@ -26,7 +26,7 @@ def open_air(offscreen, monkeypatch):
 
 
 def way(of: str, rod: str) -> int:
-    return int(occlusion_ways()[NAMES.index(of), NAMES.index(rod)])
+    return int(tabulate_occlusion()[NAMES.index(of), NAMES.index(rod)])
 
 
 def test_no_limb_is_dark_by_itself_and_none_by_what_it_hangs_on_where_they_meet():

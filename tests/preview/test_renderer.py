@@ -13,7 +13,7 @@ from metagraph.formats.gltf.reader import read_character
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from preview import renderer
-from preview.camera import Camera, close_up, frame_whole_figure
+from preview.camera import Camera, close_up, make_whole_figure_camera
 from preview.figure import SkinnedFigure, StickFigure
 from preview.gpu import KEEP_MESHES
 from preview.offscreen import Offscreen
@@ -41,7 +41,7 @@ def posed(figure, turns, **options):
 
 
 def whole(scene, size=SIZE):
-    return frame_whole_figure(scene.bounds(), size[0] / size[1])
+    return make_whole_figure_camera(scene.bounds(), size[0] / size[1])
 
 
 def test_the_mannequin_looks_as_it_did(offscreen, mannequin, golden):

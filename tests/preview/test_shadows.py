@@ -11,7 +11,7 @@ from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from preview import shadows
 from preview.camera import Camera
 from preview.figure import SkinnedFigure
-from preview.frame import Frame, piece_boxes
+from preview.frame import Frame, find_piece_boxes
 from preview.offscreen import Offscreen
 from preview.scene import DARK, Actor, Scene
 from tests.preview.conftest import chain
@@ -69,7 +69,7 @@ def frame_of(scene: Scene, camera: Camera, offscreen: Offscreen) -> Frame:
     offscreen.render(scene, camera, NOON, SIZE)
     actors = list(scene.actors)
     matrix = camera.projection(1.0) @ camera.view()
-    parts = piece_boxes(actors, offscreen.renderer.store.palettes)
+    parts = find_piece_boxes(actors, offscreen.renderer.store.palettes)
     meshes = [a.figure.mesh for a in actors]
     return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts, [])
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from preview.shots import camera_side, lamp_side, place_camera, shot_camera
+from preview.shots import find_camera_side, is_lamp_on_right, make_shot_camera, place_camera
 
 HEADS = np.array([[-0.65, 1.6, 0.0], [0.65, 1.7, 0.0]])
 HEIGHTS = [1.7, 1.8, 1.6]
@@ -14,7 +14,7 @@ CIRCLE = np.array([[-0.9, 1.6, 0.0], [0.9, 1.6, 0.0], [0.0, 1.6, -1.2]])
 
 
 def seen(shot, side, heads=HEADS, aspect=16 / 9):
-    camera = shot_camera(shot, side, heads, HEIGHTS[: len(heads)], aspect)
+    camera = make_shot_camera(shot, side, heads, HEIGHTS[: len(heads)], aspect)
     return camera, camera.project(heads, aspect)
 
 
@@ -23,7 +23,7 @@ def seen(shot, side, heads=HEADS, aspect=16 / 9):
     "heads", [HEADS, HEADS @ np.diag([-1, 1, 1]), CIRCLE], ids=["two", "swapped", "three"]
 )
 def test_who_is_meant_is_in_the_picture_and_all_cameras_stand_on_one_side(heads, aspect):
-    beside, middle = camera_side(heads), heads[:2].mean(0)
+    beside, middle = find_camera_side(heads), heads[:2].mean(0)
     for shot in ("over", "close", "two"):
         for side in range(len(heads)):
             camera, at = seen(shot, side, heads, aspect)
@@ -76,5 +76,5 @@ def test_the_lamp_lights_the_side_of_a_face_that_is_turned_from_the_camera():
         for side in (0, 1):
             camera, _ = seen(shot, side)
             looks = camera.axes[0] @ (HEADS[1 - side] - HEADS[side])
-            assert lamp_side(camera, shot, side, HEADS) == (looks > 0)
-    assert not lamp_side(seen("two", 0)[0], "two", 0, HEADS)
+            assert is_lamp_on_right(camera, shot, side, HEADS) == (looks > 0)
+    assert not is_lamp_on_right(seen("two", 0)[0], "two", 0, HEADS)

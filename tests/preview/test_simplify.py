@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from preview.figure import SkinnedFigure
-from preview.mesh import VERTEX, Morphs, SkinnedMesh, TriangleBatch, ball, lathe
+from preview.mesh import VERTEX, Morphs, SkinnedMesh, TriangleBatch, make_ball, turn_profile
 from preview.simplify import simplify
 
 
@@ -53,7 +53,7 @@ def test_of_a_flat_square_little_more_than_its_corners_is_left_and_it_covers_the
 
 
 def test_a_ball_stays_round_within_the_error_and_closed():
-    positions, _, triangles = ball(0.5, 48, 32)
+    positions, _, triangles = make_ball(0.5, 48, 32)
     mesh = mesh_of(positions, triangles)
     fine, rough = (fewer.of(mesh) for fewer in simplify(mesh, [0.002, 0.02]))
     assert len(rough.triangles) < len(fine.triangles) < len(mesh.triangles)
@@ -66,7 +66,7 @@ def test_a_ball_stays_round_within_the_error_and_closed():
 
 
 def test_a_tube_keeps_rings_where_it_bends():
-    positions, _, triangles = lathe([(y, 0.05) for y in np.linspace(0, 1, 41)], 12)
+    positions, _, triangles = turn_profile([(y, 0.05) for y in np.linspace(0, 1, 41)], 12)
     bend = np.clip((positions[:, 1] - 0.45) / 0.1, 0, 1)
     mesh = mesh_of(positions, triangles)
     mesh.vertices["bones"][:, 1] = 1
@@ -100,7 +100,7 @@ def test_seams_of_the_texture_and_batches_keep_their_course():
 
 
 def test_vertices_are_the_meshs_own_with_their_morph_targets():
-    positions, _, triangles = ball(0.5, 24, 16)
+    positions, _, triangles = make_ball(0.5, 24, 16)
     offsets = np.arange(len(positions) * 3, dtype=np.float32).reshape(1, -1, 3)
     offsets[:, ::3] = 0
     moved = np.flatnonzero(offsets.any((0, 2)))

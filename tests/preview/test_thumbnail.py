@@ -9,7 +9,13 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.clip import Clip
 from preview.figure import SkinnedFigure, StickFigure
-from preview.thumbnail import ThumbnailStyle, draw_clip_thumbnail, find_telling_frame, thumbnail, thumbnails
+from preview.thumbnail import (
+    ThumbnailStyle,
+    draw_clip_thumbnail,
+    find_telling_frame,
+    render_thumbnail,
+    render_thumbnails,
+)
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 SKELETON = mannequin_skeleton()
@@ -61,8 +67,10 @@ def test_the_figure_is_seen_from_the_front_wherever_it_stands_and_faces(offscree
     rotations, positions = SKELETON.globals(SKELETON.rest)
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(2.0))
     there = rotation.rotate_vectors(turn, positions) + [7.0, 0, -3.0]
-    first = thumbnail(offscreen, figure, rotations, positions, ThumbnailStyle(40)).astype(int)
-    second = thumbnail(offscreen, figure, rotation.multiply(turn, rotations), there, ThumbnailStyle(40))
+    first = render_thumbnail(offscreen, figure, rotations, positions, ThumbnailStyle(40)).astype(int)
+    second = render_thumbnail(
+        offscreen, figure, rotation.multiply(turn, rotations), there, ThumbnailStyle(40)
+    )
     assert np.abs(first - second).mean() < 0.5
 
 
@@ -76,8 +84,8 @@ def test_a_gesture_of_the_arms_is_nearer_than_a_step_and_all_its_frames_are_fram
     figure = StickFigure(SKELETON)
     waved, stepped = clip([0.0, 0.9, 0.0]), clip([0.0, 0.9, 0.0], "LeftUpperLeg")
     frames = np.array([0, 1, 2])
-    near = [tall(p) for p in thumbnails(offscreen, figure, waved, frames, 96)]
-    far = [tall(p) for p in thumbnails(offscreen, figure, stepped, frames, 96)]
+    near = [tall(p) for p in render_thumbnails(offscreen, figure, waved, frames, 96)]
+    far = [tall(p) for p in render_thumbnails(offscreen, figure, stepped, frames, 96)]
     assert min(n[0] for n in near) > max(f[0] for f in far)
     assert len(set(near)) == 1, "the head stays where it is"
 
@@ -100,6 +108,8 @@ def test_a_head_that_is_wider_than_shoulders_is_whole(offscreen):
         (MeshMaterial("m"),),
         (Surface(0, count - 2, 0),),
     )
-    (picture,) = thumbnails(offscreen, SkinnedFigure(wide), clip([0.0, 0.4], "Head"), np.array([0]), 96)
+    (picture,) = render_thumbnails(
+        offscreen, SkinnedFigure(wide), clip([0.0, 0.4], "Head"), np.array([0]), 96
+    )
     seen = np.flatnonzero(picture[..., 3].any(0))
     assert seen[0] > 0 and seen[-1] < 95 and seen[-1] - seen[0] > 60

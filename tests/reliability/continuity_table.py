@@ -29,8 +29,8 @@ from metagraph.playback.continuity import RATE, ContinuityLaw  # noqa: E402
 from metagraph.playback.evaluator import BLENDS, STAGES, Evaluator  # noqa: E402
 from metagraph.playback.plan import Plan  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
-from metagraph.playback.posing.overlay import clip_overlay  # noqa: E402
-from metagraph.speech.duet import duet, voices  # noqa: E402
+from metagraph.playback.posing.overlay import make_clip_overlay  # noqa: E402
+from metagraph.speech.duet import load_conversation_voices, plan_duet  # noqa: E402
 from metagraph.suggest.accept import accept  # noqa: E402
 from metagraph.suggest.jumps.bridges import bridge_all  # noqa: E402
 from metagraph.suggest.propose import propose  # noqa: E402
@@ -73,7 +73,7 @@ def largest(project: Project, plan: Plan, seconds: float, generated: Path | None
     for start in np.arange(0, seconds, PIECE):
         times = np.arange(round(start * RATE) - 1, round(min(start + PIECE, seconds) * RATE)) / RATE
         stages = list(
-            evaluator.stages(times, clip_overlay(project, clip, times) if clip is not None else None)
+            evaluator.stages(times, make_clip_overlay(project, clip, times) if clip is not None else None)
         )
         found = dict(law.added(stages))
         if clip is None:
@@ -107,8 +107,8 @@ def talking() -> Row:
     project = open_project(SAMPLE).project
     rows = []
     for ident, conversation in project.conversations.items():
-        heard, _ = voices(conversation, SAMPLES)
-        made = duet(conversation, ident, (project,) * len(conversation.sides), heard)
+        heard, _ = load_conversation_voices(conversation, SAMPLES)
+        made = plan_duet(conversation, ident, (project,) * len(conversation.sides), heard)
         rows += [largest(part.project, part.plan, made.length) for part in made.parts]
     return worst(rows)
 

@@ -17,11 +17,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from metagraph.errors import FileError
-from metagraph.formats.locking import new_owner
+from metagraph.formats.locking import make_owner
 from metagraph.formats.project.data import to_data
 from metagraph.formats.project.journal import Journal
 from metagraph.formats.recovery import Left, read_journal
-from metagraph.formats.store import SUFFIX, content_digest, encode_project, save_project
+from metagraph.formats.store import SUFFIX, compute_content_digest, encode_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
@@ -92,7 +92,7 @@ def journals(folder: Path) -> Iterable[tuple[str, Path, Path | None, int]]:
                 states.append(edit(states[-1]))
         if saved is not None:
             save_project(states[0], saved)
-        journal = Journal(place / ".show.journal", saved, new_owner())
+        journal = Journal(place / ".show.journal", saved, make_owner())
         begun = 0
         if kind == "untitled":
             journal.begin(states[0])
@@ -107,7 +107,7 @@ def journals(folder: Path) -> Iterable[tuple[str, Path, Path | None, int]]:
             if kind in ("marked", "written") and n == 2 and saved is not None:
                 mark = journal.mark()
                 assert mark is not None
-                journal.settle(mark, content_digest(encode_project(states[n + 1], saved)))
+                journal.settle(mark, compute_content_digest(encode_project(states[n + 1], saved)))
                 if kind == "written":
                     save_project(states[n + 1], saved)
         journal.close()

@@ -41,13 +41,13 @@ from metagraph.live.server import Options
 done = {}
 for module in ("app.stage.picture_process", "metagraph.formats.fbx.child", "metagraph.generation.training",
                "preview.drawing_child", "metagraph.live.relay_child"):
-    done[module] = programs.run_program(programs.python_command(module), 100)
+    done[module] = programs.run_program(programs.make_python_command(module), 100)
 relay = Relay(Options(port=0, osc=None))
 relay.start()
 assert relay._in.get(timeout=60)  # that it is ready
 relay.close(wait=True)
 for name in ("npm", "ps", "explorer", "open", "git"):
-    found = programs.system_program(name)
+    found = programs.find_system_program(name)
     assert found is None or not found.startswith(str(Path.cwd())), found
 from metagraph.formats import locking
 locking._machine = lambda: ""  # as where there is no /proc, so that `ps` is asked

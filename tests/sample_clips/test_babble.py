@@ -7,7 +7,7 @@ import pytest
 
 from metagraph.formats.project.data import encode_struct
 from metagraph.speech.lines import read_line_voice
-from metagraph.speech.phones import pieces_of
+from metagraph.speech.phones import list_mouth_pieces
 from metagraph.speech.sound import read_sound
 from metagraph.speech.textgrid import read_textgrid
 from sample_clips.make.babble import FOLDER, LINES, RATE, sample_lines, spoken, text_grid
@@ -38,7 +38,7 @@ def test_its_syllables_are_heard_where_its_vowels_are(name: str) -> None:
     voice = read_line_voice(FOLDER / f"{name}.flac", FOLDER / f"{name}.TextGrid")
     grid = read_textgrid(FOLDER / f"{name}.TextGrid")
     assert voice.duration == pytest.approx(grid.end, abs=0.02)
-    vowels = [p for p in pieces_of(grid) if p.viseme in ("aa", "E", "I", "O", "U", "RR")]
+    vowels = [p for p in list_mouth_pieces(grid) if p.viseme in ("aa", "E", "I", "O", "U", "RR")]
     inside = [any(v.start - 0.03 <= t <= v.end + 0.03 for v in vowels) for t in voice.peaks]
     assert len(voice.peaks) >= 3 and np.mean(inside) > 0.8
 

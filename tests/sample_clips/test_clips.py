@@ -41,7 +41,9 @@ def measured(name: str) -> Measures:
 
 def apart(a: Clip, frame_a: int, b: Clip, frame_b: int) -> tuple[float, float]:
     """Return how far two frames are apart: degrees of the worst joint, metres of the root."""
-    turns = rotation.angle_between(a.rotations[frame_a].astype(float), b.rotations[frame_b].astype(float))
+    turns = rotation.measure_angle_between(
+        a.rotations[frame_a].astype(float), b.rotations[frame_b].astype(float)
+    )
     return float(np.degrees(turns.max())), float(np.abs(a.root[frame_a] - b.root[frame_b]).max())
 
 
@@ -85,7 +87,7 @@ def test_a_clip_begins_and_ends_exactly_in_its_stances_at_rest(name: str) -> Non
 def test_a_clip_moves_only_what_its_layer_reaches(name: str) -> None:
     clip, base = on_disk(name), on_disk(BASE[0])
     others = [i for i, joint in enumerate(SKELETON.names) if joint not in REACH[ENTRIES[name].layer]]
-    turns = rotation.angle_between(
+    turns = rotation.measure_angle_between(
         clip.rotations[:, others].astype(float), base.rotations[BASE[1], others].astype(float)
     )
     assert np.degrees(turns.max()) < CLOSE
@@ -177,7 +179,7 @@ def test_a_gesture_of_one_arm_leaves_the_other_in_its_stance(name: str) -> None:
     entry, clip = ENTRIES[name], on_disk(name)
     hand = at("RightHand" if entry.limb == "left" else "LeftHand")
     elbow = at("RightLowerArm" if entry.limb == "left" else "LeftLowerArm")
-    turns = rotation.angle_between(
+    turns = rotation.measure_angle_between(
         clip.rotations[:, [hand, elbow]].astype(float), clip.rotations[0, [hand, elbow]].astype(float)
     )
     assert np.degrees(turns.max()) < 9
@@ -197,7 +199,9 @@ def test_making_a_clip_twice_gives_the_same_numbers_as_on_disk(name: str) -> Non
     once, twice = animate(recipe), animate(recipe)
     assert np.array_equal(once.rotations, twice.rotations)
     assert np.array_equal(once.root, twice.root)
-    turns = rotation.angle_between(once.rotations.astype(float), on_disk(name).rotations.astype(float))
+    turns = rotation.measure_angle_between(
+        once.rotations.astype(float), on_disk(name).rotations.astype(float)
+    )
     assert np.degrees(turns.max()) < 0.1
 
 
@@ -235,15 +239,15 @@ def test_the_fingers_of_a_resting_hand_differ_and_stir(stance: str) -> None:
     clip = on_disk(f"{stance}__stance")
     curls = [
         sum(
-            rotation.angle_between(clip.rotations[0, at(f"Right{finger}{bone}")].astype(float), rest)
+            rotation.measure_angle_between(clip.rotations[0, at(f"Right{finger}{bone}")].astype(float), rest)
             for bone in (1, 2, 3)
         )
         for finger in ("Index", "Little")
-        for rest in (rotation.identity_rotations(()),)
+        for rest in (rotation.make_identity_rotations(()),)
     ]
     assert np.degrees(curls[1] - curls[0]) > 14, "the little finger curls more than the index"
     knuckle = clip.rotations[:, at("RightMiddle2")].astype(float)
-    assert np.degrees(rotation.angle_between(knuckle, knuckle[0]).max()) > 1
+    assert np.degrees(rotation.measure_angle_between(knuckle, knuckle[0]).max()) > 1
 
 
 def test_a_hand_at_the_chin_leaves_the_lips_free() -> None:

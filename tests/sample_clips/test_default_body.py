@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from preview.default_body.fit import sculpture
+from preview.default_body.fit import read_sculpture
 from sample_clips.make.default_body import make
 from sample_clips.make.default_body.forms import whole
 from sample_clips.make.default_body.joints import default_skeleton
@@ -40,7 +40,7 @@ def test_a_gap_at_the_middle_is_closed_and_a_fold_taken_out():
 
 
 def test_the_file_is_what_the_forms_are():
-    body = sculpture().character
+    body = read_sculpture().character
     assert body.skeleton == default_skeleton() or np.allclose(
         body.skeleton.rest_translations, default_skeleton().rest_translations, atol=1e-4
     )
@@ -52,6 +52,6 @@ def test_the_file_is_what_the_forms_are():
 @pytest.mark.nightly
 def test_it_is_made_the_same_again():
     positions, _, triangles = make.sculpt_body()
-    body = sculpture().character
+    body = read_sculpture().character
     assert len(triangles) == len(body.triangles)
     assert np.abs(np.sort(positions[:, 1]) - np.sort(body.positions[:, 1])).max() < 1e-3

@@ -11,18 +11,18 @@ import pytest
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
-from metagraph.graph.seats import seat_of
+from metagraph.graph.seats import find_seat
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.contacts import contact_depths
+from metagraph.playback.posing.contacts import measure_contact_depths
 from sample_clips.make.catalogue import RECIPES, SEATED, catalogue
 from sample_clips.make.mannequin_rig import REACH, REST, SKELETON, at
 from sample_clips.make.measure import Measures, measure
 from sample_clips.make.recipe import animate
 from sample_clips.make.stance_clips import SEAT
-from tests.posing import contact_rig, pose_at
+from tests.posing import compute_pose_at, contact_rig
 from tests.sample_clips.unchanged import only_when_changed
 
 pytestmark = only_when_changed()
@@ -66,7 +66,7 @@ def test_a_clip_begins_and_ends_in_its_stances_on_what_its_layer_reaches(name: s
     joints = [at(j) for j in REACH[entry.layer]]
     for frame, which in ((0, entry.stance), (-1, entry.end_stance)):
         other = on_disk(STANCES[entry.layer, which].name)
-        turns = rotation.angle_between(
+        turns = rotation.measure_angle_between(
             clip.rotations[frame, joints].astype(float), other.rotations[0, joints].astype(float)
         )
         assert np.degrees(turns.max()) < 0.1
@@ -113,8 +113,8 @@ def test_hands_on_the_lap_are_found_there_and_stay_through_every_way_of_sitting(
     assert rig is not None
     asks = [MetaRequest("f", "body", "transition", 8.0, stance=stance("body", "sitting forward"))]
     plan = make_plan(project(), 30.0, asks, seed=2, idle=False)
-    pose = pose_at(plan, project(), times)
-    assert np.percentile(contact_depths(rig, pose).max(-1), 95) < 0.005
+    pose = compute_pose_at(plan, project(), times)
+    assert np.percentile(measure_contact_depths(rig, pose).max(-1), 95) < 0.005
     turned, places = SKELETON.globals(pose)
     for side in ("Left", "Right"):
         hand, thigh = at(side + "Hand"), at(side + "UpperLeg")
@@ -136,16 +136,18 @@ def test_one_sits_until_asked_to_stand() -> None:
 
 
 def test_a_seat_is_beneath_who_sits_and_none_where_nobody_does() -> None:
-    seat = seat_of(project())
+    seat = find_seat(project())
     assert seat is not None
     assert seat.at[1] == pytest.approx(0.45, abs=0.01)
     assert seat.at[2] == pytest.approx(SEAT[2], abs=0.06)
-    assert seat_of(open_project(SAMPLES / "sample.metagraph.yaml").project) is None
-    assert seat_of(Project()) is None
+    assert find_seat(open_project(SAMPLES / "sample.metagraph.yaml").project) is None
+    assert find_seat(Project()) is None
 
 
 @pytest.mark.parametrize("name", NAMES[::9])
 def test_making_a_clip_again_gives_what_is_on_disk(name: str) -> None:
     made = animate(next(r for r in SEATED if r.name == name))
-    turns = rotation.angle_between(made.rotations.astype(float), on_disk(name).rotations.astype(float))
+    turns = rotation.measure_angle_between(
+        made.rotations.astype(float), on_disk(name).rotations.astype(float)
+    )
     assert np.degrees(turns.max()) < 0.1

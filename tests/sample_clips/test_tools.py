@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.motion import rotation
-from metagraph.playback.posing.contacts import contact_depths
+from metagraph.playback.posing.contacts import measure_contact_depths
 from sample_clips.make import before_after, ik, key_poses, motion_tracks, secondary
 from sample_clips.make.hands import SHAPES, finger_rotations
 from sample_clips.make.mannequin_rig import REST, SIDES, SKELETON, at
@@ -117,7 +117,7 @@ def test_a_recipe_of_one_step_home_stands_still_but_for_its_life() -> None:
     clip = animate(
         Recipe("still", "arms", "gesture", "hands_at_sides", "hands_at_sides", (home(0.8),), life=0.0)
     )
-    turns = rotation.angle_between(clip.rotations.astype(float), clip.rotations[:1].astype(float))
+    turns = rotation.measure_angle_between(clip.rotations.astype(float), clip.rotations[:1].astype(float))
     assert np.degrees(turns.max()) < 0.1
 
 
@@ -151,5 +151,5 @@ def test_a_transition_plays_to_its_end_with_its_hands_where_they_touch() -> None
     pose = before_after.played(project, clip, np.array([0.0, clip.duration]))
     rig = contact_rig(project)
     assert rig is not None
-    assert contact_depths(rig, pose).max() < 0.004
+    assert measure_contact_depths(rig, pose).max() < 0.004
     assert np.linalg.norm(np.diff(SKELETON.globals(pose)[1][:, at("RightHand")], axis=0)) > 0.3

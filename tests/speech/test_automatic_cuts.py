@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.graph.timeline import Cut, with_cut
-from metagraph.graph.timeline_edits import timeline_of
+from metagraph.graph.timeline_edits import get_timeline
 from metagraph.speech import automatic_cuts as c
 
 
@@ -23,7 +23,7 @@ def talk(*sides, length=40.0):
 
 def test_it_begins_with_all_and_cuts_to_who_speaks_a_little_early():
     some = talk([("clause", 3.0, 7.0)], [("clause", 8.0, 12.0)], length=13.0)
-    assert [(x.at, x.shot, x.side) for x in c.automatic_cuts(some)] == [
+    assert [(x.at, x.shot, x.side) for x in c.make_automatic_cuts(some)] == [
         (0.0, "two", 0), (2.88, "over", 0), (7.4, "over", 1),
     ]  # fmt: skip
 
@@ -34,33 +34,33 @@ def test_an_answer_in_passing_is_no_cut():
         [("response", 5.0, 5.5), ("clause", 7.0, 7.6)],
         length=10.0,
     )
-    assert [x.side for x in c.automatic_cuts(some)] == [0, 0]
+    assert [x.side for x in c.make_automatic_cuts(some)] == [0, 0]
 
 
 def test_a_listener_who_answers_in_a_long_turn_is_seen_and_then_the_speaker_again():
     some = talk(
         [("clause", 3.0 + 2 * n, 4.9 + 2 * n) for n in range(6)], [("response", 8.0, 8.4)], length=16.0
     )
-    assert [(x.at, x.shot, x.side) for x in c.automatic_cuts(some)] == [
+    assert [(x.at, x.shot, x.side) for x in c.make_automatic_cuts(some)] == [
         (0.0, "two", 0), (2.88, "over", 0), (7.65, "close", 1), (9.45, "close", 0),
     ]  # fmt: skip
 
 
 def test_a_listener_without_a_word_is_seen_after_a_while():
     some = talk([("clause", 3.0 + 2 * n, 4.9 + 2 * n) for n in range(14)], [], length=32.0)
-    assert [(x.shot, x.side) for x in c.automatic_cuts(some)] == [
+    assert [(x.shot, x.side) for x in c.make_automatic_cuts(some)] == [
         ("two", 0), ("over", 0), ("close", 0), ("close", 1), ("over", 0), ("close", 0),
     ]  # fmt: skip
 
 
 def test_who_thinks_before_an_answer_is_seen_thinking():
     some = talk([("clause", 3.0, 7.0)], [("clause", 9.0, 12.0)], length=13.0)
-    assert c.automatic_cuts(some)[-1].at == 7.8
+    assert c.make_automatic_cuts(some)[-1].at == 7.8
 
 
 def test_a_short_answer_that_goes_on_is_seen_from_its_first_word():
     some = talk([("clause", 3.0, 7.0)], [("response", 7.3, 7.6), ("clause", 8.2, 11.0)], length=12.0)
-    assert c.automatic_cuts(some)[-1].at == 7.18
+    assert c.make_automatic_cuts(some)[-1].at == 7.18
 
 
 def test_all_are_shown_again_now_and_then():
@@ -69,25 +69,25 @@ def test_all_are_shown_again_now_and_then():
         [("clause", 7.0 + 10 * n, 12.5 + 10 * n) for n in range(6)],
         length=70.0,
     )
-    assert [round(x.at) for x in c.automatic_cuts(some) if x.shot == "two"] == [0, 43, 64]
+    assert [round(x.at) for x in c.make_automatic_cuts(some) if x.shot == "two"] == [0, 43, 64]
 
 
 def test_a_last_answer_is_seen():
     some = talk([("clause", 3.0, 7.0)], [("response", 7.5, 8.0)], length=10.0)
-    assert [(x.at, x.shot, x.side) for x in c.automatic_cuts(some)][-1] == (7.38, "over", 1)
+    assert [(x.at, x.shot, x.side) for x in c.make_automatic_cuts(some)][-1] == (7.38, "over", 1)
 
 
 def test_a_new_conversation_is_filmed_and_one_voice_alone_is_not():
     some = talk([("clause", 3.0, 7.0)], [("clause", 8.0, 12.0)], length=13.0)
     project, ident = c.keep_filmed_conversation(Project(name="x"), some)
-    assert timeline_of(project, ident).cuts == c.automatic_cuts(some)
+    assert get_timeline(project, ident).cuts == c.make_automatic_cuts(some)
     project, alone = c.keep_filmed_conversation(Project(name="x"), talk([("clause", 3.0, 7.0)], length=9.0))
-    assert timeline_of(project, alone).cuts == ()
+    assert get_timeline(project, alone).cuts == ()
 
 
 def test_who_speaks_long_is_seen_closer_and_a_long_silence_shows_all():
     some = talk([("clause", 3.0 + 2 * n, 4.9 + 2 * n) for n in range(8)], [], length=40.0)
-    assert [x.shot for x in c.automatic_cuts(some)] == ["two", "over", "close", "over", "two"]
+    assert [x.shot for x in c.make_automatic_cuts(some)] == ["two", "over", "close", "over", "two"]
 
 
 @given(st.lists(st.tuples(st.integers(0, 2), st.floats(0.1, 6), st.floats(0.1, 5)), max_size=25))
@@ -98,7 +98,7 @@ def test_no_picture_is_shorter_than_one_can_see(drawn):
         if not sides[side] or sides[side][-1][2] <= start:
             sides[side].append(("clause", start, start + length))
         at = start + length * 0.8
-    cuts = c.automatic_cuts(talk(*sides, length=at + 10))
+    cuts = c.make_automatic_cuts(talk(*sides, length=at + 10))
     assert cuts[0] == Cut(at=0.0, shot="two")
     assert all(y.at - x.at >= c.SHORTEST - 0.011 for x, y in pairwise(cuts))
     assert all((x.shot, x.side) != (y.shot, y.side) for x, y in pairwise(cuts))

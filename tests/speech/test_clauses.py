@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from metagraph.graph.conversation.model import HESITATIONS, RESPONSES, Segment, Side, Word
 from metagraph.graph.vocabulary import Vocabulary, split_tokens
-from metagraph.speech.clauses import order_words, segments
-from metagraph.speech.pitch import Pitch, pitch
+from metagraph.speech.clauses import find_segments, order_words
+from metagraph.speech.pitch import Pitch, measure_pitch
 from metagraph.speech.sound import HeardSound, analyse_sound
 from tests.speech import talk
 
@@ -35,7 +35,7 @@ def words(text: str, each: float = 0.25) -> list[Word]:
 
 
 def kinds(text: str, **lists: tuple[str, ...]) -> list[tuple[str, str]]:
-    return [(s.kind, s.text) for s in segments(words(text), VOICELESS, HEARD, **lists)]
+    return [(s.kind, s.text) for s in find_segments(words(text), VOICELESS, HEARD, **lists)]
 
 
 def test_words_are_compared_without_case_punctuation_and_hyphens() -> None:
@@ -135,7 +135,7 @@ def test_words_out_of_order_and_past_the_end_are_settled() -> None:
 def test_a_voiceless_clause_has_its_peak_where_it_is_loudest() -> None:
     samples = 0.001 * np.random.default_rng(0).standard_normal(16000 * 4)
     samples[24000:25600] *= 100
-    (found,) = segments(
+    (found,) = find_segments(
         [Word(text="hush", start=1, end=2)],
         Pitch(VOICELESS.times[:401], VOICELESS.hertz[:401]),
         analyse_sound(samples, 16000),
@@ -155,7 +155,7 @@ def test_a_voiceless_clause_has_its_peak_where_it_is_loudest() -> None:
     )
 )
 def test_segments_never_overlap_whatever_the_words(rows: list[tuple[str, float, float]]) -> None:
-    found = segments([Word(text=t, start=a, end=a + b) for t, a, b in rows], VOICELESS, HEARD)
+    found = find_segments([Word(text=t, start=a, end=a + b) for t, a, b in rows], VOICELESS, HEARD)
     Side(segments=found)  # says so itself
     assert all(s.end <= HEARD.duration for s in found)
 
@@ -164,13 +164,13 @@ def test_segments_never_overlap_whatever_the_words(rows: list[tuple[str, float, 
 
 
 def heard_of(spoken: talk.Talk) -> list[tuple[HeardSound, Pitch]]:
-    return [(analyse_sound(s, spoken.rate), pitch(s, spoken.rate)) for s in spoken.samples]
+    return [(analyse_sound(s, spoken.rate), measure_pitch(s, spoken.rate)) for s in spoken.samples]
 
 
 def of_side(spoken: talk.Talk, side: int, worded: bool) -> tuple[Segment, ...]:
     heard = heard_of(spoken)
     said = [Word(text=t, start=a, end=b) for t, a, b in spoken.words[side]] if worded else []
-    return segments(said, heard[side][1], heard[side][0], RESPONSES, HESITATIONS, heard[1 - side][0])
+    return find_segments(said, heard[side][1], heard[side][0], RESPONSES, HESITATIONS, heard[1 - side][0])
 
 
 @pytest.mark.parametrize("bleed", [None, -18.0])

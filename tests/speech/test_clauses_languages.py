@@ -11,7 +11,7 @@ import pytest
 from metagraph.formats.conversations.files import Read, read_conversation
 from metagraph.formats.conversations.languages import Speaking
 from metagraph.graph.conversation.model import Segment, Word
-from metagraph.speech.clauses import segment_by_sound, segments
+from metagraph.speech.clauses import find_segments, find_segments_by_sound
 from metagraph.speech.language_packs import LanguagePack, list_language_packs
 from metagraph.speech.pitch import Pitch
 from metagraph.speech.sound import HeardSound, analyse_sound
@@ -44,7 +44,7 @@ def kinds(text: str, code: str) -> list[tuple[str, str]]:
             continue
         out.append(Word(text=piece, start=round(at, 3), end=round(at + 0.25, 3)))
         at += 0.25
-    found = segments(out, *silence(at + 1), language=list_language_packs()[code])
+    found = find_segments(out, *silence(at + 1), language=list_language_packs()[code])
     return [(s.kind, s.text) for s in found]
 
 
@@ -52,7 +52,7 @@ def scored(text: str, language: LanguagePack, form: str = "NFC", letters: bool =
     of, score = written(text, form, letters), Score()
     noise = silence(of.length + 1)
     for side in (0, 1):
-        score.add(of, side, segments(of.words[side], *noise, language=language))
+        score.add(of, side, find_segments(of.words[side], *noise, language=language))
     return score
 
 
@@ -131,7 +131,7 @@ def test_words_with_a_meaning_hesitate_only_where_speech_stops_or_when_drawn_out
 
 def test_without_a_language_words_of_one_channel_are_parted_by_pauses() -> None:
     of = written(OTHERS["Swedish"])
-    found = segment_by_sound(of.words[0], *silence(of.length + 1), None)
+    found = find_segments_by_sound(of.words[0], *silence(of.length + 1), None)
     assert found and all(s.kind == "clause" for s in found)
     assert " ".join(s.text for s in found) == " ".join(w.text for w in of.words[0])
 

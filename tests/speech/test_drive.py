@@ -17,12 +17,12 @@ from metagraph.graph.conversation.model import (
     Segment,
     Side,
     Spoken,
-    segments_heard_by,
+    list_segments_heard_by,
 )
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Behave, Change, Fidget, Gesture, Nod, Play
 from metagraph.playback.planning.running_plan import plan_performance
-from metagraph.speech.drive import TOLERANCE, draw_segments, drive, drive_side, strokes
+from metagraph.speech.drive import TOLERANCE, draw_segments, drive, drive_side, find_stroke_times
 
 
 def said(
@@ -92,7 +92,7 @@ def test_responses_of_ones_own_and_hesitations_of_the_partner_ask_for_nods_but_o
 
 def test_the_partner_who_hesitates_while_one_speaks_oneself_is_not_nodded_at(sample: Project) -> None:
     talk = said(clause(4, 7), partner=(Segment("hesitation", 5, 5.4),), hesitation=1.0)
-    assert [s.kind for s in segments_heard_by(talk, 0)] == ["clause"]
+    assert [s.kind for s in list_segments_heard_by(talk, 0)] == ["clause"]
     assert not ids(drive_side(talk, 0, sample), Nod)
 
 
@@ -110,7 +110,7 @@ def test_a_side_talks_listens_and_idles_in_turn(sample: Project) -> None:
 
 def test_strokes_land_on_the_peaks_of_f0(sample: Project) -> None:
     performance, plan = drive(said(*clauses(25), clause=0.75), 0, sample)
-    found = strokes(sample, plan)
+    found = find_stroke_times(sample, plan)
     asked = gestures(performance.asks)
     assert len(asked) >= 12
     assert max(abs(found[a.id] - a.stroke) for a in asked if a.stroke is not None) <= TOLERANCE
@@ -131,7 +131,7 @@ def test_strokes_are_nearer_to_the_peaks_of_their_own_speech_than_to_those_of_sh
     )
     length = float(starts[-1]) + 3
     _, plan = drive(said(*some, length=length), 0, sample)
-    at = np.array(list(strokes(sample, plan).values()))
+    at = np.array(list(find_stroke_times(sample, plan).values()))
 
     def apart(turned: float) -> float:
         moved = (peaks + turned) % length
@@ -168,7 +168,7 @@ def test_whatever_is_said_every_ask_can_be_written_and_strokes_meet_their_peaks(
     talk = said(*segments, partner=(Segment("hesitation", 0.5, 0.9),), length=at + 2)
     performance, plan = drive(talk, 0, sample)
     assert msgspec.json.decode(msgspec.json.encode(performance), type=type(performance)) == performance
-    found = strokes(sample, plan)
+    found = find_stroke_times(sample, plan)
     for ask in gestures(performance.asks):
         assert abs(found[ask.id] - (ask.stroke or 0.0)) <= TOLERANCE
 

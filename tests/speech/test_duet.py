@@ -8,13 +8,20 @@ import msgspec
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word, segments_heard_by
+from metagraph.graph.conversation.model import (
+    Conversation,
+    Rates,
+    Segment,
+    Side,
+    Word,
+    list_segments_heard_by,
+)
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.drive import drive, find_partner_points
-from metagraph.speech.duet import duet, place_sides, voices
+from metagraph.speech.duet import load_conversation_voices, place_sides, plan_duet
 from metagraph.speech.mirroring import Mover, list_mirrored_stances
-from metagraph.speech.peak_blinks import peak_blinks
+from metagraph.speech.peak_blinks import place_peak_blinks
 from tests.speech.group import group, said
 
 RATE = 16000
@@ -46,7 +53,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_each_side_speaks_with_its_own_channel(folder: Path) -> None:
-    heard, notes = voices(talk(), folder)
+    heard, notes = load_conversation_voices(talk(), folder)
     assert not notes
     for voice, (start, end) in zip(heard, ((1.0, 2.0), (2.2, 2.6)), strict=True):
         assert voice is not None and voice.duration == 6.0
@@ -59,29 +66,29 @@ def test_a_channel_that_is_not_there_is_told_and_the_other_side_still_speaks(fol
     odd = Conversation(
         name="talk", length=6.0, sides=(Side(name="Left", audio="talk.wav", channel=5), sides[1])
     )
-    heard, notes = voices(odd, folder)
+    heard, notes = load_conversation_voices(odd, folder)
     assert heard[0] is None and heard[1] is not None
     assert len(notes) == 1 and "Left" in notes[0] and "2 channels" in notes[0]
 
 
 def test_a_missing_sound_leaves_both_moving(folder: Path, sample: Project) -> None:
     (folder / "talk.wav").unlink()
-    heard, notes = voices(talk(), folder)
+    heard, notes = load_conversation_voices(talk(), folder)
     assert heard == (None, None) and notes
-    made = duet(talk(), "v1", (sample, sample), heard)
+    made = plan_duet(talk(), "v1", (sample, sample), heard)
     assert all(part.plan.end == 6.0 and not part.plan.track.speeches for part in made.parts)
 
 
 def test_words_shape_the_mouth_where_there_are_any(folder: Path) -> None:
     sides = (Side(audio="talk.wav", channel=0, words=(Word(text="mama", start=1.2, end=1.6),)), Side())
-    heard, _ = voices(Conversation(name="talk", length=6.0, sides=sides), folder)
+    heard, _ = load_conversation_voices(Conversation(name="talk", length=6.0, sides=sides), folder)
     assert heard[0] is not None and heard[1] is None
     moving = heard[0].times[heard[0].weights[:, 1:].max(1) > 0.2]
     assert moving.min() > 1.0 and moving.max() < 1.8
 
 
 def test_both_speak_their_lines_and_look_at_each_other(folder: Path, sample: Project) -> None:
-    made = duet(talk(), "v1", (sample, sample), voices(talk(), folder)[0])
+    made = plan_duet(talk(), "v1", (sample, sample), load_conversation_voices(talk(), folder)[0])
     lines = [part.plan.track.speeches[0].line for part in made.parts]
     assert lines == ["v1.1", "v1.2"]
     for part in made.parts:
@@ -96,7 +103,7 @@ def test_a_line_of_the_same_id_is_kept(folder: Path, sample: Project) -> None:
     from metagraph.graph.requests import Line
 
     taken = replace(sample, lines={"v1.1": Line(text="mine")})
-    made = duet(talk(), "v1", (taken, taken), voices(talk(), folder)[0])
+    made = plan_duet(talk(), "v1", (taken, taken), load_conversation_voices(talk(), folder)[0])
     assert made.parts[0].project.lines["v1.1"].text == "mine"
     assert made.parts[0].plan.track.speeches[0].line == "v1.1'"
 
@@ -128,8 +135,8 @@ def test_blinks_come_near_the_peaks_of_the_pitch_of_clauses(sample: Project) -> 
     come a second after the last blink, 7 in 10 do.
     """
     conversation = next(iter(sample.conversations.values()))
-    heard, _ = voices(conversation, SAMPLE)
-    made = duet(conversation, "v", (sample, sample), heard)
+    heard, _ = load_conversation_voices(conversation, SAMPLE)
+    made = plan_duet(conversation, "v", (sample, sample), heard)
     near = total = 0
     for part, side in zip(made.parts, conversation.sides, strict=True):
         blinks = part.plan.life.blinks.starts
@@ -141,10 +148,10 @@ def test_blinks_come_near_the_peaks_of_the_pitch_of_clauses(sample: Project) -> 
 
 def test_blinks_by_the_papers_rule_are_those_and_no_others(sample: Project) -> None:
     conversation = msgspec.structs.replace(next(iter(sample.conversations.values())), blinks="peaks")
-    made = duet(conversation, "v", (sample, sample), (None, None))
+    made = plan_duet(conversation, "v", (sample, sample), (None, None))
     for n, (part, side) in enumerate(zip(made.parts, conversation.sides, strict=True)):
         peaks = [s.peak for s in side.segments if s.peak is not None]
-        expected = peak_blinks(peaks, conversation.length, conversation.seed, str(n))
+        expected = place_peak_blinks(peaks, conversation.length, conversation.seed, str(n))
         assert part.plan.life.blinks.starts.tolist() == pytest.approx(expected, abs=1e-9)
 
 
@@ -186,13 +193,13 @@ def test_two_with_places_are_looked_at_there(sample: Project) -> None:
     sides = tuple(
         msgspec.structs.replace(s, place=p) for s, p in zip(talk().sides, ((0, 0), (0, 2)), strict=True)
     )
-    made = duet(msgspec.structs.replace(talk(), sides=sides), "v1", (sample, sample), (None, None))
+    made = plan_duet(msgspec.structs.replace(talk(), sides=sides), "v1", (sample, sample), (None, None))
     x, y, z = made.parts[0].plan.track.places[0].point
     assert x == pytest.approx(0, abs=0.02) and 1.5 < y < 1.8 and 1.7 < z < 2.0
 
 
 def test_three_look_at_the_eyes_of_each_other(sample: Project) -> None:
-    made = duet(three(), "v1", (sample,) * 3, (None,) * 3)
+    made = plan_duet(three(), "v1", (sample,) * 3, (None,) * 3)
     for n, part in enumerate(made.parts):
         points = find_partner_points(part.plan)
         assert sorted(points) == [m for m in range(3) if m != n]
@@ -209,14 +216,14 @@ def test_each_of_three_answers_the_hesitations_of_all_others_once(sample: Projec
     sides = list(three().sides)
     sides[1] = msgspec.structs.replace(sides[1], segments=(um,))
     sides[2] = msgspec.structs.replace(sides[2], segments=(msgspec.structs.replace(um, start=3.2, end=3.8),))
-    heard = segments_heard_by(three(sides=tuple(sides)), 0)
+    heard = list_segments_heard_by(three(sides=tuple(sides)), 0)
     assert [(s.kind, s.start, s.end) for s in heard] == [
         ("clause", 1, 2),
         ("hesitation", 3.0, 3.4),
         ("hesitation", 3.4, 3.8),
     ]
     always = [msgspec.structs.replace(s, rates=Rates(hesitation=1.0)) for s in sides]
-    made = duet(three(sides=tuple(always)), "v1", (sample,) * 3, (None,) * 3)
+    made = plan_duet(three(sides=tuple(always)), "v1", (sample,) * 3, (None,) * 3)
     assert made.parts[0].told[2].drawn == 2 and made.parts[0].told[2].performed >= 1
 
 

@@ -15,7 +15,7 @@ from metagraph.graph.model import Action, Project
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.speech import gesture_choice
 from metagraph.speech.delivered import count_delivered
-from metagraph.speech.drive import TOLERANCE, drive, strokes
+from metagraph.speech.drive import TOLERANCE, drive, find_stroke_times
 from metagraph.speech.gesture_choice import ChosenGesture, GestureClause, choose_gestures
 from tests.speech.test_drive import clause, said
 
@@ -124,7 +124,7 @@ def test_as_many_clauses_are_performed_as_are_asked_for_within_five_points(sampl
             drawn.append(told.drawn / told.count)
             performed.append(told.performed / told.count)
             peaks = np.array([s.peak for s in some])
-            at = np.array(list(strokes(sample, plan).values()))
+            at = np.array(list(find_stroke_times(sample, plan).values()))
             assert np.abs(at[:, None] - peaks).min(1).max() <= TOLERANCE
             again = plan_performance(
                 sample, performance.asks, performance.length, performance.seed, idle=False

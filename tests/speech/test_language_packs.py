@@ -14,16 +14,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation.model import HESITATIONS, RESPONSES, Word
-from metagraph.graph.vocabulary import kinds_of_words, split_tokens
-from metagraph.speech.clauses import segments
+from metagraph.graph.vocabulary import make_word_vocabularies, split_tokens
+from metagraph.speech.clauses import find_segments
 from metagraph.speech.language_packs import (
     FOLDER,
     LanguagePack,
     PackError,
     PackFile,
-    language_of,
     list_language_packs,
     list_pack_words,
+    make_language,
     read_english_pack,
 )
 from metagraph.speech.pitch import Pitch
@@ -36,7 +36,7 @@ VOICELESS = Pitch(HEARD.times, np.full(len(HEARD.times), np.nan))
 
 def pack(**fields: object) -> LanguagePack:
     data = {"code": "xx", "name": "Test", "responses": "jup", **fields}
-    return language_of(msgspec.convert(data, PackFile), list_language_packs())
+    return make_language(msgspec.convert(data, PackFile), list_language_packs())
 
 
 @pytest.mark.parametrize(
@@ -131,8 +131,8 @@ def test_a_packs_words_are_always_found(
     said = [
         Word(text=p, start=2 + 0.3 * n, end=2.3 + 0.3 * n) for n, p in enumerate(parts)
     ]  # alone between pauses
-    found = segments(said, VOICELESS, HEARD, language=one)
-    answers, _, _, _ = kinds_of_words(one.responses, one.hesitations)
+    found = find_segments(said, VOICELESS, HEARD, language=one)
+    answers, _, _, _ = make_word_vocabularies(one.responses, one.hesitations)
     expected = "response" if answers.made_of([split_tokens(p) for p in parts]) else "hesitation"
     assert [s.kind for s in found] == [expected], (one.code, text, found)
     assert kind == expected or answers.made_of([split_tokens(phrase)])

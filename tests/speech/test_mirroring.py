@@ -11,8 +11,8 @@ from metagraph.graph.conversation.model import Conversation, Rates, Segment, Sid
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.drive import drive
-from metagraph.speech.duet import duet
-from metagraph.speech.mirroring import Mover, list_mirrored_stances, stance_shapes
+from metagraph.speech.duet import plan_duet
+from metagraph.speech.mirroring import Mover, list_mirrored_stances, measure_stance_shapes
 
 
 def talk(mirror: float = 1.0, seed: int = 1) -> Conversation:
@@ -35,7 +35,7 @@ def test_nothing_is_mirrored_at_a_rate_of_nought_or_where_nobody_changes(sample:
 
 
 def test_a_project_without_a_skeleton_or_with_one_stance_mirrors_nothing(sample: Project) -> None:
-    assert stance_shapes(Project()) == {}
+    assert measure_stance_shapes(Project()) == {}
     bare = Mover(1, Project(), Plan(1, 9.0))
     assert not list(list_mirrored_stances(talk(), bare, [Mover(0, sample, Plan(1, 9.0))]))
 
@@ -75,9 +75,9 @@ def test_names_and_sizes_do_not_matter(sample: Project) -> None:
 
 def test_in_a_conversation_the_listener_ends_up_as_the_speaker_stands(sample: Project) -> None:
     conversation = talk()
-    with_it = duet(conversation, "v", (sample, sample), (None, None)).parts
-    without = duet(talk(0.0), "v", (sample, sample), (None, None)).parts
-    shapes = stance_shapes(sample)
+    with_it = plan_duet(conversation, "v", (sample, sample), (None, None)).parts
+    without = plan_duet(talk(0.0), "v", (sample, sample), (None, None)).parts
+    shapes = measure_stance_shapes(sample)
 
     def apart(parts: object) -> float:
         """How unlike in a mirror both stand, on average over the conversation."""

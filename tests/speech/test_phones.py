@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.face.names import VISEMES
-from metagraph.speech.phones import is_arpabet, pieces_of, visemes_of
+from metagraph.speech.phones import find_visemes, is_arpabet, list_mouth_pieces
 from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid
 
 
@@ -18,7 +18,7 @@ def tier(name: str, *labels: str, points: bool = False) -> GridTier:
 
 
 def shapes(*tiers: GridTier) -> list[str]:
-    return [p.viseme for p in pieces_of(TextGrid(0, 10, tiers))]
+    return [p.viseme for p in list_mouth_pieces(TextGrid(0, 10, tiers))]
 
 
 @pytest.mark.parametrize(
@@ -46,16 +46,16 @@ def test_arpabet_is_told_from_the_others(labels: list[str], known: bool) -> None
     ],
 )  # fmt: skip
 def test_phones_are_the_shapes_they_are_made_with(label: str, arpabet: bool, want: list[str]) -> None:
-    assert visemes_of(label, arpabet)[0] == want
+    assert find_visemes(label, arpabet)[0] == want
 
 
 def test_a_vowel_without_stress_is_hardly_made() -> None:
-    assert visemes_of("AH0", True)[1] < visemes_of("AH1", True)[1] == 1
-    assert visemes_of("ə", False)[1] < visemes_of("e", False)[1] == 1
+    assert find_visemes("AH0", True)[1] < find_visemes("AH1", True)[1] == 1
+    assert find_visemes("ə", False)[1] < find_visemes("e", False)[1] == 1
 
 
 def test_a_diphthong_is_two_shapes_the_first_longer() -> None:
-    first, second = pieces_of(TextGrid(0, 1, (GridTier("phones", (GridInterval(0.0, 0.2, "AY1"),)),)))
+    first, second = list_mouth_pieces(TextGrid(0, 1, (GridTier("phones", (GridInterval(0.0, 0.2, "AY1"),)),)))
     assert (first.viseme, second.viseme) == ("aa", "I") and first.end == second.start == pytest.approx(0.12)
 
 
@@ -84,5 +84,5 @@ def test_points_and_empty_tiers_are_not_speech() -> None:
 @given(st.lists(st.tuples(st.text(max_size=8), st.lists(st.text(max_size=6), max_size=6)), max_size=4))
 def test_any_labels_are_survived(tiers: list[tuple[str, list[str]]]) -> None:
     grid = TextGrid(0, 1, tuple(tier(name, *labels) for name, labels in tiers))
-    for piece in pieces_of(grid):
+    for piece in list_mouth_pieces(grid):
         assert piece.viseme in VISEMES[1:] and piece.end >= piece.start and 0 < piece.strength <= 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.speech.pitch import Pitch, peaks, pitch, smooth
+from metagraph.speech.pitch import Pitch, find_pitch_peaks, measure_pitch, smooth
 from tests.speech import talk
 
 
@@ -18,7 +18,7 @@ def voice(hertz: object, rate: int = 16000) -> object:
 @pytest.mark.parametrize("rate", [8000, 22050, 44100, 48000])
 @pytest.mark.parametrize("hertz", [75.0, 120.0, 220.0, 380.0])
 def test_a_steady_voice_has_its_own_pitch_at_any_rate(hertz: float, rate: int) -> None:
-    found = pitch(voice(np.full(rate, hertz), rate), rate)
+    found = measure_pitch(voice(np.full(rate, hertz), rate), rate)
     known = found.hertz[~np.isnan(found.hertz)]
     assert len(known) > 0.9 * len(found.hertz) and np.abs(12 * np.log2(known / hertz)).max() < 0.2
 
@@ -27,7 +27,9 @@ def test_times_are_those_of_loudness() -> None:
     from metagraph.speech.sound import analyse_sound
 
     samples = voice(np.full(12345, 150.0))
-    assert np.array_equal(pitch(samples, 16000).times, analyse_sound(np.asarray(samples), 16000).times)
+    assert np.array_equal(
+        measure_pitch(samples, 16000).times, analyse_sound(np.asarray(samples), 16000).times
+    )
 
 
 @pytest.mark.parametrize(
@@ -35,13 +37,13 @@ def test_times_are_those_of_loudness() -> None:
     [np.zeros(0), np.zeros(3), np.zeros(16000), 0.1 * np.random.default_rng(1).standard_normal(48000)],
 )
 def test_silence_and_noise_have_none(samples: object) -> None:
-    found = pitch(np.asarray(samples), 16000)
-    assert np.isnan(found.hertz).all() and not peaks(found, 0, 10)
+    found = measure_pitch(np.asarray(samples), 16000)
+    assert np.isnan(found.hertz).all() and not find_pitch_peaks(found, 0, 10)
 
 
 def test_pauses_between_voice_have_none() -> None:
     samples = np.concatenate([voice(np.full(8000, 150.0)), np.zeros(8000), voice(np.full(8000, 170.0))])
-    found = pitch(samples, 16000)
+    found = measure_pitch(samples, 16000)
     assert np.isnan(found.hertz[55:95]).all()
     assert np.nanmedian(found.hertz[:45]) == pytest.approx(150, rel=0.01) and np.nanmedian(
         found.hertz[105:]
@@ -50,7 +52,7 @@ def test_pauses_between_voice_have_none() -> None:
 
 def test_a_voice_over_several_blocks_is_found_the_same() -> None:
     hertz = 150 + 30 * np.sin(np.linspace(0, 60, 16000 * 40))
-    found = pitch(voice(hertz), 16000)
+    found = measure_pitch(voice(hertz), 16000)
     known = ~np.isnan(found.hertz)
     right = hertz[np.minimum((found.times * 16000).astype(int), len(hertz) - 1)]
     assert known.mean() > 0.98 and np.abs(found.hertz[known] / right[known] - 1).max() < 0.03
@@ -59,15 +61,15 @@ def test_a_voice_over_several_blocks_is_found_the_same() -> None:
 def test_the_most_prominent_peak_comes_first() -> None:
     at = np.linspace(0, 2, 32000)
     hertz = 120 + 20 * np.exp(-(((at - 0.5) / 0.1) ** 2)) + 50 * np.exp(-(((at - 1.4) / 0.1) ** 2))
-    found = pitch(voice(hertz), 16000)
-    assert peaks(found, 0, 2)[:2] == (pytest.approx(1.4, abs=0.03), pytest.approx(0.5, abs=0.03))
-    assert peaks(found, 0, 1) == (pytest.approx(0.5, abs=0.03),)
-    assert peaks(found, 5, 6) == () and peaks(found, 1, 0.5) == ()
+    found = measure_pitch(voice(hertz), 16000)
+    assert find_pitch_peaks(found, 0, 2)[:2] == (pytest.approx(1.4, abs=0.03), pytest.approx(0.5, abs=0.03))
+    assert find_pitch_peaks(found, 0, 1) == (pytest.approx(0.5, abs=0.03),)
+    assert find_pitch_peaks(found, 5, 6) == () and find_pitch_peaks(found, 1, 0.5) == ()
 
 
 def test_a_pitch_that_only_falls_peaks_where_it_is_highest() -> None:
-    found = pitch(voice(np.linspace(200, 100, 32000)), 16000)
-    assert peaks(found, 0.5, 1.5)[0] == pytest.approx(0.5, abs=0.02)
+    found = measure_pitch(voice(np.linspace(200, 100, 32000)), 16000)
+    assert find_pitch_peaks(found, 0.5, 1.5)[0] == pytest.approx(0.5, abs=0.02)
 
 
 def test_smoothing_bridges_short_voiceless_moments_and_no_pauses() -> None:
@@ -85,7 +87,7 @@ def test_no_octave_is_mistaken_in_a_spoken_voice() -> None:
     """Against plain autocorrelation within an octave either side: where both find a voice they agree."""
     spoken = talk.speak()
     for samples in spoken.samples:
-        found = pitch(samples, spoken.rate)
+        found = measure_pitch(samples, spoken.rate)
         middle = float(np.nanmedian(found.hertz))
         known = np.flatnonzero(~np.isnan(found.hertz))
         apart = []

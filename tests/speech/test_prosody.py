@@ -10,7 +10,7 @@ import pytest
 from metagraph.formats.transcripts.reader import read_transcript
 from metagraph.graph.conversation.model import Segment, Word
 from metagraph.speech.loudness import measure_loudness, measure_loudness_within
-from metagraph.speech.prosody import letters, prosody
+from metagraph.speech.prosody import count_letters, measure_prosody
 from metagraph.speech.sound import read_sound
 
 RATE = 8000
@@ -36,9 +36,9 @@ def test_spans_are_as_loud_as_the_standard_says_and_silence_is_not_known() -> No
 
 
 def test_the_rate_is_of_letters_in_any_writing() -> None:
-    assert letters("It's 10 o'clock!") == 11
-    assert letters("नमस्ते") == 4, "marks of vowels belong to their letters"
-    assert letters("今天天气") == 4 and letters("… —") == 0
+    assert count_letters("It's 10 o'clock!") == 11
+    assert count_letters("नमस्ते") == 4, "marks of vowels belong to their letters"
+    assert count_letters("今天天气") == 4 and count_letters("… —") == 0
 
 
 def test_words_with_times_tell_the_rate_without_the_pauses_around_them() -> None:
@@ -48,7 +48,7 @@ def test_words_with_times_tell_the_rate_without_the_pauses_around_them() -> None
         Segment("hesitation", 5.0, 6.0),
     ]
     words = [word("hello", 0.5, 1.0), word("there", 1.0, 1.5), word("um", 5.1, 5.4)]
-    found = prosody(segments, words)
+    found = measure_prosody(segments, words)
     assert found.rate[0] == pytest.approx(10.0)
     assert np.isnan(found.rate[1:]).all(), "nobody says what; and the partner hesitates"
     assert np.isnan(found.loudness).all()
@@ -56,20 +56,20 @@ def test_words_with_times_tell_the_rate_without_the_pauses_around_them() -> None
 
 def test_texts_tell_where_words_have_no_times_and_the_sound_where_there_are_no_texts() -> None:
     segments = [Segment("clause", 0.0, 2.0, 1.0, "hello there"), Segment("response", 3.0, 4.0, None, "yes")]
-    assert prosody(segments).rate.tolist() == [5.0, 3.0]
+    assert measure_prosody(segments).rate.tolist() == [5.0, 3.0]
     bare = [Segment("clause", 0.0, 2.0), Segment("clause", 2.0, 4.0)]
     beats = [tone(0.15, 0.2) if n % 2 else np.zeros(round(0.1 * RATE)) for n in range(16)]
     slow = [tone(0.15, 0.2) if n % 2 else np.zeros(round(0.35 * RATE)) for n in range(8)]
-    found = prosody(bare, (), np.concatenate([*beats, *slow]), RATE)
+    found = measure_prosody(bare, (), np.concatenate([*beats, *slow]), RATE)
     assert found.rate[0] == pytest.approx(4.0, abs=0.6) and found.rate[1] == pytest.approx(2.0, abs=0.6)
 
 
 def test_nothing_said_and_nothing_known_is_no_error() -> None:
-    empty = prosody([])
+    empty = measure_prosody([])
     assert len(empty.loudness) == len(empty.rate) == 0
-    unknown = prosody([Segment("clause", 0.0, 1.0)])
+    unknown = measure_prosody([Segment("clause", 0.0, 1.0)])
     assert np.isnan(unknown.rate).all() and np.isnan(unknown.loudness).all()
-    beyond = prosody([Segment("clause", 9.0, 10.0)], (), tone(1, 0.1), RATE)
+    beyond = measure_prosody([Segment("clause", 9.0, 10.0)], (), tone(1, 0.1), RATE)
     assert np.isnan(beyond.loudness).all()
 
 
@@ -78,7 +78,10 @@ def test_real_speech_has_the_rate_of_speech_by_its_words_and_by_its_sound(shared
     (words,) = read_transcript(folder / "bobby_words.TextGrid").speakers.values()
     samples, rate = read_sound(folder / "bobby.wav")
     segments = [Segment("clause", words[0].start, words[-1].end)]
-    told, heard = prosody(segments, words, samples, rate), prosody(segments, (), samples, rate)
+    told, heard = (
+        measure_prosody(segments, words, samples, rate),
+        measure_prosody(segments, (), samples, rate),
+    )
     assert 8 < told.rate[0] < 25, "letters a second"
     assert 2 < heard.rate[0] < 8, "syllables a second"
     assert -45 < told.loudness[0] < -10 and told.loudness[0] == heard.loudness[0]

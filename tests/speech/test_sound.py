@@ -17,8 +17,14 @@ from metagraph.errors import FileError
 from metagraph.graph.face.names import VISEMES
 from metagraph.graph.face.rig import OPENING
 from metagraph.speech.lines import read_line_voice
-from metagraph.speech.phones import pieces_of
-from metagraph.speech.sound import analyse_sound, guess_mouth_shapes, read_recording, read_sound, syllables
+from metagraph.speech.phones import list_mouth_pieces
+from metagraph.speech.sound import (
+    analyse_sound,
+    find_syllables,
+    guess_mouth_shapes,
+    read_recording,
+    read_sound,
+)
 from metagraph.speech.textgrid import read_textgrid
 
 Array = np.ndarray[Any, Any]
@@ -51,7 +57,7 @@ def babble(
 
 @pytest.mark.parametrize("count", [0, 1, 2, 7])
 def test_syllables_are_counted(count: int) -> None:
-    peaks, strengths = syllables(analyse_sound(babble(np.ones(count)), RATE))
+    peaks, strengths = find_syllables(analyse_sound(babble(np.ones(count)), RATE))
     assert len(peaks) == len(strengths) == count
     if count:
         assert np.allclose(peaks, 0.28 + 0.24 * np.arange(count), atol=0.025)
@@ -62,7 +68,7 @@ def test_a_dip_that_can_be_heard_parts_syllables_and_a_tremor_does_not(depth: fl
     t = np.arange(2 * RATE) / RATE
     tone = (1 - depth * np.cos(2 * np.pi * 4 * t)) * np.sin(2 * np.pi * 500 * t) * (t > 0.001)
     samples = np.concatenate([np.zeros(RATE // 4), 0.2 * tone, np.zeros(RATE // 4)])
-    assert abs(len(syllables(analyse_sound(samples, RATE))[0]) - count) <= 1
+    assert abs(len(find_syllables(analyse_sound(samples, RATE))[0]) - count) <= 1
 
 
 @pytest.mark.parametrize("gain", [1e-3, 0.05, 1.0, 3.0])
@@ -70,16 +76,16 @@ def test_a_dip_that_can_be_heard_parts_syllables_and_a_tremor_does_not(depth: fl
 def test_level_and_noise_do_not_matter(gain: float, noise: float) -> None:
     clean = babble(np.array([1, 0.6, 0.8, 1, 0.5]))
     loud = gain * (clean + noise * np.random.default_rng(0).normal(size=len(clean)))
-    assert len(syllables(analyse_sound(loud, RATE))[0]) == 5
+    assert len(find_syllables(analyse_sound(loud, RATE))[0]) == 5
 
 
 @pytest.mark.parametrize("rate", [8000, 16000, 44100, 48000])
 def test_any_rate_of_samples_will_do(rate: int) -> None:
-    assert len(syllables(analyse_sound(babble(np.ones(4), rate=rate), rate))[0]) == 4
+    assert len(find_syllables(analyse_sound(babble(np.ones(4), rate=rate), rate))[0]) == 4
 
 
 def test_the_loudest_syllable_is_the_strongest() -> None:
-    peaks, strengths = syllables(analyse_sound(babble(np.array([0.4, 0.5, 1.0, 0.4])), RATE))
+    peaks, strengths = find_syllables(analyse_sound(babble(np.array([0.4, 0.5, 1.0, 0.4])), RATE))
     assert strengths.argmax() == 2 and len(peaks) == 4 and (strengths > 0).all() and strengths.max() <= 1
 
 
@@ -94,11 +100,13 @@ def test_the_loudest_syllable_is_the_strongest() -> None:
 )
 def test_silence_says_nothing(samples: Array) -> None:
     heard = analyse_sound(samples, RATE)
-    assert len(syllables(heard)[0]) == 0 and guess_mouth_shapes(heard) == []
+    assert len(find_syllables(heard)[0]) == 0 and guess_mouth_shapes(heard) == []
 
 
 def test_steady_noise_is_no_speech() -> None:
-    assert len(syllables(analyse_sound(0.1 * np.random.default_rng(0).normal(size=2 * RATE), RATE))[0]) <= 2
+    assert (
+        len(find_syllables(analyse_sound(0.1 * np.random.default_rng(0).normal(size=2 * RATE), RATE))[0]) <= 2
+    )
 
 
 def shown(samples: Array) -> dict[str, float]:
@@ -149,8 +157,10 @@ def test_syllables_of_the_samples_lines_lie_in_their_vowels(name: str) -> None:
 
 
 def syllables_in_vowels(sound: Path, grid: Path) -> None:
-    peaks, _ = syllables(analyse_sound(*read_sound(sound)))
-    vowels = [p for p in pieces_of(read_textgrid(grid)) if p.viseme in ("aa", "E", "I", "O", "U", "RR")]
+    peaks, _ = find_syllables(analyse_sound(*read_sound(sound)))
+    vowels = [
+        p for p in list_mouth_pieces(read_textgrid(grid)) if p.viseme in ("aa", "E", "I", "O", "U", "RR")
+    ]
     inside = [any(v.start - 0.03 <= t <= v.end + 0.03 for v in vowels) for t in peaks]
     assert len(peaks) >= 3 and np.mean(inside) >= 0.75
 

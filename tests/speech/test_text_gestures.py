@@ -12,18 +12,18 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.requests import Say, request_from
+from metagraph.graph.requests import Say, make_request
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
 from metagraph.speech.text_gestures import (
     TextStream,
     find_gesture_words,
     list_lexicon_languages,
+    load_gesture_words,
     make_gesture_requests,
     propose_gestures,
     read_gesture_words,
     timed_words,
-    words_for_gesture,
 )
 from metagraph.speech.word_gestures import APART, GestureRule, GestureWords, ProposedGesture
 
@@ -45,7 +45,7 @@ def tags_of(project: Project) -> dict[Layer, set[str]]:
 
 
 EVERY: dict[Layer, set[str]] = {
-    "arms": {tag for rule in words_for_gesture().rules for tag in rule.tags} | {"beat", "question"},
+    "arms": {tag for rule in load_gesture_words().rules for tag in rule.tags} | {"beat", "question"},
     "head": {"positive"},
 }
 
@@ -111,7 +111,7 @@ def test_whatever_the_text_none_is_in_anothers_way_and_nothing_depends_on_when_i
         times = [one.at for one in made if one.layer == layer]
         assert all(b - a >= APART[layer] for a, b in pairwise(times))
     for request in make_gesture_requests(made, 1.0, "x"):
-        request_from(json.loads(json.dumps(request)))
+        make_request(json.loads(json.dumps(request)))
 
 
 def _letters(text: str) -> str:
@@ -142,7 +142,7 @@ def test_most_of_what_words_propose_is_performed_on_its_word(sample: Project) ->
     wanted = played = 0
     for number, text in enumerate(TEXTS):
         stream = TextStream(tags_of(sample), seed=number)
-        asks = [request_from(x) for x in stream.take(text, 0.0, over=True)]
+        asks = [make_request(x) for x in stream.take(text, 0.0, over=True)]
         plan = hear_asks(sample, Plan(number, 0.0), 0.0, asks, stream.free + 4, idle=False)
         gestures = [ask.id for ask in asks if not isinstance(ask, Say)]
         became = answer_asks(plan, gestures)
@@ -166,7 +166,7 @@ def test_a_lexicon_of_ones_own_is_read_and_a_broken_one_is_told(tmp_path: Path) 
 
 
 def test_every_words_phrase_of_the_lexicon_is_as_words_are_read() -> None:
-    for rule in words_for_gesture().rules:
+    for rule in load_gesture_words().rules:
         assert rule.tags and rule.strength > 0
         for phrase in rule.words:
             assert [w.plain for w in timed_words(phrase)] == phrase.split(), phrase
@@ -201,9 +201,9 @@ def test_other_languages_have_lexicons_of_their_own_found_by_the_words(language:
 
 
 def test_every_lexicon_says_the_same_things_in_its_language() -> None:
-    english = [rule.tags for rule in words_for_gesture("en").rules]
+    english = [rule.tags for rule in load_gesture_words("en").rules]
     for language in list_lexicon_languages():
-        lexicon = words_for_gesture(language)
+        lexicon = load_gesture_words(language)
         assert lexicon.language == language
         assert [rule.tags for rule in lexicon.rules] == english
         every = [phrase for rule in lexicon.rules for phrase in rule.words]
@@ -213,7 +213,7 @@ def test_every_lexicon_says_the_same_things_in_its_language() -> None:
 
 
 def test_a_language_without_a_lexicon_and_none_that_is_told_have_the_english_one() -> None:
-    assert words_for_gesture("xx") == find_gesture_words("") == words_for_gesture("en")
+    assert load_gesture_words("xx") == find_gesture_words("") == load_gesture_words("en")
 
 
 def test_a_stream_goes_on_in_the_language_it_has_been_in() -> None:

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from metagraph.graph.conversation.model import Conversation, Segment, Side
-from metagraph.speech.turn_cues import APART, AWAY, BACK, NODS, look_at_turns, nod_to_clauses
+from metagraph.speech.turn_cues import APART, AWAY, BACK, NODS, look_at_turns, place_clause_nods
 
 HEAD = (0.0, 1.6, 1.3)
 
@@ -52,7 +52,7 @@ def test_short_turns_have_no_looks_of_their_own() -> None:
 
 
 def test_who_listens_nods_after_some_of_the_others_clauses_and_never_while_speaking() -> None:
-    nods = list(nod_to_clauses(talk(), 1, True))
+    nods = list(place_clause_nods(talk(), 1, True))
     clauses = talk().sides[0].segments
     assert 0.2 * len(clauses) < len(nods) <= NODS * 1.3 * len(clauses)
     assert all((b.at or 0) - (a.at or 0) >= APART for a, b in pairwise(nods))
@@ -60,7 +60,7 @@ def test_who_listens_nods_after_some_of_the_others_clauses_and_never_while_speak
     assert not any(a - 1.0 < (x.at or 0) < b + 0.3 for x in nods for a, b in own)
     assert all(any(0.0 < (x.at or 0) - s.end < 0.8 for s in clauses) for x in nods)
     assert {x.tags for x in nods} == {("listen",)}
-    assert {x.tags for x in nod_to_clauses(talk(), 1, False)} == {()}
+    assert {x.tags for x in place_clause_nods(talk(), 1, False)} == {()}
 
 
 def test_changing_a_clause_leaves_the_nods_to_others_as_they_were() -> None:
@@ -73,4 +73,4 @@ def test_changing_a_clause_leaves_the_nods_to_others_as_they_were() -> None:
             one.sides[1],
         ),
     )
-    assert list(nod_to_clauses(one, 1, True)) == list(nod_to_clauses(other, 1, True))
+    assert list(place_clause_nods(one, 1, True)) == list(place_clause_nods(other, 1, True))

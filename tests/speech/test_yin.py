@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from metagraph.speech import pitch as pitch_module
-from metagraph.speech.pitch import pitch
-from metagraph.speech.yin import measure_yin_differences, yin
+from metagraph.speech.pitch import measure_pitch
+from metagraph.speech.yin import measure_f0_by_yin, measure_yin_differences
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = np.load(Path(__file__).with_name("yin_librosa.npz"))
@@ -78,14 +78,14 @@ CASES = ("tones", "glides", "noise", "line", "talk0", "talk1")
 def test_every_frame_has_the_pitch_that_librosa_finds(name: str) -> None:
     frames, rate, lowest, highest = case(name)
     loud = (frames * frames).mean(1) > 1e-7  # what is softer, a decoder's last bit decides
-    apart = 12 * np.abs(np.log2(yin(frames, rate, lowest, highest) / KEPT[name]))[loud]
+    apart = 12 * np.abs(np.log2(measure_f0_by_yin(frames, rate, lowest, highest) / KEPT[name]))[loud]
     assert loud.sum() >= 30 and np.mean(apart < 0.01) > 0.99 and np.median(apart) < 1e-4
 
 
 @pytest.mark.parametrize("side", [0, 1])
 def test_a_spoken_side_of_a_conversation_has_the_pitch_it_had_by_librosa(side: int) -> None:
     samples, rate = sounded("conversation/talk.ogg")
-    found, kept = pitch(samples[:, side], rate).hertz, KEPT[f"pitch{side}"]
+    found, kept = measure_pitch(samples[:, side], rate).hertz, KEPT[f"pitch{side}"]
     both = ~np.isnan(found) & ~np.isnan(kept)
     apart = 12 * np.abs(np.log2(found[both] / kept[both]))
     assert np.mean(np.isnan(found) != np.isnan(kept)) < 0.01 and both.sum() > 100
@@ -98,9 +98,9 @@ def test_any_tone_is_found_to_a_fifth_of_a_semitone_however_loud(
     hertz: float, rate: int, gain: float
 ) -> None:
     frame = tone(hertz, rate)
-    found = yin(gain * frame, rate, 60, 600)
+    found = measure_f0_by_yin(gain * frame, rate, 60, 600)
     assert 12 * abs(np.log2(found[0] / hertz)) < 0.2 and found == pytest.approx(
-        yin(frame, rate, 60, 600), rel=1e-6
+        measure_f0_by_yin(frame, rate, 60, 600), rel=1e-6
     )
 
 
@@ -116,17 +116,19 @@ def test_differences_are_those_of_the_paper_where_nothing_is_heard_behind_a_fram
 
 
 def test_silence_and_a_steady_level_have_no_period_and_give_the_highest_pitch() -> None:
-    assert np.array_equal(yin(np.zeros((2, 512)), 8000, 60, 600), [8000 / 13] * 2)
+    assert np.array_equal(measure_f0_by_yin(np.zeros((2, 512)), 8000, 60, 600), [8000 / 13] * 2)
     assert np.array_equal(measure_yin_differences(np.zeros((1, 64)), 20), np.ones((1, 20)))
-    assert np.isfinite(yin(np.ones((1, 512)), 8000, 60, 600)).all()
+    assert np.isfinite(measure_f0_by_yin(np.ones((1, 512)), 8000, 60, 600)).all()
 
 
 def test_frames_do_not_mind_each_other() -> None:
     frames = np.concatenate([tones()[:5], np.zeros((1, 512)), glides()[:5]])
     assert np.allclose(
-        yin(frames, 8000, 60, 600), [yin(f[None], 8000, 60, 600)[0] for f in frames], rtol=1e-12
+        measure_f0_by_yin(frames, 8000, 60, 600),
+        [measure_f0_by_yin(f[None], 8000, 60, 600)[0] for f in frames],
+        rtol=1e-12,
     )
-    assert yin(frames[:0], 8000, 60, 600).shape == (0,)
+    assert measure_f0_by_yin(frames[:0], 8000, 60, 600).shape == (0,)
 
 
 @pytest.mark.parametrize(
@@ -136,7 +138,7 @@ def test_pitches_that_frames_cannot_tell_are_refused(
     size: int, rate: float, lowest: float, highest: float
 ) -> None:
     with pytest.raises(ValueError, match="tell no pitch"):
-        yin(np.zeros((3, size)), rate, lowest, highest)
+        measure_f0_by_yin(np.zeros((3, size)), rate, lowest, highest)
 
 
 @pytest.mark.parametrize("rate", [11025, 16000, 44100, 48000])
@@ -148,10 +150,10 @@ def test_the_size_of_blocks_does_not_matter(monkeypatch: pytest.MonkeyPatch, rat
     sound = sum(
         np.sin(2 * np.pi * k * np.cumsum(hertz) / rate) / k for k in range(1, 7)
     ) * 0.2 + 1e-3 * turn.standard_normal(4 * rate)
-    whole = pitch(np.asarray(sound), rate).hertz
+    whole = measure_pitch(np.asarray(sound), rate).hertz
     for block in (7, 100):
         monkeypatch.setattr(pitch_module, "_BLOCK", block)
-        pieces = pitch(np.asarray(sound), rate).hertz
+        pieces = measure_pitch(np.asarray(sound), rate).hertz
         assert (
             np.array_equal(np.isnan(whole), np.isnan(pieces)) and np.nanmax(np.abs(whole / pieces - 1)) < 1e-6
         )

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from metagraph.suggest.clip_measures import SEVERAL, TREMBLE, layer_of, resting, with_tremble
+from metagraph.suggest.clip_measures import SEVERAL, TREMBLE, compute_resting_logit, guess_layer, with_tremble
 from metagraph.suggest.traits import Traits
 from tests.suggest.test_traits import of
 
@@ -26,13 +26,13 @@ def trembling(toy: Any, count: int = SEVERAL, legs: float = 0.018, **energy: flo
 
 def test_arms_that_move_on_trembling_legs_are_arms(toy: Any) -> None:
     clips = trembling(toy, right_arm=0.06)
-    assert layer_of(clips["x"]).value == "body", "alone it cannot be told"
-    assert layer_of(with_tremble(clips)["x"]).value == "arms"
+    assert guess_layer(clips["x"]).value == "body", "alone it cannot be told"
+    assert guess_layer(with_tremble(clips)["x"]).value == "arms"
 
 
 def test_legs_that_move_beyond_the_tremble_are_the_body(toy: Any) -> None:
     clips = trembling(toy) | {"x": moving(toy, legs=0.2, right_arm=0.06)}
-    assert layer_of(with_tremble(clips)["x"]).value == "body"
+    assert guess_layer(with_tremble(clips)["x"]).value == "body"
 
 
 def test_of_few_clips_nothing_is_known_of_the_recording(toy: Any) -> None:
@@ -44,12 +44,12 @@ def test_of_few_clips_nothing_is_known_of_the_recording(toy: Any) -> None:
 def test_where_the_calmest_clips_move_that_is_no_tremble(toy: Any) -> None:
     clips = trembling(toy, legs=2 * TREMBLE, right_arm=0.06)
     assert with_tremble(clips)["x"].tremble["legs"] == 0
-    assert layer_of(with_tremble(clips)["x"]).value == "body"
+    assert guess_layer(with_tremble(clips)["x"]).value == "body"
 
 
 def test_a_clip_that_only_trembles_is_told_by_all_it_has(toy: Any) -> None:
     clips = trembling(toy, 4 * SEVERAL)
-    assert layer_of(with_tremble(clips)["c0"]).value == layer_of(clips["c0"]).value == "body"
+    assert guess_layer(with_tremble(clips)["c0"]).value == guess_layer(clips["c0"]).value == "body"
 
 
 @pytest.mark.parametrize(
@@ -64,10 +64,15 @@ def test_an_idle_in_which_weight_is_shifted_or_shoulders_rise_is_no_rest(
     toy: Any, measures: dict[str, float], less: float
 ) -> None:
     calm = replace(of(toy.clip("calm", 6.0, swing=0.02)), sway=0.0, shrug=0.0)
-    assert resting(calm) - resting(replace(calm, **measures)) == pytest.approx(less, abs=0.1)
+    assert compute_resting_logit(calm) - compute_resting_logit(replace(calm, **measures)) == pytest.approx(
+        less, abs=0.1
+    )
 
 
 def test_a_look_round_is_no_rest(toy: Any) -> None:
     calm = of(toy.clip("calm", 6.0, swing=0.02))
     far = replace(calm.layers["head"], extent=0.13)
-    assert resting(replace(calm, layers={**calm.layers, "head": far})) < resting(calm) - 1.0
+    assert (
+        compute_resting_logit(replace(calm, layers={**calm.layers, "head": far}))
+        < compute_resting_logit(calm) - 1.0
+    )

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.flags import LOOK, chance_wrong, doubt, gain, needs_look
+from metagraph.suggest.flags import LOOK, estimate_chance_wrong, estimate_gain, explain_doubt, needs_look
 from metagraph.suggest.proposal import Proposal
 
 SURE = Proposal(
@@ -25,27 +25,31 @@ SURE = Proposal(
 
 
 def test_what_is_sure_throughout_needs_no_look_and_what_was_not_placed_does() -> None:
-    assert not needs_look(SURE) and chance_wrong(SURE) < 0.1
+    assert not needs_look(SURE) and estimate_chance_wrong(SURE) < 0.1
     assert needs_look(SURE, {"c": "nothing says where it ends"})
 
 
 @given(st.floats(0.02, 0.98), st.floats(0.02, 0.98))
 def test_the_less_sure_a_kind_is_the_likelier_it_is_wrong(one: float, other: float) -> None:
     less, more = sorted((one, other))
-    chances = [chance_wrong(replace(SURE, kind=replace(SURE.kind, confidence=x))) for x in (less, more)]
+    chances = [
+        estimate_chance_wrong(replace(SURE, kind=replace(SURE.kind, confidence=x))) for x in (less, more)
+    ]
     assert 0 <= chances[1] <= chances[0] <= 1
 
 
 @given(st.floats(0.02, 0.98), st.floats(0.02, 0.98))
 def test_the_less_sure_a_layer_is_the_likelier_it_is_wrong(one: float, other: float) -> None:
     less, more = sorted((one, other))
-    chances = [chance_wrong(replace(SURE, layer=replace(SURE.layer, confidence=x))) for x in (less, more)]
+    chances = [
+        estimate_chance_wrong(replace(SURE, layer=replace(SURE.layer, confidence=x))) for x in (less, more)
+    ]
     assert 0 <= chances[1] <= chances[0] <= 1
 
 
 def test_sources_that_disagree_are_told() -> None:
     told = replace(SURE, conflicts=("name says 'idle 2', but begins 0.1 cm from \"idle 1\"",))
-    assert re.match(r"wrong with a probability of \d+ %: .* but begins 0.1 cm", doubt(told))
+    assert re.match(r"wrong with a probability of \d+ %: .* but begins 0.1 cm", explain_doubt(told))
 
 
 @pytest.mark.parametrize(
@@ -57,17 +61,17 @@ def test_sources_that_disagree_are_told() -> None:
     ],
 )
 def test_a_doubt_names_what_is_least_sure(field: str, word: str) -> None:
-    assert word in doubt(replace(SURE, **{field: replace(getattr(SURE, field), confidence=0.3)}))
+    assert word in explain_doubt(replace(SURE, **{field: replace(getattr(SURE, field), confidence=0.3)}))
 
 
 def test_a_transition_that_nothing_says_the_end_of_is_told_so() -> None:
     p = replace(SURE, kind=Belief("transition", 0.97, "name says 'to'"))
-    assert doubt(p).endswith("there is no evidence of its end")
+    assert explain_doubt(p).endswith("there is no evidence of its end")
 
 
 def test_a_look_gains_more_where_others_are_called_alike() -> None:
     alike = replace(SURE, details={"likelihood": Belief(0.25, 0.8, "one of 4 of 'shrug'")})
-    assert gain(alike) > gain(SURE) > 0 and 0 < LOOK < 1
+    assert estimate_gain(alike) > estimate_gain(SURE) > 0 and 0 < LOOK < 1
 
 
 @pytest.mark.parametrize(("sure", "look"), [(0.57, True), (0.62, False)])

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from metagraph.graph.model import Project
 from metagraph.suggest.accept import accept
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.left_aside import explain_skipping, reasons, take_up_skipped
+from metagraph.suggest.left_aside import explain_skipping, group_reasons, take_up_skipped
 from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.propose import propose
 from metagraph.suggest.review import Review
@@ -140,7 +140,7 @@ whys = st.tuples(words, st.floats(0, 99).map(lambda x: round(x, 1))).map(lambda 
 
 @given(st.dictionaries(st.text("abc", min_size=1, max_size=3), whys))
 def test_reasons_are_told_with_all_their_clips_the_most_frequent_first(aside: dict[str, str]) -> None:
-    found = reasons(aside)
+    found = group_reasons(aside)
     assert sorted(c for _, clips in found for c in clips) == sorted(aside)
     assert [len(c) for _, c in found] == sorted((len(c) for _, c in found), reverse=True)
     assert all(why == aside[clips[0]] for why, clips in found if len({aside[c] for c in clips}) == 1)
@@ -148,11 +148,11 @@ def test_reasons_are_told_with_all_their_clips_the_most_frequent_first(aside: di
 
 def test_reasons_that_differ_in_numbers_are_one_with_the_least_and_the_greatest() -> None:
     aside = {"a": "goes 2.5 m away", "b": "goes 10.0 m away", "c": "name says 'run'", "d": "goes 3.0 m away"}
-    assert reasons(aside) == [
+    assert group_reasons(aside) == [
         ("goes 2.5 to 10.0 m away", ["a", "b", "d"]),
         ("name says 'run'", ["c"]),
     ]
-    assert reasons({}) == []
+    assert group_reasons({}) == []
 
 
 def test_clips_left_aside_stay_so_when_the_rest_is_placed(exercises: MadeSet) -> None:

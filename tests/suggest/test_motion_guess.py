@@ -19,7 +19,7 @@ from metagraph.suggest.clip_measures import is_walk
 from metagraph.suggest.motion_guess import _passing, guess
 from metagraph.suggest.propose import accept, propose
 from metagraph.suggest.stances.known import Shape, list_known_stances
-from metagraph.suggest.traits import list_known_traits, traits_of
+from metagraph.suggest.traits import list_known_traits, measure_all_traits
 
 RATE = 30.0
 
@@ -45,7 +45,7 @@ def cycle(seconds: float, count: int = 1) -> Any:
 def test_a_cycle_of_steps_is_a_stance_of_the_body(toy: Any) -> None:
     swing = 0.6 * cycle(1.0)
     steps = turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), swing), "RightUpperLeg": ((1, 0, 0), -swing)})
-    t = traits_of([steps])["x"]
+    t = measure_all_traits([steps])["x"]
     assert t.stride > 0.05 and is_walk(t)
     g = guess(t, {})
     assert (g.kind.value, g.layer.value, g.loop.value) == (
@@ -57,10 +57,10 @@ def test_a_cycle_of_steps_is_a_stance_of_the_body(toy: Any) -> None:
 
 def test_a_step_and_a_kick_are_no_walk(toy: Any) -> None:
     once = 0.6 * np.sin(np.pi * np.linspace(0, 1, 31)) ** 2
-    assert not is_walk(traits_of([turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), once)})])["x"])
+    assert not is_walk(measure_all_traits([turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), once)})])["x"])
     half = 0.6 * np.linspace(0, 1, 31)
     assert not is_walk(
-        traits_of(
+        measure_all_traits(
             [turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), half), "RightUpperLeg": ((1, 0, 0), -half)})]
         )["x"]
     )
@@ -71,10 +71,12 @@ def test_a_short_loop_that_flows_rests_and_one_that_stops_at_its_ends_does_not(t
         "LeftUpperArm": ((0, 0, 1), 0.012 * cycle(1.1)),
         "RightUpperArm": ((0, 0, 1), -0.012 * cycle(1.1)),
     }
-    assert guess(traits_of([turned(toy.skeleton, small)])["x"], {}).kind.value == "stance"
+    assert guess(measure_all_traits([turned(toy.skeleton, small)])["x"], {}).kind.value == "stance"
     wide = 0.8 * np.sin(np.pi * np.linspace(0, 1, 34)) ** 2
     assert (
-        guess(traits_of([turned(toy.skeleton, {"LeftUpperArm": ((0, 0, 1), wide)})])["x"], {}).kind.value
+        guess(
+            measure_all_traits([turned(toy.skeleton, {"LeftUpperArm": ((0, 0, 1), wide)})])["x"], {}
+        ).kind.value
         != "stance"
     )
 
@@ -94,7 +96,7 @@ def test_a_clip_of_the_face_is_of_the_head_and_masked_to_what_moves(toy: Any) ->
     skeleton = faced(toy.skeleton)
     talk = turned(skeleton, {"Jaw": ((1, 0, 0), 0.2 * np.abs(cycle(1.5, 3)))}, "talk")
     wave = turned(skeleton, {"LeftUpperArm": ((0, 0, 1), np.abs(cycle(1.5)))}, "wave")
-    t = traits_of([talk, wave])
+    t = measure_all_traits([talk, wave])
     assert t["talk"].face > 0.05 and t["wave"].face == 0
     g = guess(t["talk"], {})
     assert g.layer.value == "head" and g.layer.confidence > 0.9 and g.layer.reason == "only the face moves"
@@ -112,7 +114,7 @@ def test_a_clip_of_the_face_is_of_the_head_and_masked_to_what_moves(toy: Any) ->
 
 def test_what_moves_nothing_is_of_no_layer_that_is_known(toy: Any) -> None:
     skeleton = faced(toy.skeleton)
-    g = guess(traits_of([turned(skeleton, {"Jaw": ((1, 0, 0), np.zeros(6))})])["x"], {})
+    g = guess(measure_all_traits([turned(skeleton, {"Jaw": ((1, 0, 0), np.zeros(6))})])["x"], {})
     assert g.layer.confidence < 0.5 and g.layer.reason == "nothing moves"
 
 
@@ -132,12 +134,12 @@ def test_a_gesture_that_ends_a_little_elsewhere_but_in_no_stance_is_no_transitio
         rotations[:, arm], rotation.from_axis_angle(np.array([1.0, 0, 0]), ramp)
     )
     cut = Clip(clip.name, clip.skeleton, clip.fps, rotations, clip.translations, clip.translated)
-    g = guess(traits_of([cut])[cut.name], list_known_stances(sample, traits_of(sample)))
+    g = guess(measure_all_traits([cut])[cut.name], list_known_stances(sample, measure_all_traits(sample)))
     assert g.kind.value == "gesture" and g.end_stance is None
 
 
 def test_the_layer_that_others_know_is_where_it_is_looked_for(sample: Project) -> None:
-    found = traits_of(sample)
+    found = measure_all_traits(sample)
     stances = list_known_stances(sample, found)
     action = next(a for a in sample.actions() if a.kind == "gesture" and a.layer == "arms")
     g = guess(found[action.clip], stances, "body")
@@ -151,7 +153,7 @@ def test_what_was_looked_at_before_is_known_at_once(sample: Project) -> None:
         if c.motion is not None
     }
     assert list_known_traits(replace(sample, clips=fresh)) == {}
-    traits_of(sample)
+    measure_all_traits(sample)
     assert set(list_known_traits(sample)) == set(sample.clips)
 
 

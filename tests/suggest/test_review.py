@@ -10,7 +10,7 @@ from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.flags import gain
+from metagraph.suggest.flags import estimate_gain
 from metagraph.suggest.proposal import Proposal, Proposals, StancePlace
 from metagraph.suggest.propose import propose
 from metagraph.suggest.review import PAUSE, SAID, USUAL, Review, ReviewPace
@@ -48,7 +48,7 @@ def test_stances_come_first_the_most_used_before_the_others_then_where_a_look_ga
     kinds = [p.kind.value == "stance" for p in order]
     assert kinds == sorted(kinds, reverse=True)
     assert practice.clips[order[0].clip].name == "hands_at_sides__stance"
-    gains = [gain(p) for p in order if p.kind.value != "stance"]
+    gains = [estimate_gain(p) for p in order if p.kind.value != "stance"]
     assert gains == sorted(gains, reverse=True)
 
 

@@ -20,7 +20,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 from metagraph.suggest import traits as module
-from metagraph.suggest.traits import Traits, traits, traits_of
+from metagraph.suggest.traits import Traits, measure_all_traits, measure_traits
 
 LEFT_FINGERS = [("LeftIndex1", "LeftHand", (0.08, 0, 0.01)), ("LeftIndex2", "LeftIndex1", (0.03, 0, 0))]
 
@@ -75,7 +75,7 @@ def one_armed(toy: Any, side: str = "Left", seconds: float = 1.5, fps: float = 3
 
 
 def of(clip: Clip) -> Traits:
-    return traits(clip.skeleton, None, clip)
+    return measure_traits(clip.skeleton, None, clip)
 
 
 def numbers(t: Traits) -> list[float]:
@@ -142,12 +142,12 @@ def test_a_quadruped_has_traits() -> None:
 def test_roles_that_are_missing_leave_their_layer_empty(toy: Any) -> None:
     clip = toy.clip("x")
     roles = find_roles(toy.skeleton)
-    armless = traits(
+    armless = measure_traits(
         toy.skeleton, {r: j for r, j in roles.items() if "arm" not in r and "hand" not in r}, clip
     )
     assert armless.layers["arms"].names == () and armless.symmetry == 0
     assert armless.layers["head"].names
-    none = traits(toy.skeleton, {}, clip)
+    none = measure_traits(toy.skeleton, {}, clip)
     assert none.layers["body"].names and not none.layers["arms"].names
 
 
@@ -259,7 +259,7 @@ def test_what_was_found_is_kept_as_long_as_the_clip(toy: Any) -> None:
     clip = toy.clip("x")
     first = of(clip)
     assert of(clip) is first
-    assert traits(toy.skeleton, {"hips": 0}, clip) is not first  # other roles, other traits
+    assert measure_traits(toy.skeleton, {"hips": 0}, clip) is not first  # other roles, other traits
     kept = weakref.ref(of(clip))
     gc.collect()
     assert kept() is not None and of(clip) is kept()
@@ -271,25 +271,27 @@ def test_what_was_found_is_kept_as_long_as_the_clip(toy: Any) -> None:
 def test_many_at_once_are_as_one_by_one(sample: Project) -> None:
     clips = [e.motion for e in list(sample.clips.values())[::17] if e.motion is not None]
     again = [c.renamed(c.name) for c in clips]
-    together = traits_of(again)
+    together = measure_all_traits(again)
     for clip in clips:
         assert np.allclose(numbers(together[clip.name]), numbers(of(clip)), atol=1e-5)
 
 
 def test_clips_of_several_skeletons_are_taken_apart(toy: Any) -> None:
     odd = Clip("odd", chain(4), 30, np.tile([0, 0, 0, 1.0], (5, 4, 1)), np.zeros((5, 1, 3)))
-    assert set(traits_of([toy.clip("one"), odd, toy.clip("two")])) == {"one", "odd", "two"}
+    assert set(measure_all_traits([toy.clip("one"), odd, toy.clip("two")])) == {"one", "odd", "two"}
 
 
 def test_nothing_has_no_traits_and_work_can_be_cancelled(toy: Any) -> None:
-    assert traits_of([]) == {} and traits_of(Project()) == {}
-    assert traits_of([toy.clip("x")], cancelled=lambda: True) == {}
+    assert measure_all_traits([]) == {} and measure_all_traits(Project()) == {}
+    assert measure_all_traits([toy.clip("x")], cancelled=lambda: True) == {}
 
 
 def test_progress_ends_at_all(toy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "BATCH", 40)
     told: list[tuple[int, int]] = []
-    traits_of([toy.clip(str(n)) for n in range(5)], progress=lambda done, of: told.append((done, of)))
+    measure_all_traits(
+        [toy.clip(str(n)) for n in range(5)], progress=lambda done, of: told.append((done, of))
+    )
     assert told[-1] == (5, 5) and len(told) > 1
 
 
@@ -299,14 +301,14 @@ def test_missing_clips_are_left_out(sample: Project) -> None:
     some = dict(list(sample.clips.items())[:3])
     first = next(iter(some))
     project = replace(sample, clips={**some, first: replace(some[first], motion=None)})
-    assert set(traits_of(project)) == set(some) - {first}
+    assert set(measure_all_traits(project)) == set(some) - {first}
 
 
 def test_clips_of_the_zoo_have_finite_traits(zoo_files: dict[str, Path]) -> None:
     from metagraph.formats.clips import read_clips
 
     for path in zoo_files.values():
-        for found in traits_of(read_clips(path)).values():
+        for found in measure_all_traits(read_clips(path)).values():
             assert np.isfinite(numbers(found)).all(), path.name
 
 
@@ -323,5 +325,5 @@ def test_real_clips_have_finite_traits(shared_data: Path, name: str) -> None:
             clips += read_clips(file)
         except FileError:
             continue
-    for found in traits_of(clips).values():
+    for found in measure_all_traits(clips).values():
         assert np.isfinite(numbers(found)).all()

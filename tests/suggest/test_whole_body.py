@@ -16,7 +16,7 @@ from metagraph.motion.clip import Clip
 from metagraph.suggest.accept import accept
 from metagraph.suggest.clip_measures import with_tremble
 from metagraph.suggest.propose import propose
-from metagraph.suggest.traits import Traits, traits_of
+from metagraph.suggest.traits import Traits, measure_all_traits
 from metagraph.suggest.whole_body import (
     CARRIER,
     SCALE,
@@ -75,7 +75,7 @@ def test_clips_of_single_layers_are_not(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def talker() -> dict[str, Traits]:
-    return traits_of(named("standing talker").project)
+    return measure_all_traits(named("standing talker").project)
 
 
 @pytest.mark.nightly
@@ -93,7 +93,7 @@ _TRAITS: dict[str, dict[str, Traits]] = {}
 
 def _known(name: str) -> dict[str, Traits]:
     if name not in _TRAITS:
-        _TRAITS[name] = traits_of(named(name).project)
+        _TRAITS[name] = measure_all_traits(named(name).project)
     return _TRAITS[name]
 
 
@@ -101,10 +101,10 @@ def _known(name: str) -> dict[str, Traits]:
 def test_names_alone_tell_it_where_one_stance_stands_before_what_several_layers_do(
     talker: dict[str, Traits],
 ) -> None:
-    from metagraph.suggest.clip_measures import layer_of, no_measures
+    from metagraph.suggest.clip_measures import guess_layer, has_no_measures
 
-    moving = [c for c, t in talker.items() if not no_measures(t) and t.face == 0]
-    layer = {c: layer_of(talker[c]).value for c in moving}
+    moving = [c for c, t in talker.items() if not has_no_measures(t) and t.face == 0]
+    layer = {c: guess_layer(talker[c]).value for c in moving}
     assert len(set(layer.values())) > 1
     by_layer = {c: {"arms": "wave", "head": "nod", "body": "shift"}[layer[c]] for c in moving}
     mixed = {c: ("stand", "sit")[n % 2] for n, c in enumerate(moving)}
@@ -177,6 +177,6 @@ def test_clips_of_single_layers_that_tremble_all_over_are_not(name: str) -> None
         turned = rotation.multiply(clip.rotations.astype(float), rotation.from_axis_angle(axes, angles))
         motion = Clip(clip.name, clip.skeleton, clip.fps, turned, clip.translations, clip.translated)
         shaken[key] = replace(entry, motion=motion)
-    found = traits_of(replace(project, clips=shaken))
+    found = measure_all_traits(replace(project, clips=shaken))
     assert not are_whole_body_recordings(found)
     assert not are_whole_body_recordings(with_tremble(found))

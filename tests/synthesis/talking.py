@@ -15,7 +15,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.synthesis.constraints import find_change_states, find_heard_at
-from metagraph.synthesis.extending.path import DriverGraph, driver_graph
+from metagraph.synthesis.extending.path import DriverGraph, make_driver_graph
 from metagraph.synthesis.graph import build_graph
 from metagraph.synthesis.states import key_states, read_states
 
@@ -96,7 +96,7 @@ def talkers_graph() -> DriverGraph:
     takes, said = talkers()
     states = read_states(takes)
     graph = build_graph(states, keys=key_states(states, changes=find_change_states(states, said)))
-    return driver_graph(graph, find_heard_at(states, said))
+    return make_driver_graph(graph, find_heard_at(states, said))
 
 
 def aloud(

@@ -43,7 +43,7 @@ def test_an_unbroken_path_is_the_take_itself(takes: list[Clip]) -> None:
     states = read_states(takes)
     first = int(states.starts[1])
     out = assemble(states, takes, plain(list(range(first, first + 30))))
-    same = rotation.angle_between(out.rotations[:, 1:], takes[1].rotations[:30, 1:])
+    same = rotation.measure_angle_between(out.rotations[:, 1:], takes[1].rotations[:30, 1:])
     assert out.frames == 30 and out.fps == 30 and np.degrees(same).max() < 0.1
     high = out.poses().translations[:, 0, 1] - takes[1].poses().translations[:30, 0, 1]
     assert np.abs(high).max() < 1e-5
@@ -92,10 +92,11 @@ def test_transitions_are_smooth_and_stretches_between_them_untouched(takes: list
     way = plain([*range(a, a + 20), *range(b + 25, b + 50)])
     hard, soft = (assemble(states, takes, way, blend=n) for n in (0, BLEND))
     turns = [
-        np.degrees(rotation.angle_between(c.rotations[1:], c.rotations[:-1])).max(-1) for c in (hard, soft)
+        np.degrees(rotation.measure_angle_between(c.rotations[1:], c.rotations[:-1])).max(-1)
+        for c in (hard, soft)
     ]
     assert turns[1].max() < 0.45 * turns[0][19]
-    same = np.degrees(rotation.angle_between(hard.rotations, soft.rotations)).max(-1)
+    same = np.degrees(rotation.measure_angle_between(hard.rotations, soft.rotations)).max(-1)
     assert same[: 20 - BLEND].max() < 0.1 and same[20 + BLEND :].max() < 0.1 and same[20] > 1
 
 
@@ -117,10 +118,12 @@ def test_what_a_search_found_plays(takes: list[Clip]) -> None:
     out = assemble(states, takes, path)
     assert out.duration == pytest.approx(299 / 30)
     fastest = max(
-        np.degrees(rotation.angle_between(c.rotations[1:], c.rotations[:-1])).max() * c.fps for c in takes
+        np.degrees(rotation.measure_angle_between(c.rotations[1:], c.rotations[:-1])).max() * c.fps
+        for c in takes
     )
     assert (
-        np.degrees(rotation.angle_between(out.rotations[1:], out.rotations[:-1])).max() * 30 < 1.2 * fastest
+        np.degrees(rotation.measure_angle_between(out.rotations[1:], out.rotations[:-1])).max() * 30
+        < 1.2 * fastest
     )
 
 

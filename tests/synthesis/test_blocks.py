@@ -177,16 +177,16 @@ def test_only_what_is_too_far_is_passed_over(straight: bool, scale: float) -> No
     if not straight:
         states = replace(states, places=states.places * np.float32(scale))
     keys = np.arange(len(states))
-    costs = np.sort(blocks.block(blocks.work_of(states, keys, 1e9, None), 0)[2])
+    costs = np.sort(blocks.make_block(blocks.prepare_blocks(states, keys, 1e9, None), 0)[2])
     for limit in costs[np.linspace(0, len(costs) - 1, 25).astype(int)]:
-        work = blocks.work_of(states, keys, float(limit), None)
+        work = blocks.prepare_blocks(states, keys, float(limit), None)
         unbounded = replace(work, reach=np.full_like(work.reach, np.inf))
-        for some, whole in zip(blocks.block(work, 0), blocks.block(unbounded, 0), strict=True):
+        for some, whole in zip(blocks.make_block(work, 0), blocks.make_block(unbounded, 0), strict=True):
             assert_array_equal(some, whole)
 
 
 def test_blocks_whose_middles_are_far_are_not_looked_at() -> None:
-    work = blocks.work_of(line(6000), np.arange(6000), 0.3, None)
+    work = blocks.prepare_blocks(line(6000), np.arange(6000), 0.3, None)
     row, every = work.rows[700], np.empty_like(work.blocks)
     every[:] = row.T[None, :, :, None]  # whatever is looked at is found
     count, found = every.shape[0] * kernels.LANES, np.empty(1, np.int64)
@@ -209,7 +209,7 @@ def test_what_fails_in_a_block_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object) -> object:
         raise MemoryError("no room")
 
-    monkeypatch.setattr(blocks, "block", broken)
+    monkeypatch.setattr(blocks, "make_block", broken)
     with pytest.raises(MemoryError, match="no room"):
         build_graph(made(1500), LIMIT)
 

@@ -18,12 +18,12 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.synthesis.cooccurrence import (
     _matches,
-    activation,
+    compute_wilson_interval,
     count_cooccurrence,
-    movement,
-    movement_windows,
-    speeds,
-    wilson,
+    find_activation_speed,
+    find_movement,
+    find_movement_windows,
+    measure_part_speeds,
 )
 
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
@@ -65,21 +65,21 @@ def moving(
 
 
 def test_what_is_active_lies_a_tenth_above_the_least() -> None:
-    assert activation(np.array([1.0, 2.0, 11.0])) == pytest.approx(2.0)
-    assert activation(np.array([3.0, 3.0])) == 3.0
+    assert find_activation_speed(np.array([1.0, 2.0, 11.0])) == pytest.approx(2.0)
+    assert find_activation_speed(np.array([3.0, 3.0])) == 3.0
 
 
 def test_a_movement_is_from_the_first_to_the_last_frame_over_the_windows_threshold() -> None:
     speed = np.array([0, 0, 0.05, 0.5, 1.0, 0.02, 0.8, 0.2, 0, 0])
     # The window's threshold is 0.1: frames 3 .. 7 of 10 frames a second.
-    assert movement(speed, 10.0, (0.0, 0.9), 0.1) == (0.3, 0.7)
-    assert movement(speed, 10.0, (0.0, 0.2), 0.1) is None, "slower than the take's own threshold"
-    assert movement(speed, 10.0, (5.0, 6.0), 0.1) is None
+    assert find_movement(speed, 10.0, (0.0, 0.9), 0.1) == (0.3, 0.7)
+    assert find_movement(speed, 10.0, (0.0, 0.2), 0.1) is None, "slower than the take's own threshold"
+    assert find_movement(speed, 10.0, (5.0, 6.0), 0.1) is None
 
 
 def test_windows_are_twice_as_long_and_trimmed_at_neighbours() -> None:
     segments = [Segment("clause", 1.0, 2.0), Segment("clause", 2.4, 3.4), Segment("clause", 8.0, 9.0)]
-    assert movement_windows(segments, 9.2) == [
+    assert find_movement_windows(segments, 9.2) == [
         (pytest.approx(0.5), pytest.approx(2.2)),
         (pytest.approx(2.2), pytest.approx(3.9)),
         (pytest.approx(7.5), pytest.approx(9.2)),
@@ -92,15 +92,17 @@ def test_a_window_holds_its_segment_where_none_overlap(spans: list[tuple[float, 
     for gap, length in spans:
         segments.append(Segment("clause", at + gap, at + gap + length))
         at += gap + length
-    for s, (low, high) in zip(segments, movement_windows(segments, at + 1), strict=True):
+    for s, (low, high) in zip(segments, find_movement_windows(segments, at + 1), strict=True):
         assert low <= s.start + 1e-9 and high >= s.end - 1e-9
 
 
 def test_windows_are_trimmed_at_neighbours_of_any_kind() -> None:
     clause, response = Segment("clause", 1.0, 2.0), Segment("response", 2.2, 2.6)
-    assert movement_windows([clause], 9.0) == [(0.5, 2.5)]
-    assert movement_windows([clause], 9.0, [clause, response]) == [(0.5, pytest.approx(2.1))]
-    assert movement_windows([response], 9.0, [clause, response]) == [(pytest.approx(2.1), pytest.approx(2.8))]
+    assert find_movement_windows([clause], 9.0) == [(0.5, 2.5)]
+    assert find_movement_windows([clause], 9.0, [clause, response]) == [(0.5, pytest.approx(2.1))]
+    assert find_movement_windows([response], 9.0, [clause, response]) == [
+        (pytest.approx(2.1), pytest.approx(2.8))
+    ]
 
 
 def test_a_movement_that_spans_two_clauses_counts_once(base: Clip) -> None:
@@ -119,7 +121,7 @@ def test_a_turn_of_the_whole_body_moves_no_hand_and_no_head(base: Clip) -> None:
     rotations = np.repeat(base.rotations[:1], frames, 0).copy()
     turn = np.stack([np.zeros(frames), np.sin(angle / 2), np.zeros(frames), np.cos(angle / 2)], axis=-1)
     rotations[:, 0] = rotation.multiply(turn, rotations[:, 0])
-    found = speeds(
+    found = measure_part_speeds(
         Clip(
             "turn",
             base.skeleton,
@@ -134,7 +136,7 @@ def test_a_turn_of_the_whole_body_moves_no_hand_and_no_head(base: Clip) -> None:
 
 
 def test_a_nod_is_up_and_down_a_shake_is_not(base: Clip) -> None:
-    nod = speeds(moving(base, 2, [], [(0.5, 1.2)]))["head"]
+    nod = measure_part_speeds(moving(base, 2, [], [(0.5, 1.2)]))["head"]
     assert nod.max() > 0.05 and nod[:10].max() < 0.01
 
 
@@ -168,6 +170,8 @@ def test_takes_and_speech_must_be_as_many(base: Clip) -> None:
 
 def test_the_interval_of_a_share_is_wilsons() -> None:
     # 387 of 515: the paper's 75 %.
-    low, high = wilson(387, 515)
+    low, high = compute_wilson_interval(387, 515)
     assert (low, high) == (pytest.approx(0.7123, abs=5e-4), pytest.approx(0.7868, abs=5e-4))
-    assert wilson(0, 10)[0] == pytest.approx(0, abs=1e-9) and wilson(10, 10)[1] == pytest.approx(1)
+    assert compute_wilson_interval(0, 10)[0] == pytest.approx(0, abs=1e-9) and compute_wilson_interval(
+        10, 10
+    )[1] == pytest.approx(1)

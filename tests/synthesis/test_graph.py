@@ -12,11 +12,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.synthesis.graph import MotionGraph, Threshold, build_graph, largest, threshold
+from metagraph.synthesis.graph import (
+    MotionGraph,
+    Threshold,
+    build_graph,
+    find_largest_component,
+    find_threshold,
+)
 from metagraph.synthesis.states import (
     States,
     SynthesisError,
-    costs_apart,
+    compute_costs_apart,
     key_states,
     list_pairs_apart,
     with_velocity,
@@ -69,11 +75,11 @@ def test_a_cost_is_the_sum_of_distances_of_places_and_velocities() -> None:
     velocities = np.array([[[0, 0, 0]], [[0, 0, 1]], [[0, 0, 3]], [[0, 0, 0]]], np.float32)
     states = States(places, velocities, np.array([2.0], np.float32), np.array([0, 4]), 0.5)
     # c_(i, i+2) sets frame i beside frame i + 1.
-    assert costs_apart(states, 2) == pytest.approx(
+    assert compute_costs_apart(states, 2) == pytest.approx(
         [2 * 5 + 0.5 * 2 * 1, 2 * 12 + 0.5 * 2 * 2, 2 * 13 + 0.5 * 2 * 3]
     )
     # c_(i, i+1) is nothing.
-    assert costs_apart(states, 1) == pytest.approx([0, 0, 0, 0])
+    assert compute_costs_apart(states, 1) == pytest.approx([0, 0, 0, 0])
 
 
 def test_pairs_stay_within_their_take() -> None:
@@ -116,11 +122,11 @@ def test_joints_without_weight_do_not_count() -> None:
 
 def test_the_threshold_is_the_level_of_what_the_takes_show() -> None:
     states = made(3000, takes=2)
-    found = threshold(states)
+    found = find_threshold(states)
     assert len(found.costs) == 3000 - 2 * 2
     assert found.limit == pytest.approx(found.observed, rel=0.25)
-    assert [threshold(states, k).limit for k in (2, 3, 4)] == sorted(
-        threshold(states, k).limit for k in (2, 3, 4)
+    assert [find_threshold(states, k).limit for k in (2, 3, 4)] == sorted(
+        find_threshold(states, k).limit for k in (2, 3, 4)
     )
 
 
@@ -132,7 +138,7 @@ def test_takes_that_do_not_move_have_no_distribution() -> None:
         np.array([0, 20]),
         1.0,
     )
-    found = threshold(still)
+    found = find_threshold(still)
     assert found.distribution is None and found.limit == 0
 
 
@@ -145,7 +151,7 @@ def test_takes_too_short_to_tell_a_jump_are_refused() -> None:
         1.0,
     )
     with pytest.raises(SynthesisError, match="longer takes"):
-        threshold(short)
+        find_threshold(short)
 
 
 def test_key_states_are_closer_where_more_moves_and_about_as_many_as_wanted() -> None:
@@ -194,10 +200,10 @@ def test_what_is_cut_from_a_graph_leaves_the_graph_as_it_was_but_where_it_is_spe
     states = made(900, 4, 6)
     whole = build_graph(states, of_limit(limit), key_states(states, 0.3), connected=False)
     before = edges(whole)
-    kept = largest(whole)
+    kept = find_largest_component(whole)
     assert edges(whole) == before and len(kept.targets) < len(whole.targets)
     wanted = {(s, t): c for (s, t), c in before.items() if kept.kept[s] and kept.kept[t]}
-    assert edges(kept) == wanted == edges(largest(whole, spent=True))
+    assert edges(kept) == wanted == edges(find_largest_component(whole, spent=True))
 
 
 def test_only_the_cheapest_of_each_state_are_kept_when_memory_is_short() -> None:

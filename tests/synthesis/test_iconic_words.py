@@ -12,12 +12,12 @@ from metagraph.synthesis.iconic_words import (
     WordWish,
     describe_words,
     find_phrase_spans,
+    find_states_of_words,
+    find_unsaid_wishes,
     find_word_places,
     find_words_shown,
     measure_word_cost,
-    only_states_of_words,
-    unsaid,
-    word_wish,
+    parse_word_wish,
 )
 from metagraph.synthesis.prosody_costs import SpokenTake
 from metagraph.synthesis.search.frame_costs import join_costs
@@ -33,12 +33,12 @@ def words(*said: tuple[str, float, float]) -> SpokenTake:
 
 
 def test_wishes_are_written_as_people_write_lists() -> None:
-    assert word_wish("big") == WordWish(("big",))
-    assert word_wish(" big, huge ") == WordWish(("big", "huge"))
-    assert word_wish("big = huge, really tall") == WordWish(("big",), ("huge", "really tall"))
+    assert parse_word_wish("big") == WordWish(("big",))
+    assert parse_word_wish(" big, huge ") == WordWish(("big", "huge"))
+    assert parse_word_wish("big = huge, really tall") == WordWish(("big",), ("huge", "really tall"))
     for text in ("", " , ", "= huge", "big =", "big = ,", "…"):
         with pytest.raises(ValueError, match="names no word"):
-            word_wish(text)
+            parse_word_wish(text)
 
 
 def test_words_are_found_however_they_are_written() -> None:
@@ -56,7 +56,7 @@ def test_motion_comes_from_around_the_word_in_the_take() -> None:
     graph = graph_of(300, [0, 150, 300], {(9, 200): 0.1, (9, 100): 0.1})
     takes = [words(("small", 3.0, 3.4)), words(("huge", 2.0, 2.4))]  # huge: states 210 to 221
     new = words(("a", 0.0, 0.3), ("big", 0.6, 1.0))
-    places = find_word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
+    places = find_word_places([parse_word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
     assert [(p.text, p.known, p.frames) for p in places] == [("big", True, (18 - AROUND, 30 + AROUND))]
     charged = join_costs([measure_word_cost(places, 60, 2.0, 1.0)])
     anything = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
@@ -80,23 +80,25 @@ def test_motion_comes_from_around_the_word_in_the_take() -> None:
 def test_words_beyond_the_window_and_words_no_take_says_want_nothing() -> None:
     graph = graph_of(90, [0, 90], {})
     new = words(("big", 0.2, 0.4), ("round", 1.0, 1.3), ("big", 5.0, 5.2))
-    wishes = [word_wish("big"), word_wish("round")]
+    wishes = [parse_word_wish("big"), parse_word_wish("round")]
     places = find_word_places(wishes, graph.states, [words(("round", 1.0, 1.3))], new, 0.0, 2.0)
     assert [(p.text, p.known) for p in places] == [("big", False), ("round", True)]
-    assert set(only_states_of_words(places)) == set(range(30 - AROUND, 39 + AROUND))
+    assert set(find_states_of_words(places)) == set(range(30 - AROUND, 39 + AROUND))
     told = describe_words(find_words_shown(places, graph.states, np.arange(60)))
     assert told.startswith("1 of 2 words ") and "'big'" in told
     assert measure_word_cost(places[:1], 60, 2.0, 1.0) is None and describe_words(()) == ""
-    begins = find_word_places([word_wish("big")], graph.states, [new], new, 0.3, 1.0)
+    begins = find_word_places([parse_word_wish("big")], graph.states, [new], new, 0.3, 1.0)
     assert [p.frames for p in begins] == [(0, 3 + AROUND)]
-    assert unsaid([*wishes, word_wish("ball, cube")], new, 0.0, 2.0) == ("ball",)
-    assert unsaid(wishes, new, 4.0, 2.0) == ("round",)
+    assert find_unsaid_wishes([*wishes, parse_word_wish("ball, cube")], new, 0.0, 2.0) == ("ball",)
+    assert find_unsaid_wishes(wishes, new, 4.0, 2.0) == ("round",)
     assert describe_words((), ("ball",)) == "not in this speech: 'ball'"
     assert describe_words((), [str(n) for n in range(7)]).endswith("'4' and 2 more")
     close = words(("big", 1.0, 1.2), ("round", 1.3, 1.5), ("round", 1.5, 1.7))
     beside = find_word_places(wishes, graph.states, [new], close, 0.0, 2.0)
     assert [p.frames for p in beside] == [(30 - AROUND, 38), (38, 45), (45, 51 + AROUND)]
-    twice = find_word_places([word_wish("big"), word_wish("big")], graph.states, [new], close, 0.0, 2.0)
+    twice = find_word_places(
+        [parse_word_wish("big"), parse_word_wish("big")], graph.states, [new], close, 0.0, 2.0
+    )
     assert len(twice) == 1, "one moment wants one motion"
     with pytest.raises(SynthesisError, match="the new speech"):
         find_word_places(wishes, graph.states, [new], words(), 0.0, 2.0)
@@ -110,7 +112,7 @@ def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
     anything = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
 
     def found(new: SpokenTake, hard: bool) -> tuple[bool, tuple[str, ...]]:
-        places = find_word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
+        places = find_word_places([parse_word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
         charged = join_costs([measure_word_cost(places, 60, 2.0, 1.0)])
         soft = SoftConstraints(charged, places, hard)
         made = answer_speech(graph, anything, [], 2.0, Constraints(rules=FREE), soft=soft)
@@ -122,7 +124,7 @@ def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
     assert found(once, False) == found(once, True) == (True, ())
     small = graph_of(300, [0, 150, 300], {})
     late = words(("big", 1.2, 1.6))
-    places = find_word_places([word_wish("big=small")], small.states, takes, late, 0.0, 4.0)
+    places = find_word_places([parse_word_wish("big=small")], small.states, takes, late, 0.0, 4.0)
     soft = SoftConstraints(None, places, True)
     made = answer_speech(small, anything, [], 4.0, Constraints(use=(), rules=FREE), soft=soft)
     (given_up,) = made.given_up

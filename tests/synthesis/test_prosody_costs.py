@@ -13,8 +13,8 @@ from metagraph.synthesis.prosody_costs import (
     SpokenTake,
     measure_prosody_cost,
     measure_prosody_match,
-    of_speech,
-    of_states,
+    measure_speech_prosody,
+    measure_state_prosody,
     standardise_prosody,
 )
 from metagraph.synthesis.states import SynthesisError
@@ -54,9 +54,9 @@ def test_a_recording_of_few_segments_has_the_mean_of_all() -> None:
 def test_what_is_off_costs_by_the_second_and_what_is_unknown_as_much_as_chance() -> None:
     graph = graph_of(150, [0, 90, 150], {})
     takes = [said([-20, -26, -20]), SpokenTake(())]
-    of_state = of_states(graph.states, takes, "loudness")
+    of_state = measure_state_prosody(graph.states, takes, "loudness")
     assert np.isnan(of_state[90:]).all() and of_state[0] == of_state[60] > 0 > of_state[30]
-    of_frame = of_speech(said([-10, -16, np.nan, -10]), 0.5, 3.0, "loudness")
+    of_frame = measure_speech_prosody(said([-10, -16, np.nan, -10]), 0.5, 3.0, "loudness")
     assert np.isnan(of_frame[45:75]).all() and of_frame[0] == of_frame[-1]
     cost = measure_prosody_cost("loudness", 0.5, of_state, of_frame, 2.0)
     assert cost.at[0] == cost.at[-1] >= 0 and (cost.at[45:75] == -1).all()
@@ -80,4 +80,4 @@ def test_how_well_a_path_goes_with_speech_is_told_in_spreads() -> None:
 
 def test_takes_and_speech_that_do_not_go_together_are_told() -> None:
     with pytest.raises(SynthesisError, match="1 takes have states, but 2"):
-        of_states(graph_of(9, [0, 9], {}).states, [said([0]), said([0])], "loudness")
+        measure_state_prosody(graph_of(9, [0, 9], {}).states, [said([0]), said([0])], "loudness")

@@ -18,9 +18,9 @@ from metagraph.motion.roles import find_roles
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import HeardStates, WantedSegment, find_heard_at, list_wanted
 from metagraph.synthesis.graph import BLEND
-from metagraph.synthesis.retiming import keeps_constraints, retimable, retime, timing_cost
+from metagraph.synthesis.retiming import find_retimable, keeps_constraints, make_timing_cost, retime
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech, misses
+from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech, find_misses
 from metagraph.synthesis.soft_constraints import SoftConstraints, SoftWish
 from metagraph.synthesis.standing_feet import find_standing
 from metagraph.synthesis.states import SynthesisError, read_states
@@ -101,14 +101,14 @@ def test_speed_stays_within_its_bounds_is_smooth_and_changes_only_where_it_may(d
 def test_strokes_and_steps_keep_their_speed() -> None:
     said = [clause(1.0, 1.6, 2.4), clause(4.0, 4.5, 5.2)]
     take = talking("take", said, 7.0)
-    free = retimable([take])
+    free = find_retimable([take])
     assert len(free) == 210 and not free[48] and not free[135], "the hand is fastest at the stresses"
     assert free[:20].all() and 0.6 < free.mean() < 0.95
     moved = take.translations.copy()
     moved[:, take.translated.index(0), 2] += np.linspace(0, 7, 210)
     walks = Clip("walk", take.skeleton, 30.0, take.rotations, moved, take.translated)
-    assert not retimable([walks]).any(), "whose feet go does not stand"
-    assert len(retimable([take, talking("slow", said, 7.0, fps=24.0)])) == len(
+    assert not find_retimable([walks]).any(), "whose feet go does not stand"
+    assert len(find_retimable([take, talking("slow", said, 7.0, fps=24.0)])) == len(
         read_states([take, talking("slow", said, 7.0, fps=24.0)])
     )
 
@@ -126,8 +126,8 @@ def test_a_path_is_found_where_there_is_none_without() -> None:
         found = answer_speech(graph, spoken, new, 5.0, searching=Searching(strict=strict), soft=soft)
         assert found.retiming is not None and found.given_up == () and found.misses == ()
         assert found.kept == Constraints()
-        assert misses(spoken, found.path, new, Constraints(), found.retiming) == ()
-        assert misses(spoken, found.path, new, Constraints()), "it is the speed that does it"
+        assert find_misses(spoken, found.path, new, Constraints(), found.retiming) == ()
+        assert find_misses(spoken, found.path, new, Constraints()), "it is the speed that does it"
     with pytest.raises(SynthesisError):  # too far for what speed can do
         slow = SoftConstraints(free=soft.free, most=0.02)
         answer_speech(graph, spoken, new, 5.0, searching=Searching(strict=True), soft=slow)
@@ -145,11 +145,11 @@ def test_what_a_path_keeps_to_is_not_lost_by_retiming() -> None:
 
 def test_events_in_time_cost_nothing_and_late_ones_their_square() -> None:
     spoken, want = made([clause(1.6, 2.1, 3.2)], [clause(1.5, 2.1, 3.2)])
-    cost = timing_cost(spoken, want, 2.0, 0.1)
+    cost = make_timing_cost(spoken, want, 2.0, 0.1)
     assert cost is not None
     assert cost.paid(np.arange(150)) == pytest.approx(0.2)  # one event, three frames of three late
-    assert timing_cost(spoken, list_wanted([], 5.0), 2.0) is None
-    assert timing_cost(spoken, list_wanted([clause(1.5, 2.1, 3.2)], 5.0, 0.0), 2.0) is None
+    assert make_timing_cost(spoken, list_wanted([], 5.0), 2.0) is None
+    assert make_timing_cost(spoken, list_wanted([clause(1.5, 2.1, 3.2)], 5.0, 0.0), 2.0) is None
 
 
 def test_retimed_motion_has_its_stroke_at_the_stress_and_its_feet_where_they_stood() -> None:
@@ -161,7 +161,7 @@ def test_retimed_motion_has_its_stroke_at_the_stress_and_its_feet_where_they_sto
     way = np.concatenate([np.arange(150), np.arange(210 + 150, 210 + 210)])
     jumps = np.array([150])
     new = [clause(1.1, 1.7, 2.4), clause(4.0, 4.5, 5.3)]
-    found = retime(way, jumps, spoken, list_wanted(new, 7.0, 0.1), retimable(takes), reach=3)
+    found = retime(way, jumps, spoken, list_wanted(new, 7.0, 0.1), find_retimable(takes), reach=3)
     assert found is not None and found.off < found.was
     plain, moved = (assemble(states, takes, Path(way, 0.0, jumps), retiming=r) for r in (None, found))
     assert plain.frames == moved.frames == 210 and moved.fps == 30.0
@@ -188,7 +188,7 @@ def test_feet_of_other_studios_takes_stay_where_they_stood_when_they_are_retimed
     way = np.concatenate([np.arange(jump), there + np.arange(10, int(len(states) - there))])
     said: list[list[Segment]] = [[clause(1.9, 2.1, 2.5)], []]  # while the bow is held
     wants = list_wanted([clause(1.97, 2.17, 2.57)], len(way) / 30)
-    found = retime(way, np.array([jump]), find_heard_at(states, said), wants, retimable(takes), 0.3)
+    found = retime(way, np.array([jump]), find_heard_at(states, said), wants, find_retimable(takes), 0.3)
     assert found is not None and found.off < found.was
     made = assemble(states, takes, Path(way, 0.0, np.array([jump])), retiming=found)
     roles, standing_there = find_roles(made.skeleton), find_standing(made.skeleton, made.poses())

@@ -27,7 +27,7 @@ from metagraph.synthesis.constraints import (
 from metagraph.synthesis.graph import MotionGraph, Threshold
 from metagraph.synthesis.search.exact_search import ExactSearch, find_best_path
 from metagraph.synthesis.search.frame_costs import FrameCost, FrameCosts, join_costs
-from metagraph.synthesis.search.greedy_search import greedy
+from metagraph.synthesis.search.greedy_search import search_greedily
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
@@ -174,7 +174,9 @@ def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one
     check(graph, sound, want, path, run, charged)
     assert path.cost == pytest.approx(wanted_cost, abs=1e-4)
     try:
-        other = greedy(graph, sound, want, seed=data.draw(st.integers(0, 9)), run=run, charged=charged)
+        other = search_greedily(
+            graph, sound, want, seed=data.draw(st.integers(0, 9)), run=run, charged=charged
+        )
     except SynthesisError:
         return
     check(graph, sound, want, other, run, charged)
@@ -371,7 +373,7 @@ def test_a_search_that_is_cancelled_ends_soon_and_says_so(exact: bool) -> None:
         return asked > 5
 
     with pytest.raises(SynthesisError, match="the search was cancelled"):
-        find_best_path(graph, sound, want, cancelled) if exact else greedy(
+        find_best_path(graph, sound, want, cancelled) if exact else search_greedily(
             graph, sound, want, cancelled=cancelled
         )
     assert asked < 20

@@ -15,25 +15,25 @@ from metagraph.research.motion_graph.search_evaluation import (
     cut_segments,
     evaluate_search,
 )
-from metagraph.speech.prosody import prosody
+from metagraph.speech.prosody import measure_prosody
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import find_change_states, find_heard_at
-from metagraph.synthesis.cooccurrence import speeds
+from metagraph.synthesis.cooccurrence import measure_part_speeds
 from metagraph.synthesis.graph import MotionGraph, build_graph
-from metagraph.synthesis.iconic_words import word_wish
+from metagraph.synthesis.iconic_words import parse_word_wish
 from metagraph.synthesis.prosody_costs import SpokenTake
 from metagraph.synthesis.search.relaxing import Searching, answer_speech
-from metagraph.synthesis.soft_constraints import NO_WISH, SoftMaterial, SoftWish, soft_report
+from metagraph.synthesis.soft_constraints import NO_WISH, SoftMaterial, SoftWish, make_soft_report
 from metagraph.synthesis.states import SynthesisError, key_states, read_states
 from tests.synthesis.talking import VOICE, aloud, speech, talking
 
-WORDS = (word_wish("big, nothing"), word_wish("round = river"))
+WORDS = (parse_word_wish("big, nothing"), parse_word_wish("round = river"))
 
 
 def recorded(seed: int, seconds: int, gain: float) -> tuple[list[Segment], list[float], SpokenTake]:
     said = speech(seconds, seed)
     steps, words, samples = aloud(said, seconds, seed, gain)
-    return said, steps, SpokenTake(tuple(said), words, prosody(said, words, samples, VOICE))
+    return said, steps, SpokenTake(tuple(said), words, measure_prosody(said, words, samples, VOICE))
 
 
 class Studio:
@@ -82,10 +82,10 @@ def test_what_is_said_louder_is_gestured_faster_where_it_was_so_in_the_takes(
                 Searching(search),  # type: ignore[arg-type]
                 soft=material.constraints(new, 0.0, 10.0),
             )
-            matches = soft_report(both.constraints(new, 0.0, 10.0), studio.states, found.path).matches
+            matches = make_soft_report(both.constraints(new, 0.0, 10.0), studio.states, found.path).matches
             loud.append(matches[0].correlation or 0.0)
             rate.append(matches[1].correlation or 0.0)
-            speed = speeds(assemble(studio.states, studio.clips, found.path))["right_hand"]
+            speed = measure_part_speeds(assemble(studio.states, studio.clips, found.path))["right_hand"]
             for s, height in zip(said, heights, strict=True):
                 if s.kind == "clause" and s.end < 10:
                     steps.append(height)
@@ -107,7 +107,7 @@ def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
     found = answer_speech(
         studio.graph, sound, cut_segments(new.segments, 2.0, 10.0), 10.0, None, Searching("greedy"), soft=soft
     )
-    report = soft_report(soft, studio.states, found.path, found.retiming)
+    report = make_soft_report(soft, studio.states, found.path, found.retiming)
     assert set(report.paid) == {"loudness", "rate", "words"} and [m.measure for m in report.matches] == [
         "loudness",
         "rate",
@@ -118,7 +118,9 @@ def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
     assert report.off < report.was and "at another speed" in report.told()
     assert report.data()["off"] == report.off
     assert (
-        soft_report(studio.material(NO_WISH).constraints(new, 0.0, 5.0), studio.states, found.path).told()
+        make_soft_report(
+            studio.material(NO_WISH).constraints(new, 0.0, 5.0), studio.states, found.path
+        ).told()
         == ""
     )
 

@@ -10,10 +10,10 @@ from metagraph.motion.clip import Clip
 from metagraph.research.motion_graph.search_evaluation import cut_segments
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import find_change_states, find_heard_at, list_wanted
-from metagraph.synthesis.cooccurrence import activation, speeds
+from metagraph.synthesis.cooccurrence import find_activation_speed, measure_part_speeds
 from metagraph.synthesis.graph import build_graph
 from metagraph.synthesis.search.exact_search import find_best_path
-from metagraph.synthesis.search.greedy_search import greedy
+from metagraph.synthesis.search.greedy_search import search_greedily
 from metagraph.synthesis.states import key_states, read_states
 from tests.synthesis.talking import speech, talking
 
@@ -23,9 +23,13 @@ SECONDS = 15.0
 
 def strokes(clip: Clip) -> list[float]:
     """When the right hand is fastest, seconds: maxima that stand out."""
-    speed = speeds(clip)["right_hand"]
+    speed = measure_part_speeds(clip)["right_hand"]
     smooth = np.convolve(speed, np.ones(3) / 3, "same")
-    top = (smooth[1:-1] > smooth[:-2]) & (smooth[1:-1] >= smooth[2:]) & (smooth[1:-1] > 3 * activation(speed))
+    top = (
+        (smooth[1:-1] > smooth[:-2])
+        & (smooth[1:-1] >= smooth[2:])
+        & (smooth[1:-1] > 3 * find_activation_speed(speed))
+    )
     return list((np.flatnonzero(top) + 1) / clip.fps)
 
 
@@ -46,7 +50,7 @@ def test_strokes_fall_on_the_stresses_of_new_speech_and_not_on_those_of_shuffled
     graph = build_graph(states, keys=key_states(states, changes=find_change_states(states, said)))
     sound = find_heard_at(states, said)
     chance = np.random.default_rng(7)
-    for search in (greedy, find_best_path):
+    for search in (search_greedily, find_best_path):
         with_speech, shuffled = [], []
         for seed in range(100, 106):
             new = cut_segments(speech(30, seed), 0, SECONDS)

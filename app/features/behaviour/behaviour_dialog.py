@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_error, tr_phrase, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_phrase, tr_plural
 from app.widgets.choice_row import ChoiceRow
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.model import Mode, Project
@@ -33,7 +33,7 @@ OWN = "own"
 SETTLED = 400  # milliseconds without an edit after which is counted again
 MOST_LACKS = 4  # stances that lack actions, named in the dialog
 ORDER: tuple[Mode, ...] = ("talking", "listening", "idle")
-TITLES = lazy_texts(
+TITLES = make_lazy_texts(
     lambda: {"talking": tr("Talking"), "listening": tr("Listening"), "idle": tr("Idle")},
 )
 
@@ -153,7 +153,7 @@ class BehaviourDialog(QDialog):
         found = self.found.get(mode)
         if found is None:
             return
-        colors = theme(self.session.look.name)
+        colors = get_theme(self.session.look.name)
         self.table.setRowCount(len(found.rows))
         for n, row in enumerate(found.rows):
             off = row.usual is False

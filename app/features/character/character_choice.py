@@ -22,10 +22,10 @@ def choose_character(shell: Shell) -> None:
     if not name:
         return
     from metagraph.formats.characters import CharacterFile, look_at
-    from metagraph.formats.store import relative
+    from metagraph.formats.store import make_path_relative
 
     folder = document.folder
-    path = relative(Path(name), folder) if folder is not None else Path(name).as_posix()
+    path = make_path_relative(Path(name), folder) if folder is not None else Path(name).as_posix()
     left, skeleton = document.project.character, document.project.skeleton
 
     def done(found: CharacterFile) -> None:

@@ -12,11 +12,17 @@ from app.features.character.character_panel import PreviewPanel
 from app.features.character.mesh_menu import MeshButton
 from app.features.character.watch_commands import fill_watch
 from app.shell.actions import Command
-from app.shell.command_table import Feature, any_met, has_actions_selected, has_character, has_clips_selected
+from app.shell.command_table import (
+    Feature,
+    has_actions_selected,
+    has_character,
+    has_clips_selected,
+    require_any,
+)
 from app.shell.context import Shell
 from app.shell.places import PanelPlaces
 from app.shell.workspace_keeper import Workspaces
-from app.stage.navigation import NAVIGATIONS, choose_navigation, chosen_navigation
+from app.stage.navigation import NAVIGATIONS, choose_navigation, get_navigation
 from app.translation import tr, tr_noop
 from metagraph.graph import edits
 
@@ -134,7 +140,7 @@ class CharacterFeature(Feature):
             action.triggered.connect(lambda _, chosen=ident: self.navigate_as(chosen))
             action.setToolTip(tr(navigation.words))
             action.setCheckable(True)
-            action.setChecked(chosen_navigation().id == ident)
+            action.setChecked(get_navigation().id == ident)
         menu.setToolTipsVisible(True)
 
     def navigate_as(self, ident: str) -> None:
@@ -307,7 +313,7 @@ COMMANDS = (
         tr_noop("Play only the &clip"),
         CharacterFeature.play_alone,
         ("Ctrl+Return",),
-        enabled=any_met(has_clips_selected, has_actions_selected),
+        enabled=require_any(has_clips_selected, has_actions_selected),
         study=True,
     ),
     Command(
@@ -317,7 +323,7 @@ COMMANDS = (
         tr_noop("Play in &context"),
         CharacterFeature.play_in_context,
         ("Shift+Return",),
-        enabled=any_met(has_clips_selected, has_actions_selected),
+        enabled=require_any(has_clips_selected, has_actions_selected),
         study=True,
     ),
     Command(

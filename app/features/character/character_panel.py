@@ -17,25 +17,25 @@ from app.features.character.overlays import Overlays
 from app.features.character.panes import Panes
 from app.features.character.reference import Reference, ReferenceBar, ReferencePicture
 from app.look import icons
-from app.look.names import plain_action_name
-from app.look.theme import theme
+from app.look.names import make_readable_name
+from app.look.theme import get_theme
 from app.stage.figures import Figures
 from app.stage.gl_view import GLView, ImageView, make_view
-from app.stage.navigation import chosen_navigation
+from app.stage.navigation import get_navigation
 from app.stage.performance import StagePerformance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import StageSession
-from app.stage.stools import stools
+from app.stage.stools import make_stools
 from app.translation import format_number, tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import LAYERS, Project
-from preview.camera import Camera, close_up, frame_whole_figure
+from preview.camera import Camera, close_up, make_whole_figure_camera
 from preview.figure import MeshFigure, SkinnedFigure
 from preview.framing import turn_to_face
 from preview.scene import Actor, LampTurn, Scene
@@ -140,7 +140,7 @@ class PreviewPanel(QWidget):
 
     def show_navigation(self) -> None:
         """Say how the mouse moves the camera."""
-        words = tr(chosen_navigation().words)
+        words = tr(get_navigation().words)
         self.view.setToolTip(words)
         self.view.setAccessibleDescription(words)
 
@@ -228,13 +228,13 @@ class PreviewPanel(QWidget):
         self._lines.setDirection(directions.LeftToRight if wide else directions.TopToBottom)
 
     def _restyle(self) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         self.view.theme = self.session.watch.now.look(look.name)
         for button, name in (
             (self.start_button, "start"), (self.loop_button, "loop"), (self.frame_button, "frame"),
             (self.face_button, "face"), (self.bones_button, "bones"),
         ):  # fmt: skip
-            button.setIcon(icons.icon(name, look.text))
+            button.setIcon(icons.make_icon(name, look.text))
         self._show_state()
         self.view.update()
 
@@ -259,7 +259,7 @@ class PreviewPanel(QWidget):
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.overlays.made(figure, seconds)
-        seats = (seat for one in shown.everyone for seat in stools(one))
+        seats = (seat for one in shown.everyone for seat in make_stools(one))
         behind = self.reference.picture if self.reference.behind else None
         scene = Scene((*actors, *seats), picture=behind)
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # frame it again for another size
@@ -275,7 +275,7 @@ class PreviewPanel(QWidget):
             turn = 0.0 if shown.others else turn_to_face(first.figure, first.positions)
             self._lamp = LampTurn(turn) if turn else None
             aside = ASIDE if shown.others else turn
-            self.view.camera = frame_whole_figure(
+            self.view.camera = make_whole_figure_camera(
                 solid.drawn_bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         elif self._last is not None:
@@ -320,12 +320,12 @@ class PreviewPanel(QWidget):
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
         shown = self.performance.shown
         if shown.clip is not None:
-            return tr("{name}, clip only", name=plain_action_name(shown.project.clips[shown.clip].name))
+            return tr("{name}, clip only", name=make_readable_name(shown.project.clips[shown.clip].name))
         seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)
             if cue is not None:
-                out.append(f"{vocabulary_word(layer)}: {plain_action_name(cue.action.name)}")
+                out.append(f"{get_vocabulary_word(layer)}: {make_readable_name(cue.action.name)}")
         if self.session.transport.show == "context":
             out.append(tr("in context"))
         return "   ".join(out)
@@ -422,8 +422,10 @@ class PreviewPanel(QWidget):
     # --- following
 
     def _show_state(self) -> None:
-        look = theme(self.session.look.name)
-        self.play_button.setIcon(icons.icon("pause" if self.session.transport.playing else "play", look.text))
+        look = get_theme(self.session.look.name)
+        self.play_button.setIcon(
+            icons.make_icon("pause" if self.session.transport.playing else "play", look.text)
+        )
         self._clock.restart()
 
     def _edited(self, before: Project, after: Project) -> None:
@@ -434,7 +436,7 @@ class PreviewPanel(QWidget):
             self.base.say(tr("Base pose: rest pose"))
         else:
             self.base.say(
-                tr("Base pose: {name}, frame {frame}", name=plain_action_name(entry.name), frame=base.frame)
+                tr("Base pose: {name}, frame {frame}", name=make_readable_name(entry.name), frame=base.frame)
             )
         if after.skeleton is None:
             self._tell_mesh()

@@ -15,8 +15,8 @@ from PySide6.QtWidgets import QWidget
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
-from app.look.theme import WindowTheme, theme
-from app.translation import lazy_texts, tr, tr_noop
+from app.look.theme import WindowTheme, get_theme
+from app.translation import make_lazy_texts, tr, tr_noop
 from metagraph.playback.posing.foot_slides import (
     RATE,
     SLIDES,
@@ -29,7 +29,7 @@ from metagraph.playback.posing.foot_slides import (
 SPAN = 1.5  # seconds before and after now that the line reports
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
 HIGH = 42  # pixels of the line
-SIDES = lazy_texts(lambda: (tr("Left foot"), tr("Right foot")))
+SIDES = make_lazy_texts(lambda: (tr("Left foot"), tr("Right foot")))
 BELOW = 12.0  # pixels from a foot to its mark
 SIZE = 7.0  # pixels of half a mark
 LEGEND = tr_noop(
@@ -106,7 +106,7 @@ class FootMarks(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         n = int(np.abs(seen.times - self.panel.session.transport.seconds).argmin())
-        self._feet(painter, theme(self.panel.session.look.name), seen, n)
+        self._feet(painter, get_theme(self.panel.session.look.name), seen, n)
         painter.end()
 
     def _feet(self, painter: QPainter, look: WindowTheme, seen: FeetSeen, n: int) -> None:
@@ -155,7 +155,7 @@ class FootLine(QWidget):
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look, seen = theme(self.panel.session.look.name), self._known
+        look, seen = get_theme(self.panel.session.look.name), self._known
         painter = QPainter(self)
         painter.fillRect(self.rect(), QColor(look.panel))
         room = QRectF(self.rect()).adjusted(12, 2, -12, -2)

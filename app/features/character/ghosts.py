@@ -15,13 +15,13 @@ from PySide6.QtWidgets import QWidget
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.playback_source import ShownPlayback
 from app.translation import format_number, tr
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.composer import find_playable_motion
 from preview.figure import MeshFigure
 from preview.scene import Actor
 
@@ -85,7 +85,7 @@ class Ghosts(QWidget):
         pose = shown.beside.pose(min(seconds, shown.beside.length))
         if pose is None:
             return []
-        color = QColor(theme(self.panel.session.look.name).strong)
+        color = QColor(get_theme(self.panel.session.look.name).strong)
         ghost = self._ghost(figure, shown, pose, COMPARED, (color.redF(), color.greenF(), color.blueF()))
         return [ghost] if self._label(tr("Now"), ghost) else []
 
@@ -114,9 +114,9 @@ class Ghosts(QWidget):
         pose = self._stance(shown, seconds)
         if pose is None:
             return []
-        color = QColor(theme(self.panel.session.look.name).fill("stance"))
+        color = QColor(get_theme(self.panel.session.look.name).fill("stance"))
         actor = self._ghost(figure, shown, pose, STANCE, (color.redF(), color.greenF(), color.blueF()))
-        return [actor] if self._label(vocabulary_word("stance"), actor) else []
+        return [actor] if self._label(get_vocabulary_word("stance"), actor) else []
 
     def _label(self, words: str, ghost: Actor) -> bool:
         """Name a ghost where it is farthest from now; return whether it is anywhere."""
@@ -164,7 +164,7 @@ class Ghosts(QWidget):
             lie_over(self, self.panel.view)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        view, look = self.panel.view, theme(self.panel.session.look.name)
+        view, look = self.panel.view, get_theme(self.panel.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         taken: list[QRectF] = []
@@ -184,7 +184,7 @@ def _loop_begins(project: Project, clip: str) -> Pose | None:
     """Return the first pose of the loop of the stance that a clip is used on."""
     for action in project.uses.get(clip, ()):
         for loop in project.graphs[action.layer].of(action.stance, "stance"):
-            motion = playable(project, loop)
+            motion = find_playable_motion(project, loop)
             if motion is not None:
                 return motion.pose_at(project.span(loop)[0])
     return None

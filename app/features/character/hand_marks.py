@@ -15,13 +15,13 @@ from app.features.character.foot_marks import draw_mark
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
-from app.look.theme import WindowTheme, theme
-from app.translation import lazy_texts, tr
+from app.look.theme import WindowTheme, get_theme
+from app.translation import make_lazy_texts, tr
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.posing.foot_slides import FootState
-from metagraph.playback.posing.hand_touches import HandTouch, hand_touches, plan_of_clip
+from metagraph.playback.posing.hand_touches import HandTouch, find_hand_touches, plan_of_clip
 
-HANDS = lazy_texts(lambda: (tr("Left hand"), tr("Right hand")))
+HANDS = make_lazy_texts(lambda: (tr("Left hand"), tr("Right hand")))
 BESIDE = 20.0  # pixels from a mark to its words
 
 
@@ -57,7 +57,7 @@ class HandMarks(QWidget):
             return []
         plan = plan_of_clip(shown.project, shown.clip) if shown.clip is not None else shown.moving
         seconds = self.panel.session.transport.seconds
-        return hand_touches(plan, shown.project, seconds, rotations, positions)
+        return find_hand_touches(plan, shown.project, seconds, rotations, positions)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         touches = self.touches()
@@ -67,7 +67,7 @@ class HandMarks(QWidget):
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        look, taken = theme(self.panel.session.look.name), list[QRectF]()
+        look, taken = get_theme(self.panel.session.look.name), list[QRectF]()
         for touch in touches:
             self._mark(painter, look, touch, skeleton, taken)
         painter.end()

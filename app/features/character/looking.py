@@ -13,12 +13,12 @@ from PySide6.QtGui import QGuiApplication
 
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.trails import Trails
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from metagraph.graph import anatomy
 from metagraph.motion.skeleton import Pose
-from preview.camera import Camera, frame_whole_figure
+from preview.camera import Camera, make_whole_figure_camera
 from preview.framing import turn_to_face
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ class Looking(QObject):
         if self._stepped_back or not inside.all():
             self._stepped_back = clip is not None and not inside.all()
             first = shown.skeleton.globals(Pose(pose.rotations[0], pose.translations[0]))[1]
-            view.camera = frame_whole_figure((low, high), aspect, turn_to_face(figure, first))
+            view.camera = make_whole_figure_camera((low, high), aspect, turn_to_face(figure, first))
 
     @property
     def flat(self) -> bool:
@@ -165,8 +165,8 @@ def mask_marks(performance: StagePerformance, session: StageSession) -> dict[int
     actions = session.selection.selected_actions()
     if len(actions) != 1 or project.skeleton is None or not (actions[0].joints or actions[0].joint_weights):
         return {}
-    moved = anatomy.action_mask(project, actions[0])
-    color = theme(session.look.name).fill(actions[0].kind)
+    moved = anatomy.make_action_mask(project, actions[0])
+    color = get_theme(session.look.name).fill(actions[0].kind)
     rgb = np.array([color.redF(), color.greenF(), color.blueF()])
     if moved is None:
         return {}

@@ -13,12 +13,12 @@ from PySide6.QtWidgets import QMenu, QVBoxLayout, QWidget
 
 from app.features.character.overlay_host import OverlayHost
 from app.stage.gl_view import make_beside
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from preview.scene import Scene
 
 Background = Literal["as shown", "transparent", "green"]
 BACKGROUNDS: tuple[Background, ...] = get_args(Background)
-TITLES = lazy_texts(
+TITLES = make_lazy_texts(
     lambda: {
         "as shown": tr("As in the panel"),
         "transparent": tr("Transparent"),

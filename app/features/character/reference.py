@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
 from app.features.character.overlay_host import OverlayHost
 from app.look import icons
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.translation import tr, tr_error, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -218,7 +218,7 @@ class ReferencePicture(QWidget):
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look = theme(self.reference.panel.session.look.name)
+        look = get_theme(self.reference.panel.session.look.name)
         painter = QPainter(self)
         painter.fillRect(self.rect(), QColor(look.ground))
         picture = self.reference.picture
@@ -287,7 +287,7 @@ class ReferenceBar(QWidget):
         self.setVisible(reference.path is not None and not reference.panel.bare)
         if reference.path is None:
             return
-        self.gone.setIcon(icons.icon("remove", theme(reference.panel.session.look.name).text))
+        self.gone.setIcon(icons.make_icon("remove", get_theme(reference.panel.session.look.name).text))
         told = "⚠ " + reference.trouble if reference.trouble and reference.behind else reference.path.name
         metrics = self.words.fontMetrics()
         self.words.setText(

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.playback_source import ShownPlayback
 from metagraph.graph import anatomy
 
@@ -118,7 +118,7 @@ class Trails(QWidget):
         """Paint a trail for each role: dots as far apart as frames, on a line."""
         if len(times) < 2:
             return
-        look, view = theme(self.panel.session.look.name), self.panel.view
+        look, view = get_theme(self.panel.session.look.name), self.panel.view
         seen = view.camera.project(places, view.width() / max(1, view.height()))
         seen = seen * [self.width(), self.height()]
         now = self.panel.session.transport.seconds

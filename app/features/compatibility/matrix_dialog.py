@@ -316,11 +316,11 @@ class MatrixDialog(QDialog):
         measured = judged.measured[layer] if judged is not None else None
 
         def work(_: WindowJob) -> Mapping[str, Any]:
-            from metagraph.suggest.jumps.found import stance_curves
+            from metagraph.suggest.jumps.found import compute_stance_curves
 
             after = edits.place_clips(project, [clip], layer, kind, stance, end)
             action = _newest(project, after)
-            seen = stance_curves(after, measured, action) if measured is not None else None
+            seen = compute_stance_curves(after, measured, action) if measured is not None else None
             return (
                 compare_proposed_timing(action, seen.proposed, after.clips[clip].duration)
                 if seen is not None

@@ -13,9 +13,9 @@ from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen
 from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
 from app.look.plural import list_in_words
-from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.look.theme import KIND_MARKS, WindowTheme, get_theme
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_noop
+from app.translation import make_lazy_texts, tr, tr_noop
 from metagraph.graph.model import KINDS, Kind, Project
 
 if TYPE_CHECKING:
@@ -280,7 +280,7 @@ class MatrixMarks(QStyledItemDelegate):
         return QSize(84, ROW)
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
-        t, rect = theme(self.session.look.name), QRectF(option.rect)
+        t, rect = get_theme(self.session.look.name), QRectF(option.rect)
         painter.save()
         if option.state & QStyle.StateFlag.State_Selected:
             painter.fillRect(rect, QColor(t.hover))
@@ -312,7 +312,7 @@ class MatrixMarks(QStyledItemDelegate):
 class Legend(QWidget):
     """What the marks mean."""
 
-    PARTS = lazy_texts(lambda: ((0.5, tr("no jump")), (2.0, tr("a blend hides it")), (9.0, tr("jumps"))))
+    PARTS = make_lazy_texts(lambda: ((0.5, tr("no jump")), (2.0, tr("a blend hides it")), (9.0, tr("jumps"))))
 
     def __init__(self, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
@@ -322,7 +322,7 @@ class Legend(QWidget):
         session.look.changed.connect(self.update)
 
     def paintEvent(self, event: object) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         x, y = 2.0, self.height() / 2

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QMenu
 
 from app.features.conversation.segment_editing import Editing
 from app.translation import tr
-from metagraph.graph.conversation.model import EVERYBODY, Conversation, others_of, side_name
-from metagraph.speech.addressing import turns_of
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, get_side_name, list_other_sides
+from metagraph.speech.addressing import list_addressed_turns
 
 
 def offer_addressees(menu: QMenu, editing: Editing) -> None:
@@ -24,7 +24,7 @@ def offer_addressees(menu: QMenu, editing: Editing) -> None:
     side = next(iter(sides))
     now = {of.sides[side].segments[at].to for _, at in editing.chosen}
     choices: list[tuple[str, int | None]] = [(tr("Automatic"), None), (tr("Everyone"), EVERYBODY)]
-    choices += [(side_name(of, n), n) for n in others_of(of, side)]
+    choices += [(get_side_name(of, n), n) for n in list_other_sides(of, side)]
     for words, to in choices:
         action = whom.addAction(words, partial(editing.address, to))
         action.setCheckable(True)
@@ -39,12 +39,17 @@ def describe_addressee(conversation: Conversation, side: int, at: int) -> str:
     if len(conversation.sides) < 3:
         return ""
     turn = next(
-        (t for t in turns_of(conversation) if t.side == side and t.start <= segment.start < t.end), None
+        (
+            t
+            for t in list_addressed_turns(conversation)
+            if t.side == side and t.start <= segment.start < t.end
+        ),
+        None,
     )
     to = segment.to if segment.to is not None else turn.to if turn is not None else None
     if to is None:
         return ""
-    whom = tr("everyone") if to == EVERYBODY else side_name(conversation, to)
+    whom = tr("everyone") if to == EVERYBODY else get_side_name(conversation, to)
     if segment.to is None:
         return tr("\nTo {whom} (detected)", whom=whom)
     return tr("\nTo {whom}", whom=whom)

@@ -29,7 +29,7 @@ from PySide6.QtWidgets import (
 from app.features.conversation.conversation_settings import make_caption
 from app.features.conversation.speaker_card import Cards, SpeakerCard
 from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, name_language
-from app.look.theme import strengthen, theme
+from app.look.theme import get_theme, strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.project.speech_files import TRANSCRIPTS, describe_sound_file
@@ -43,8 +43,8 @@ from metagraph.graph.conversation.model import (
     MOST_SPEAKERS,
     Conversation,
     Side,
-    lists_of,
-    side_name,
+    get_side_name,
+    get_word_lists,
     with_sides,
 )
 from metagraph.graph.model import Project
@@ -144,7 +144,7 @@ class ImportDialog(QDialog):
         self.go.setEnabled(self.read is not None and sum(c.taken.isChecked() for c in self.cards) > 1)
 
     def _restyle(self) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         self.setStyleSheet(
             f"QFrame#card {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}"
         )
@@ -287,7 +287,7 @@ class ImportDialog(QDialog):
         self._show_parts()
         notes = list(self.read.notes) if self.read is not None else [failure] if failure else []
         more = [tr("… and {count} more", count=len(notes) - MOST)] if len(notes) > MOST else []
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         self.notes.setStyleSheet(f"color: {t.error if failure else t.warning}")
         lines = [f"⚠  {tr_phrase(n)}" for n in notes[:MOST]]
         self.notes.setText("\n".join((*lines, *more)))
@@ -306,24 +306,26 @@ class ImportDialog(QDialog):
     def _show_lists(self) -> None:
         """Show whose words are what, as far as they were not typed."""
         read = self.read.conversation if self.read is not None else None
-        apart = read is not None and any(lists_of(read, n) != lists_of(read, 0) for n in self.order)
+        apart = read is not None and any(
+            get_word_lists(read, n) != get_word_lists(read, 0) for n in self.order
+        )
         several = len(self.order) > 2
         for label, lists, side in zip(self.whose, (self.lists, self.others), self.order, strict=False):
             if read is None:
                 lists.show_lists(lists.usual)
             elif not self.typed or self.typed[side] is None:
                 code = read.sides[side].language
-                lists.show_lists(lists_of(read, side), code)
+                lists.show_lists(get_word_lists(read, side), code)
             if apart and read is not None:
                 of = read.sides[side]
-                label.setText(f"{side_name(read, side)}: {name_language(of.language) or tr('no words')}")
+                label.setText(f"{get_side_name(read, side)}: {name_language(of.language) or tr('no words')}")
             label.setVisible(apart and not several)
             lists.set_low(apart or several)
         self.lists.setVisible(not (apart and several))
         self.others.setVisible(apart and not several)
         if apart and several and read is not None:
             each = [
-                f"{side_name(read, n)} {name_language(read.sides[n].language) or tr('without words')}"
+                f"{get_side_name(read, n)} {name_language(read.sides[n].language) or tr('without words')}"
                 for n in self.order
             ]
             self.whose[0].setText(

@@ -11,7 +11,7 @@ from app.features.conversation.segment_lanes import KINDS, PLURALS, describe_seg
 from app.features.conversation.segment_view import SegmentView
 from app.features.conversation.sound_reading import Sounds
 from app.look.plural import list_in_words
-from app.look.theme import SOUND_MARKS, theme
+from app.look.theme import SOUND_MARKS, get_theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
@@ -19,11 +19,11 @@ from app.stage.session import StageSession
 from app.translation import group_thousands, tr, tr_noop, tr_plural
 from app.widgets.drop_frame import DropFrame
 from app.widgets.making import make_widget
-from app.widgets.mime import sounds_of
+from app.widgets.mime import read_sound_paths
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
-from metagraph.graph.conversation.model import SPOKEN, side_name
+from metagraph.graph.conversation.model import SPOKEN, get_side_name
 
 NONE = tr_noop("None on stage")
 BELOW_WORDS = 150  # pixels from the top of these words to the button below them
@@ -133,7 +133,7 @@ class ConversationPanel(QWidget):
         self.session.transport.set_playing(True)
 
     def _words(self) -> None:
-        of, t = self.editing.conversation, theme(self.session.look.name)
+        of, t = self.editing.conversation, get_theme(self.session.look.name)
         self.legend.setVisible(of is not None)
         if of is None:
             self.title.say("")
@@ -159,7 +159,8 @@ class ConversationPanel(QWidget):
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
         if len(chosen) == 1 and found is not None and self.editing.last is not None:
             self.title.say(
-                f"{side_name(of, self.editing.last[0])}: {describe_segment(found)}".replace("\n", ", "), True
+                f"{get_side_name(of, self.editing.last[0])}: {describe_segment(found)}".replace("\n", ", "),
+                True,
             )
         elif chosen:
             self.title.say(
@@ -171,7 +172,7 @@ class ConversationPanel(QWidget):
             )
         else:
             minutes, seconds = divmod(round(of.length), 60)
-            who = list_in_words([side_name(of, side) for side in range(len(of.sides))])
+            who = list_in_words([get_side_name(of, side) for side in range(len(of.sides))])
             self.title.say(f"{who}, {minutes}:{seconds:02d}{self._delivered()}")
 
     def _delivered(self) -> str:
@@ -195,7 +196,7 @@ class ConversationPanel(QWidget):
     # --- drops
 
     def dragEnterEvent(self, event: QDragMoveEvent) -> None:
-        if sounds_of(event.mimeData()):
+        if read_sound_paths(event.mimeData()):
             event.acceptProposedAction()
             self.drop_frame.follow(event)
 
@@ -203,7 +204,7 @@ class ConversationPanel(QWidget):
         self.dragEnterEvent(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
-        paths = sounds_of(event.mimeData())
+        paths = read_sound_paths(event.mimeData())
         if paths:
             event.acceptProposedAction()
             self.files_dropped.emit(paths)

@@ -24,16 +24,16 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.stage.performance import StagePerformance
 from app.stage.playback_source import ShownPlayback
-from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_phrase
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_phrase
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation import edits as conversation_edits
-from metagraph.graph.conversation.model import SPOKEN, Conversation, Rates, side_name
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Rates, get_side_name
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.speech.gaze_shares import join_shares
 
-RATES = lazy_texts(
+RATES = make_lazy_texts(
     lambda: {
         "clause": (tr("gestures on own clauses"), tr("How often the hands move with a clause")),
         "response": (
@@ -58,7 +58,7 @@ RATES = lazy_texts(
         ),
     }
 )
-BLINKS = lazy_texts(
+BLINKS = make_lazy_texts(
     lambda: {
         "life": (
             tr("As in Life, plus on stresses"),
@@ -73,7 +73,7 @@ BLINKS = lazy_texts(
         ),
     }
 )
-ORDINALS = lazy_texts(
+ORDINALS = make_lazy_texts(
     lambda: (
         tr("first"),
         tr("second"),
@@ -85,7 +85,7 @@ ORDINALS = lazy_texts(
         tr("eighth"),
     )
 )
-ACTORS = lazy_texts(lambda: {"female": tr("the woman"), "male": tr("the man")})
+ACTORS = make_lazy_texts(lambda: {"female": tr("the woman"), "male": tr("the man")})
 
 
 def parse_word_list(words: str) -> tuple[str, ...]:
@@ -149,7 +149,7 @@ def describe_delivered(shown: ShownPlayback, conversation: Conversation) -> str:
     three or more speakers where they look. Return "" if there is nothing to report.
     """
     rates = [
-        f"{side_name(conversation, one.side)}: {tr_phrase(told.words())}"
+        f"{get_side_name(conversation, one.side)}: {tr_phrase(told.words())}"
         for one in shown.everyone
         for told in one.told
         if told.count
@@ -217,7 +217,7 @@ class SideRatesDialog(SettingDialog):
         grid.setVerticalSpacing(8)
         count = len(self.conversation.sides)
         for side in range(count):
-            whose = make_caption(side_name(self.conversation, side), self)
+            whose = make_caption(get_side_name(self.conversation, side), self)
             whose.setWordWrap(True)
             grid.addWidget(whose, 0, 1 + side)
         for column, actor in enumerate(ACTORS.values()):
@@ -230,7 +230,7 @@ class SideRatesDialog(SettingDialog):
             for side in range(count):
                 field = DoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
                 field.setRange(0, 100)
-                field.setAccessibleName(f"{side_name(self.conversation, side)} {words}")
+                field.setAccessibleName(f"{get_side_name(self.conversation, side)} {words}")
                 field.setValue(100 * getattr(self.conversation.sides[side].rates, name))
                 self.fields[side][name] = field
                 grid.addWidget(field, row, 1 + side)

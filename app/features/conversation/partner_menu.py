@@ -12,16 +12,16 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, count_channels
-from app.translation import lazy_texts, tr, tr_error
-from metagraph.formats.store import SUFFIX, relative
+from app.translation import make_lazy_texts, tr, tr_error
+from metagraph.formats.store import SUFFIX, make_path_relative
 from metagraph.graph.conversation.edits import change_side
-from metagraph.graph.conversation.model import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, get_side_name
 from metagraph.graph.edit_error import EditError
 
 BODIES = (".glb", ".gltf")
 MOST = 24  # files of a kind that a menu offers; all others are chosen in the dialog
 LOOKED_AT = 2000  # files of a folder
-EARS = lazy_texts(lambda: (tr("left"), tr("right")))
+EARS = make_lazy_texts(lambda: (tr("left"), tr("right")))
 
 
 def make_partner_menu(
@@ -83,7 +83,7 @@ def fill_all(menu: QMenu, document: Document, ident: str, more: object = None) -
     """Fill a menu with one for each who talks."""
     conversation: Conversation = document.project.conversations[ident]
     for side in range(len(conversation.sides)):
-        fill_partner(menu.addMenu(side_name(conversation, side)), document, ident, side, more)
+        fill_partner(menu.addMenu(get_side_name(conversation, side)), document, ident, side, more)
 
 
 def _set(document: Document, ident: str, side: int, changes: dict[str, object]) -> None:
@@ -111,7 +111,9 @@ def _beside(document: Document, suffixes: tuple[str, ...], used: Iterable[str | 
             found = sorted(x for x in _some(place) if x.name.lower().endswith(suffixes))
         except OSError:
             continue
-        paths = [relative(x, folder) if document.folder is not None else x.as_posix() for x in found]
+        paths = [
+            make_path_relative(x, folder) if document.folder is not None else x.as_posix() for x in found
+        ]
         out += [x for x in paths if x not in out]
     return out[:MOST]
 

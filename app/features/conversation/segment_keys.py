@@ -11,14 +11,14 @@ from PySide6.QtGui import QKeySequence
 
 from app.features.conversation.segment_editing import Editing
 from app.look.theme import SOUND_MARKS
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.graph.conversation.model import SPOKEN, Sound
 
 FINE, FAR = 0.02, 0.2  # seconds a key moves something
-TITLES = lazy_texts(
+TITLES = make_lazy_texts(
     lambda: {"clause": tr("Clause"), "response": tr("Response"), "hesitation": tr("Hesitation")}
 )
-NUDGES = lazy_texts(
+NUDGES = make_lazy_texts(
     lambda: {
         "body": (tr("Move earlier"), tr("Move later")),
         "end": (tr("Move the end earlier"), tr("Move the end later")),
@@ -78,7 +78,7 @@ def _nudges() -> list[Deed]:
     return out
 
 
-DEEDS: tuple[Deed, ...] = lazy_texts(
+DEEDS: tuple[Deed, ...] = make_lazy_texts(
     lambda: (
         *(
             Deed(f"{SOUND_MARKS[kind]}  {TITLES[kind]}", (_combined(key),), partial(_label, kind))

@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QRectF
 
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from app.widgets.lane_geometry import LEFT, RULER, LaneScale
 from metagraph.graph.conversation.model import Segment, Word
 
 # what the window calls the kinds of segments
-KINDS = lazy_texts(
+KINDS = make_lazy_texts(
     lambda: {"clause": tr("clause"), "response": tr("response"), "hesitation": tr("hesitation")}
 )
-PLURALS = lazy_texts(
+PLURALS = make_lazy_texts(
     lambda: {"clause": tr("clauses"), "response": tr("responses"), "hesitation": tr("hesitations")}
 )
 GAP = 8.0  # pixels between two
@@ -74,7 +74,7 @@ def place_segment_lanes(width: float, height: float, sides: int = 2) -> tuple[Se
     return tuple(out)
 
 
-def least_scale(width: float, length: float) -> float:
+def find_least_scale(width: float, length: float) -> float:
     """Return the fewest pixels a second: at which all of it is in sight."""
     return min(2.0, max(40.0, width - LEFT - 8) / max(length, 1e-3))
 

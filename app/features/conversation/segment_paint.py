@@ -23,9 +23,9 @@ from app.features.conversation.sound_reading import SideSound
 from app.look.theme import SOUND_MARKS, WindowTheme
 from app.translation import tr
 from app.widgets.act_strip import STEPS, format_clock
-from app.widgets.lane_geometry import LEFT, RULER, LaneScale, elide_text, text_width
+from app.widgets.lane_geometry import LEFT, RULER, LaneScale, elide_text, measure_text_width
 from app.widgets.waveforms import Envelope, join_columns, paint_columns
-from metagraph.graph.conversation.model import Conversation, Segment, side_name
+from metagraph.graph.conversation.model import Conversation, Segment, get_side_name
 
 INK = "#17181b"  # on the fills
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
@@ -85,7 +85,7 @@ def _ruler(painter: QPainter, t: WindowTheme, scene: SegmentScene) -> None:
     n = int(scale.first // step)
     while (x := scale.x(n * step)) < scene.width:
         words = format_clock(round(n * step, 3))
-        if x >= LEFT - 1 and x + text_width(words, painter.font().toString()) / 2 + 1 <= scene.width:
+        if x >= LEFT - 1 and x + measure_text_width(words, painter.font().toString()) / 2 + 1 <= scene.width:
             painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
         n += 1
 
@@ -95,12 +95,12 @@ def _titles(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, l
     own, small, bold = painter.font(), QFont(painter.font()), QFont(painter.font())
     small.setPixelSize(SMALL)
     bold.setWeight(QFont.Weight.DemiBold)
-    over, name = scene.over == SegmentHit("title", side), side_name(scene.conversation, side)
+    over, name = scene.over == SegmentHit("title", side), get_side_name(scene.conversation, side)
     if over:
         painter.fillRect(QRectF(0, lane.whole.top(), LEFT - 1, lane.whole.height()), QColor(t.hover))
     if side == scene.side:
         painter.fillRect(QRectF(3, lane.wave.top() + 3, 3, lane.whole.height() - 6), QColor(t.text))
-    if text_width(name, bold.toString()) > LEFT - 32:
+    if measure_text_width(name, bold.toString()) > LEFT - 32:
         bold.setPixelSize(SMALL)
     painter.setFont(bold)
     painter.setPen(QColor(t.text if over or side == scene.side else t.dim))
@@ -195,7 +195,7 @@ def _told(painter: QPainter, t: WindowTheme, heard: SideSound | None, area: QRec
     elif heard.told:
         painter.setPen(QColor(t.dim))
         if heard.wave is not None:  # then it stands over the waveform
-            wide = text_width(heard.told, painter.font().toString()) + 12
+            wide = measure_text_width(heard.told, painter.font().toString()) + 12
             inner = QRectF(area.right() - wide - 6, area.top() + 3, wide, 18)
             painter.fillRect(inner, QColor(t.panel))
         painter.drawText(inner, MIDDLE if heard.wave is None else Qt.AlignmentFlag.AlignCenter, heard.told)
@@ -216,7 +216,7 @@ def _words(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, la
         until = min(scale.x(some[n + 1].start) if n + 1 < len(some) else left + 300.0, scene.width)
         words = (
             word.text
-            if text_width(word.text, key) <= until - left - 4
+            if measure_text_width(word.text, key) <= until - left - 4
             else elide_text(word.text, key, int(until - left - 4))
         )
         if len(words) > 3 or words == word.text:
@@ -255,7 +255,7 @@ def _segments(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int,
         left = max(rect.left(), LEFT)
         room = min(rect.right(), scene.width) - left - 10
         mark = SOUND_MARKS[segment.kind]
-        if room < text_width(mark, key) - 2:
+        if room < measure_text_width(mark, key) - 2:
             continue
         painter.setPen(QColor(INK))
         words = f"{mark} {segment.text}".strip() if segment.text else f"{mark} {segment.kind}"

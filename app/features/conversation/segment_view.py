@@ -32,24 +32,24 @@ from app.features.conversation.segment_keys import DEEDS, find_deed
 from app.features.conversation.segment_lanes import (
     NEAREST,
     describe_segment,
+    find_least_scale,
     find_words_between,
-    least_scale,
     measure_least_lane_height,
 )
 from app.features.conversation.segment_paint import SegmentScene, paint_empty_conversation, paint_segments
 from app.features.conversation.sound_reading import Sounds
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Edit
-from app.translation import lazy_texts, tr, tr_noop
+from app.translation import make_lazy_texts, tr, tr_noop
 from app.widgets.gesture import PointerHand
 from app.widgets.lane_geometry import LEFT, LaneScale
 from app.widgets.lane_paint import paint_badge, paint_playhead
 from app.widgets.memo import Once
-from metagraph.graph.conversation.model import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, get_side_name
 from metagraph.graph.edit_error import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
-EMPTY = lazy_texts(
+EMPTY = make_lazy_texts(
     lambda: (
         tr("Drop the sound of a conversation here"),
         tr(
@@ -59,7 +59,7 @@ EMPTY = lazy_texts(
         tr("The speech appears here as clauses, responses and hesitations, and moves the characters."),
     )
 )
-UNCHOSEN = lazy_texts(
+UNCHOSEN = make_lazy_texts(
     lambda: (
         tr("No conversation on stage"),
         tr("Choose a conversation above, or drop the sound of a new one here."),
@@ -121,7 +121,10 @@ class SegmentView(QWidget):
     def zoom(self, by: float, x: float) -> None:
         """Zoom about a place on the screen."""
         of = self.editing.conversation
-        at, least = self.scale().seconds(x), least_scale(self.width(), of.length if of is not None else 60.0)
+        at, least = (
+            self.scale().seconds(x),
+            find_least_scale(self.width(), of.length if of is not None else 60.0),
+        )
         self.each = min(NEAREST, max(least, self.each * by))
         self.look_at(at - (x - LEFT) / self.each)
 
@@ -182,7 +185,7 @@ class SegmentView(QWidget):
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t, painter, of = theme(self.session.look.name), QPainter(self), self.conversation()
+        t, painter, of = get_theme(self.session.look.name), QPainter(self), self.conversation()
         if of is None:
             painter.fillRect(self.rect(), QColor(t.panel))
             paint_empty_conversation(
@@ -221,7 +224,7 @@ class SegmentView(QWidget):
             scene = SegmentScene(
                 of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.onstage.side
             )
-            paint_segments(painter, theme(s.look.name), scene)
+            paint_segments(painter, get_theme(s.look.name), scene)
             painter.end()
             self.painted += 1
             return picture
@@ -469,5 +472,5 @@ class SegmentView(QWidget):
                 else tr("Click to see this speaker's plan in the Performance panel")
             )
             other = tr("Click the arrow to change the character, body language or voice")
-            return "\n".join((side_name(of, hit.side), *sound, *mover, shown, other))
+            return "\n".join((get_side_name(of, hit.side), *sound, *mover, shown, other))
         return tr("Drag to add a segment") if hit.part == "gap" else ""

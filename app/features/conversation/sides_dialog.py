@@ -23,7 +23,7 @@ from app.project.speech_files import SOUNDS, count_channels
 from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.formats.store import SUFFIX, relative
+from metagraph.formats.store import SUFFIX, make_path_relative
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
@@ -195,7 +195,9 @@ class SidesDialog(SettingDialog):
         folder = self.document.folder
         name, _ = QFileDialog.getOpenFileName(self, title, str(folder or Path.home()), kinds)
         if name:
-            field.setText(relative(Path(name), folder) if folder is not None else Path(name).as_posix())
+            field.setText(
+                make_path_relative(Path(name), folder) if folder is not None else Path(name).as_posix()
+            )
         return bool(name)
 
     def _mover(self, side: int) -> str | None:

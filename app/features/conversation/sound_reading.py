@@ -219,9 +219,9 @@ class _Work:
 
     def _sing(self, heard: SideSound, samples: Any, rate: int) -> None:
         """Find the pitch."""
-        from metagraph.speech.pitch import pitch
+        from metagraph.speech.pitch import measure_pitch
 
-        found = pitch(samples, rate)
+        found = measure_pitch(samples, rate)
         curve = Envelope(len(samples) / rate, HOPS)
         curve.fill(0, found.hertz)
         self.set(heard, maxima=find_pitch_maxima(found.times, found.hertz), pitch=curve, part=1.0, told="")

@@ -23,7 +23,7 @@ from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation import edits as conversation_edits
-from metagraph.graph.conversation.model import AUTO, Conversation, lists_of, side_name
+from metagraph.graph.conversation.model import AUTO, Conversation, get_side_name, get_word_lists
 from metagraph.graph.model import Project
 from metagraph.speech.language_detection import detect_language
 from metagraph.speech.language_packs import list_language_packs
@@ -151,7 +151,7 @@ class WordsDialog(SettingDialog):
         of = self.conversation
         self.apart = QCheckBox(tr("Separate lists for each speaker"), self)
         self.sides = range(len(of.sides))
-        self.apart.setChecked(any(lists_of(of, n) != lists_of(of, 0) for n in self.sides))
+        self.apart.setChecked(any(get_word_lists(of, n) != get_word_lists(of, 0) for n in self.sides))
         everyone = tr("Both") if len(self.sides) == 2 else tr("All")
         inside = QWidget(self)
         inner = QVBoxLayout(inside)
@@ -166,7 +166,7 @@ class WordsDialog(SettingDialog):
             name, box, lists = make_caption("", whole), LanguageBox(whole), WordLists(whole)
             box.show_code(of.sides[side].language or "en")
             box.activated.connect(lambda _, n=side: self._take_language(n))
-            lists.show_lists(lists_of(of, side), of.sides[side].language)
+            lists.show_lists(get_word_lists(of, side), of.sides[side].language)
             row.addWidget(name, 1)
             row.addWidget(make_caption(tr("Language"), whole, True))
             row.addWidget(box)
@@ -175,9 +175,9 @@ class WordsDialog(SettingDialog):
             inner.addWidget(whole, 1)
             self.rows.append((whole, box, lists))
             self.apart.toggled.connect(
-                lambda on, label=name, n=side: label.setText(side_name(of, n) if on else everyone)
+                lambda on, label=name, n=side: label.setText(get_side_name(of, n) if on else everyone)
             )
-            name.setText(side_name(of, side) if self.apart.isChecked() else everyone)
+            name.setText(get_side_name(of, side) if self.apart.isChecked() else everyone)
         layout.addWidget(inside if len(self.sides) == 2 else Tall(inside, 480, self), 1)
         self.lists = self.rows[0][2]
         self._show_other(self.apart.isChecked())

@@ -25,13 +25,13 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import lazy_texts, tr, tr_error, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import batch
 
-TITLES = lazy_texts(
+TITLES = make_lazy_texts(
     lambda: {
         "blends": tr("Blend in and out"),
         "part": tr("Start and end"),

@@ -39,7 +39,7 @@ from app.project.jobs import Jobs, WindowJob
 from app.project.reveal import open_folder
 from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.making import make_widget
-from app.widgets.tree_items import items_below, top_items
+from app.widgets.tree_items import list_items_below, list_top_items
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
 from metagraph.engines.targets.target import Contents, ExportTarget, TargetReport
@@ -47,7 +47,7 @@ from metagraph.engines.tools_file import write_tools
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check_project
 from metagraph.graph.expand import count_machine_size
-from metagraph.graph.manual.meta import exportable
+from metagraph.graph.manual.meta import make_exportable
 
 NAME = Qt.ItemDataRole.UserRole
 
@@ -90,7 +90,7 @@ class ExportDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
-        self.project, self.differences = exportable(document.project, manual)
+        self.project, self.differences = make_exportable(document.project, manual)
         self.setAttribute(
             Qt.WidgetAttribute.WA_DeleteOnClose
         )  # a running export goes on; the status bar shows it
@@ -145,7 +145,7 @@ class ExportDialog(QDialog):
         out.setAccessibleName(tr("Target"))
         out.setFixedWidth(260)
         groups: dict[str, QTreeWidgetItem] = {}
-        for target in registry.targets().values():
+        for target in registry.list_targets().values():
             if target.group not in groups:
                 groups[target.group] = QTreeWidgetItem(out, [tr_phrase(target.group)])
                 groups[target.group].setFlags(Qt.ItemFlag.ItemIsEnabled)
@@ -219,7 +219,7 @@ class ExportDialog(QDialog):
             return replace(
                 known,
                 folders=folders,
-                target=known.target if known.target in registry.targets() else registry.DEFAULT,
+                target=known.target if known.target in registry.list_targets() else registry.DEFAULT,
             )
         except (ValueError, TypeError, AttributeError):
             return ExportChoice()
@@ -236,7 +236,10 @@ class ExportDialog(QDialog):
 
     def _select(self, name: str) -> None:
         found = next(
-            i for group in top_items(self.targets) for i in items_below(group) if i.data(0, NAME) == name
+            i
+            for group in list_top_items(self.targets)
+            for i in list_items_below(group)
+            if i.data(0, NAME) == name
         )
         self.targets.setCurrentItem(found)
 
@@ -245,13 +248,15 @@ class ExportDialog(QDialog):
         """The target that is chosen."""
         item = self.targets.currentItem()
         name = item.data(0, NAME) if item is not None else None
-        return registry.target(name or registry.DEFAULT)
+        return registry.get_target(name or registry.DEFAULT)
 
     def _describe(self) -> None:
         target, project = self.target, self.project
         self.folder.setText(self.chosen.folders.get(target.name) or self._usual(target.name))
         whole = count_machine_size(project)
-        played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
+        played = (target.name == registry.DEFAULT) or target.group == registry.get_target(
+            registry.DEFAULT
+        ).group
         self.title.setText(tr_phrase(target.title))
         joints = len(project.skeleton) if project.skeleton else 0
         self.words.setText(
@@ -266,7 +271,9 @@ class ExportDialog(QDialog):
         for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
         self.compress.setVisible(target.unpacks)
-        rows = [f"<li>{escape(tr_phrase(words))}</li>" for words in registry.losses(project, target.name)]
+        rows = [
+            f"<li>{escape(tr_phrase(words))}</li>" for words in registry.describe_losses(project, target.name)
+        ]
         note = (
             tr("<p><b>Experimental</b>: {why}.</p>", why=escape(tr_phrase(target.untried)))
             if target.untried

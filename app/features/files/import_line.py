@@ -13,7 +13,13 @@ from app.project.document import Document
 from app.project.importing import Importing
 from app.translation import tr, tr_noop, tr_phrase
 from app.widgets.making import make_widget
-from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported, remedies
+from metagraph.formats.import_words import (
+    Remedy,
+    count_alike,
+    describe_import,
+    describe_imported,
+    list_remedies,
+)
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
@@ -83,7 +89,7 @@ class ImportLine(QToolBar):
         self.words.setText(tr_phrase(words))
         self.words.setToolTip(tr_phrase(words))
         self.why.setVisible(bool(result.failures or result.notes))
-        for remedy in remedies(result):
+        for remedy in list_remedies(result):
             self._offer(tr_phrase(remedy.label), partial(self._mend, remedy))
         if unlabelled and not fresh:  # what came in goes on all the same
             self._offer(tr("Label clips…"), lambda: self._do("propose"))

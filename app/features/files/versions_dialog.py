@@ -26,11 +26,11 @@ from app.look.theme import strengthen
 from app.project.leftovers import find_telling_pose
 from app.project.questions import describe_moment
 from app.project.recovering import PICTURE, SittingPicture
-from app.project.version_count import set_version_count, version_count
+from app.project.version_count import count_kept_versions, set_version_count
 from app.translation import tr, tr_phrase, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.errors import FileError, describe_error
-from metagraph.formats.project.versions import MOST, Version, earlier_versions
+from metagraph.formats.project.versions import MOST, Version, list_earlier_versions
 from metagraph.formats.store import read_project
 from metagraph.graph.editing.differences import describe_differences
 from metagraph.graph.model import Project
@@ -57,7 +57,7 @@ def find_versions(path: Path, now: Project) -> tuple[Found, ...]:
     thread.
     """
     out = []
-    for version in earlier_versions(path):
+    for version in list_earlier_versions(path):
         try:
             project = read_project(version.path, [])
         except FileError as error:
@@ -109,7 +109,7 @@ class VersionsDialog(QDialog):
         self.changes.setSelectionMode(QListWidget.SelectionMode.NoSelection)
         self.count = SpinBox(self)
         self.count.setRange(0, MOST)
-        self.count.setValue(version_count())
+        self.count.setValue(count_kept_versions())
         self.count.setSpecialValueText(tr("none"))
         self.count.setAccessibleName(tr("Versions kept"))
         self.count.valueChanged.connect(set_version_count)

@@ -144,7 +144,7 @@ class Speaker:
     folder: Path
 
 
-def side_motion(
+def make_side_motion(
     model: Model, named: str, speaker: Speaker, chance: Chance, progress: Progress, cancelled: Cancelled
 ) -> tuple[Loaded, tuple[str, ...]]:
     """Make the motion of one side of a conversation and keep it as a file; return what `add_clips` takes, and
@@ -188,21 +188,21 @@ def cut_pieces(
     """Cut takes of one name at moments at which they rest alike, and say what each piece is taken for; or why
     there is none. Raises SynthesisError, and CancelledError.
     """
-    from metagraph.synthesis.cut import candidates, uncut
-    from metagraph.synthesis.graph import threshold
+    from metagraph.synthesis.cut import explain_uncut, find_candidates
+    from metagraph.synthesis.graph import find_threshold
     from metagraph.synthesis.states import read_states
 
-    limit = threshold(read_states(clips)).limit
+    limit = find_threshold(read_states(clips)).limit
     cuts: list[Clip] = []
     for n, clip in enumerate(clips):
         if cancelled():
             raise CancelledError
         progress(n, len(clips))
         cuts += cut_into_pieces(
-            clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)]
+            clip, [(start, end) for start, end, _ in find_candidates(clip, limit, LEAST, MOST)]
         )
     if not cuts:
-        return [], uncut(max(clips, key=lambda c: c.duration), limit, LEAST, MOST)
+        return [], explain_uncut(max(clips, key=lambda c: c.duration), limit, LEAST, MOST)
     whole = [clip.renamed(f"{clips[0].name}_{n:02d}") for n, clip in enumerate(cuts, 1)]
     return propose_pieces(whole, project, cancelled), ""
 

@@ -42,14 +42,14 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_phrase, tr_plural
+from app.translation import make_lazy_texts, tr, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from metagraph.generation.standing import Standing, is_busy
 from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import PLAN, folder_of, read_planned_takes
 
-TIPS = lazy_texts(
+TIPS = make_lazy_texts(
     lambda: (
         ("matching", tr("Follows the speech best for its training time. Start with 15 minutes.")),
         (
@@ -60,10 +60,10 @@ TIPS = lazy_texts(
         ("cvae", tr("Another comparison from the paper: moves only a little")),
     )
 )
-SIZES = lazy_texts(
+SIZES = make_lazy_texts(
     lambda: (("small", tr("small, for this computer")), ("paper", tr("as in the paper, for a graphics card")))
 )
-HEADS = lazy_texts(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("Notes")))
+HEADS = make_lazy_texts(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("Notes")))
 
 
 def describe_missing_training() -> str | None:

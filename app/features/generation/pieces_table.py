@@ -14,14 +14,14 @@ from PySide6.QtWidgets import QHBoxLayout, QHeaderView, QTableWidget, QTableWidg
 from app.features.generation.generation_jobs import GeneratedPiece
 from app.features.generation.sample_preview import FigurePreview
 from app.project.document import Document
-from app.translation import format_number, lazy_texts, tr, tr_noop
+from app.translation import format_number, make_lazy_texts, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.landmarks import landmarks_of
 from metagraph.generation.networks import FPS
 from metagraph.generation.poses import encode_clip
 from metagraph.graph.model import Kind, Limb
 
-HEADS = lazy_texts(lambda: (tr("Piece"), tr("Length"), tr("Label"), tr("Confidence"), tr("Arm")))
+HEADS = make_lazy_texts(lambda: (tr("Piece"), tr("Length"), tr("Label"), tr("Confidence"), tr("Arm")))
 KIND, SURE, LIMB = 2, 3, 4  # columns
 KINDS: tuple[Kind, ...] = ("gesture", "fidget")
 LIMBS: tuple[Limb, ...] = ("both", "left", "right")

@@ -9,13 +9,13 @@ import pyqtgraph as pg
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr
-from app.widgets.still_plot import clear_plot, still_plot
+from app.translation import make_lazy_texts, tr
+from app.widgets.still_plot import clear_plot, make_still_plot
 
 # Statistics of which 1 is right, as people read them; others are reported in words.
-RATIOS = lazy_texts(
+RATIOS = make_lazy_texts(
     lambda: {
         "speed": tr("speed"),
         "trembling": tr("jitter"),
@@ -45,7 +45,7 @@ class TrainingPlots(QWidget):
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(10)
-        self.left, self.right = (still_plot(self) for _ in range(2))
+        self.left, self.right = (make_still_plot(self) for _ in range(2))
         for plot, name in (
             (self.left, tr("Progress of the training")),
             (self.right, tr("Statistics of the samples")),
@@ -72,7 +72,7 @@ class TrainingPlots(QWidget):
         self._draw()
 
     def _draw(self) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         colours = (look.text, look.warning, look.dim, look.error, look.text)
         for plot, words, lines in (
             (self.left, next(iter(self.goals), tr("training goal")), self.goals),

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.translation import lazy_texts, tr, tr_error, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_plural
 
 if TYPE_CHECKING:
     from metagraph.generation.standing import Standing
     from metagraph.generation.train_process import TrainingEvent
 
 # What an event's numbers tell, the most telling first.
-GOALS = lazy_texts(
+GOALS = make_lazy_texts(
     lambda: {
         "likelihood": tr("likelihood: higher is better"),
         "matching": tr("error of the flow: lower is better"),

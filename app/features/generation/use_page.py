@@ -25,7 +25,7 @@ from app.features.generation.generation_jobs import (
     describe_model,
     find_first_stance,
     keep_pieces,
-    side_motion,
+    make_side_motion,
     with_pieces,
     with_side_moved,
 )
@@ -42,7 +42,7 @@ from metagraph.errors import FileError
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.offered import list_models, name_model
 from metagraph.generation.stored import SUFFIX, read_card
-from metagraph.graph.conversation.model import side_name
+from metagraph.graph.conversation.model import get_side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
 NOBODY = tr_noop(
@@ -176,7 +176,7 @@ class UsePage(GenerationPage):
             box.clear()
             for ident, talk in project.conversations.items():
                 for n in range(len(talk.sides)):
-                    box.addItem(f"{talk.name}: {side_name(talk, n)}", (ident, n))
+                    box.addItem(f"{talk.name}: {get_side_name(talk, n)}", (ident, n))
             if box is self.speech:
                 if self._sound is not None:
                     box.addItem(self._sound.name, FILE)
@@ -314,7 +314,7 @@ class UsePage(GenerationPage):
         ident, side = chosen
         talk = project.conversations[ident]
         if talk.sides[side].project is not None:
-            who = side_name(talk, side)
+            who = get_side_name(talk, side)
             self._failed(
                 ValueError(
                     tr(
@@ -329,7 +329,7 @@ class UsePage(GenerationPage):
             from metagraph.generation.stored import read_model
 
             speaker = Speaker(project, ident, side, folder)
-            return side_motion(read_model(path), named, speaker, chance, job.tell, lambda: job.cancelled)
+            return make_side_motion(read_model(path), named, speaker, chance, job.tell, lambda: job.cancelled)
 
         def done(made: Any) -> None:
             loaded, notes = made
@@ -351,7 +351,7 @@ class UsePage(GenerationPage):
             self.said.emit(
                 tr(
                     "{who} moves with '{named}', seed {seed}. {told}",
-                    who=side_name(talk, side),
+                    who=get_side_name(talk, side),
                     named=named,
                     seed=chance.seed,
                     told=told,

@@ -6,7 +6,7 @@ from functools import partial
 
 from app.features.graph.graph_commands import COMMANDS, GraphFeature
 from app.features.graph.layer_tabs import LayerTabs
-from app.shell.command_table import all_met, bind_commands, has_actions_selected, is_meta_graph_shown
+from app.shell.command_table import bind_commands, has_actions_selected, is_meta_graph_shown, require_all
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.shell.verbs import Verbs
 from app.translation import tr
@@ -17,7 +17,7 @@ def contribute(shell: Shell) -> Contribution:
     shown = partial(is_meta_graph_shown, graph)
     graph.importing.imported.connect(graph.place_imported)
     verbs.offer(
-        "remove", partial(all_met(is_meta_graph_shown, has_actions_selected), graph), graph.remove_actions
+        "remove", partial(require_all(is_meta_graph_shown, has_actions_selected), graph), graph.remove_actions
     )
     verbs.offer("rename", shown, graph.rename_stance, rank=9)
     verbs.offer("select_all", shown, graph.select_all, rank=9)

@@ -15,7 +15,7 @@ from app.project.document import Document
 from app.project.load import Load
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_plural
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.half_labels import follow_stance_name
@@ -152,7 +152,7 @@ class GraphActs(QObject):
         name, accepted = QInputDialog.getText(
             self.widget,
             tr("New stance"),
-            tr("Name of the new {layer} stance:", layer=vocabulary_word(self.session.place.layer)),
+            tr("Name of the new {layer} stance:", layer=get_vocabulary_word(self.session.place.layer)),
         )
         if accepted and name.strip():
             layer = self.session.place.layer

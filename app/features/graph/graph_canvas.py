@@ -42,12 +42,12 @@ from app.features.graph.graph_layout import (
     measure_least_canvas_height,
 )
 from app.features.graph.graph_look import NOWHERE, GraphLook
-from app.features.graph.graph_menus import make_ends_menu, menu_of
+from app.features.graph.graph_menus import make_ends_menu, make_menu_for
 from app.features.graph.graph_painter import paint_graph
 from app.features.graph.graph_parts import Parts, find_stale_region, list_graph_parts
 from app.features.graph.graph_pictures import Beat, GraphPictures, find_graph_pictures
 from app.features.graph.graph_words import count_machine, describe_graph_hit
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
@@ -168,7 +168,7 @@ class Canvas(QWidget):
     def _look(self, pictures: GraphPictures) -> GraphLook:
         """Return what is drawn besides the layout."""
         return GraphLook(
-            theme=theme(self.session.look.name),
+            theme=get_theme(self.session.look.name),
             project=self.document.project,
             selected=self.session.selection.actions,
             fresh=self.fresh,
@@ -425,4 +425,4 @@ class Canvas(QWidget):
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         hit = self.layout_now().hit(QPointF(event.pos()))
-        menu_of(self.acts, hit, self.row_actions).exec(event.globalPos())
+        make_menu_for(self.acts, hit, self.row_actions).exec(event.globalPos())

@@ -9,12 +9,12 @@ from app.features.graph.graph_drops import Drop
 from app.features.graph.layer_tabs import LAYER_KEYS
 from app.project.importing import Importing
 from app.shell.actions import Command
-from app.shell.command_table import Feature, any_met, has_actions_selected, has_clips_selected
+from app.shell.command_table import Feature, has_actions_selected, has_clips_selected, require_any
 from app.shell.context import Shell
 from app.shell.places import PanelPlaces
 from app.stage.problem_watch import ProblemWatch
 from app.translation import tr, tr_noop
-from app.widgets.vocabulary import vocabulary_title, vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_title, get_vocabulary_word
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import KINDS, LAYERS, Kind, Layer, Stance
 
@@ -105,11 +105,11 @@ class GraphFeature(Feature):
 
 
 def _label_text(feature: GraphFeature, number: int, kind: Kind) -> str:
-    return tr("Label as &{number} {kind}", number=number, kind=vocabulary_word(kind))
+    return tr("Label as &{number} {kind}", number=number, kind=get_vocabulary_word(kind))
 
 
 def _layer_text(feature: GraphFeature, layer: Layer) -> str:
-    return tr("{layer} layer", layer=vocabulary_title(layer))
+    return tr("{layer} layer", layer=get_vocabulary_title(layer))
 
 
 COMMANDS = (
@@ -131,7 +131,7 @@ COMMANDS = (
             partial(_label_text, number=number, kind=kind),
             partial(GraphFeature.label, kind=kind),
             (str(number),),
-            enabled=any_met(has_clips_selected, has_actions_selected),
+            enabled=require_any(has_clips_selected, has_actions_selected),
             when="meta",
             study=True,
             menus=("clip label",),

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.features.graph.graph_layout import GraphHit
-from app.look.names import node_names
+from app.look.names import name_node_rows
 from app.project.load import ANNOTATIONS, Load
 from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.listing import reorder_actions
 from metagraph.graph.edits import find_placing_refusal, move_actions, place_clips, to_stance
@@ -92,7 +92,7 @@ def drop_at(
         if not clips and kind != "stance":
             why = tr(
                 "make a stance first: drop a clip in the middle of the {layer} layer",
-                layer=vocabulary_word(layer),
+                layer=get_vocabulary_word(layer),
             )
     else:
         why = find_placing_refusal(project, clips, layer, kind, target, end)
@@ -120,7 +120,7 @@ def _reorder(project: Project, hit: GraphHit, load: Load) -> Drop:
     before = next((a for a in node[place:] if a.id not in load.actions), None)
     if reorder_actions(project, load.actions, before.id if before else None) is project:
         return Drop(False, tr("already here"), first.kind, first.stance, None, True)
-    called = node_names(project, first.layer, first.stance, first.kind)
+    called = name_node_rows(project, first.layer, first.stance, first.kind)
     words = (
         tr("move {what} before *{name}*", what=_count(load), name=called[before.id])
         if before

@@ -9,8 +9,8 @@ from typing import Literal
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
 from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, Frames, place_frames
-from app.look.names import node_names
-from app.translation import lazy_texts, tr
+from app.look.names import name_node_rows
+from app.translation import make_lazy_texts, tr
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
 LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
@@ -135,7 +135,7 @@ class Layout:
         )
 
 
-HOLES = lazy_texts(lambda: (tr("no loop"), tr("no transition out"), tr("no gestures"), tr("no fidgets")))
+HOLES = make_lazy_texts(lambda: (tr("no loop"), tr("no transition out"), tr("no gestures"), tr("no fidgets")))
 
 
 def describe_hole(project: Project, layer: Layer, stance: str) -> str:
@@ -199,7 +199,11 @@ def lay_out_canvas(
     card = shared.card
     nodes = {
         kind: _node(
-            kind, shared, actions[kind], node_names(project, layer, stance or "", kind), scroll.get(kind, 0)
+            kind,
+            shared,
+            actions[kind],
+            name_node_rows(project, layer, stance or "", kind),
+            scroll.get(kind, 0),
         )
         for kind in BESIDE
     }

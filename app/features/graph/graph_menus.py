@@ -15,7 +15,7 @@ from app.translation import tr
 from metagraph.graph import edits
 
 
-def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> QMenu:
+def make_menu_for(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> QMenu:
     """Return the menu for what is under the pointer, and select an action there."""
     menu = QMenu(acts.widget)
     menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)

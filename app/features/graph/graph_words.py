@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from app.features.graph.graph_layout import GraphHit, Layout
 from app.look.domain_words import KIND_MEANINGS
-from app.look.names import names_in_tooltip
+from app.look.names import describe_name_in_tooltip
 from app.translation import tr, tr_plural
 from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import LAYERS, Project
@@ -27,7 +27,7 @@ def describe_graph_hit(
         )
     if action is not None:
         row = layout.row(action.id)
-        name = names_in_tooltip(row.words if row is not None else action.name, action.name)
+        name = describe_name_in_tooltip(row.words if row is not None else action.name, action.name)
         head = tr("Drag the arrow onto the stance where this transition should end")
         plain = head if hit.area == "head" else tr("Click to play it in context, drag to move it")
         note = project.notes.get(action.id, "")

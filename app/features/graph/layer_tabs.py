@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QWidget
 from app.shell.context import Shell
 from app.translation import tr
 from app.widgets.choice_row import ChoiceRow
-from app.widgets.vocabulary import vocabulary_title, vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_title, get_vocabulary_word
 from metagraph.graph.model import LAYERS, Layer
 
 LAYER_KEYS: dict[Layer, str] = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
@@ -19,8 +19,8 @@ class LayerTabs(ChoiceRow):
     def __init__(self, shell: Shell, parent: QWidget) -> None:
         tips = (
             (
-                vocabulary_title(x),
-                tr("The {layer} layer ({key})", layer=vocabulary_word(x), key=LAYER_KEYS[x]),
+                get_vocabulary_title(x),
+                tr("The {layer} layer ({key})", layer=get_vocabulary_word(x), key=LAYER_KEYS[x]),
             )
             for x in LAYERS
         )
@@ -38,6 +38,6 @@ class LayerTabs(ChoiceRow):
         for number, layer in enumerate(LAYERS):
             count = len(self.document.project.graphs[layer].actions)
             self.button(number).setText(
-                f"{vocabulary_title(layer)}  {count}" if count else vocabulary_title(layer)
+                f"{get_vocabulary_title(layer)}  {count}" if count else get_vocabulary_title(layer)
             )
         self.show_choice(LAYERS.index(self.session.place.layer))

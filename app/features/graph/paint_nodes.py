@@ -17,12 +17,12 @@ from app.features.graph.graph_look import (
     make_bold,
     shorten_between,
 )
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.look.theme import KIND_MARKS, KIND_TITLES
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.graph.model import Kind
 
-TEACH = lazy_texts(
+TEACH = make_lazy_texts(
     lambda: {
         "gesture": tr("Drop clips that mean something\nor mark the beat: a shrug, a point."),
         "fidget": tr("Drop small habits:\na scratch, tapping fingers."),
@@ -123,11 +123,11 @@ def _other(painter: QPainter, node: NodeLayout, look: GraphLook, font: QFont) ->
     painter.setFont(font)
     painter.setPen(QColor(t.text if found is not None else t.warning))
     text, room = (
-        tr("to {name}", name=plain_action_name(found.name)) if found is not None else tr("another stance?"),
+        tr("to {name}", name=make_readable_name(found.name)) if found is not None else tr("another stance?"),
         rect.width() - 26,
     )
     if found is not None and QFontMetricsF(font).horizontalAdvance(text) > room:
-        text = plain_action_name(found.name)
+        text = make_readable_name(found.name)
     painter.drawText(
         rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, shorten_between(font, text, room)
     )

@@ -14,12 +14,12 @@ from app.features.graph.graph_look import (
     make_bold,
     shorten_between,
 )
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.translation import tr, tr_plural
 
 
 def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
-    t, beside = look.theme, tuple(plain_action_name(c.name) for c in layout.chips)
+    t, beside = look.theme, tuple(make_readable_name(c.name) for c in layout.chips)
     target = look.drop is not None and (
         (look.drop_hit.area == "add" and chip.stance is None)
         or (look.drop_hit.area == "chip" and look.drop_hit.ident == chip.stance and chip.stance is not None)
@@ -47,7 +47,7 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
     if chip.bare:
         painter.setFont(font)
         painter.setPen(QColor(t.text if current else t.dim))
-        name = shorten_between(font, plain_action_name(chip.name), inner.width(), beside)
+        name = shorten_between(font, make_readable_name(chip.name), inner.width(), beside)
         painter.drawText(inner, Qt.AlignmentFlag.AlignCenter, name)
         return
     picture = look.chip_pictures.get(chip.stance)
@@ -67,7 +67,7 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
     used = metrics.horizontalAdvance(count) + (metrics.horizontalAdvance(right) + 8 if right else 0) + 8
     painter.setFont(make_bold(font) if current else font)
     painter.setPen(QColor(t.text))
-    name = shorten_between(painter.font(), plain_action_name(chip.name), inner.width() - used + 1, beside)
+    name = shorten_between(painter.font(), make_readable_name(chip.name), inner.width() - used + 1, beside)
     painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, name)
     painter.setFont(font)
     painter.setPen(QColor(t.dim))
@@ -105,7 +105,7 @@ def draw_stance_card(painter: QPainter, layout: Layout, look: GraphLook, font: Q
                "stance of this layer."),
         )  # fmt: skip
     else:
-        head = _card_name(painter, card, plain_action_name(stance.name), make_bold(font), look)
+        head = _card_name(painter, card, make_readable_name(stance.name), make_bold(font), look)
         area = QRectF(
             card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14
         )

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolBar, QToolButton, QWidget
 
 from app.features.guide.guide_steps import STEPS, WORDS, Seen, find_step
-from app.look.theme import strengthen, theme
+from app.look.theme import get_theme, strengthen
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr
@@ -48,7 +48,7 @@ class Highlight(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(QPen(QColor(theme(self.session.look.name).strong), WIDTH))
+        painter.setPen(QPen(QColor(get_theme(self.session.look.name).strong), WIDTH))
         half = WIDTH / 2
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(half, half, -half, -half), 6, 6)
         painter.end()

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from app.project.files import SAMPLE
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.graph.model import Kind, Project
 
 CLIPS = tuple(
@@ -48,7 +48,7 @@ STEPS = (
     GuideStep("watch", "character", lambda seen: seen.watched >= WATCHED),
     GuideStep("export", "", lambda seen: seen.exported),
 )
-WORDS: Mapping[str, str] = lazy_texts(
+WORDS: Mapping[str, str] = make_lazy_texts(
     lambda: {
         "clips": tr(
             "Bring clips: drop at least three files or a folder on the window, or take three of the sample's."

@@ -10,19 +10,19 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication, QMessageBox
 
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.look.theme import KIND_MARKS, KIND_TITLES
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.shell.places import PanelPlaces
-from app.translation import lazy_texts, tr
-from app.widgets.vocabulary import vocabulary_title
+from app.translation import make_lazy_texts, tr
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import KINDS
 
 if TYPE_CHECKING:
     from app.features.help.command_finder import Entry
 
-TIMELINE = lazy_texts(
+TIMELINE = make_lazy_texts(
     lambda: (  # and what the timeline does
         (tr("Add a marker"), "M"),
         (tr("Move requests or a marker"), tr("arrows, with Shift by one second")),
@@ -36,7 +36,7 @@ TIMELINE = lazy_texts(
         (tr("Drag without snapping"), tr("Shift")),
     )
 )
-LANES = lazy_texts(
+LANES = make_lazy_texts(
     lambda: (  # what the lanes take for themselves
         (tr("Label as clause, response, hesitation"), "1, 2, 3"),
         (tr("Split a segment"), "S"),
@@ -53,16 +53,16 @@ def list_named_parts(shell: Shell) -> Iterator[Entry]:
 
     jump = shell.stage.session.jump
     for layer, graph in shell.document.project.graphs.items():
-        where = vocabulary_title(layer)
+        where = get_vocabulary_title(layer)
         for stance in graph.stances.values():
             group = tr("Stance, {layer}", layer=where)
             run = partial(jump, layer, stance.id)
-            yield Entry(group, plain_action_name(stance.name), run=run, by_name=True)
+            yield Entry(group, make_readable_name(stance.name), run=run, by_name=True)
         for action in graph.actions.values():
             if action.kind != "stance":
                 group = tr("{kind}, {layer}", kind=tr(KIND_TITLES[action.kind]), layer=where)
                 run = partial(jump, action=action.id)
-                yield Entry(group, plain_action_name(action.name), run=run, by_name=True)
+                yield Entry(group, make_readable_name(action.name), run=run, by_name=True)
 
 
 def contribute(shell: Shell) -> Contribution:

@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.translation import tr
-from app.widgets.tree_items import items_below, top_items
+from app.widgets.tree_items import list_items_below, list_top_items
 
 ROLE = Qt.ItemDataRole.UserRole
 SIZE = QSize(620, 560)
@@ -170,8 +170,8 @@ class CommandFinder(QDialog):
 
     def _items(self) -> list[QTreeWidgetItem]:
         """Return the items of all entries that are shown."""
-        tops = top_items(self.tree)
-        every = [item for top in tops for item in (top, *items_below(top))]
+        tops = list_top_items(self.tree)
+        every = [item for top in tops for item in (top, *list_items_below(top))]
         return [item for item in every if item.data(0, ROLE) is not None]
 
     def _usable(self) -> list[QTreeWidgetItem]:

@@ -20,7 +20,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QTextBrowser, QWidget
 
-from app.features.help.manual_pages import DOCS, anchor, for_qt
+from app.features.help.manual_pages import DOCS, anchor, format_for_qt
 from app.translation import tr
 
 MARGIN = 28
@@ -57,7 +57,7 @@ class ManualBrowser(QTextBrowser):
             return self._picture(path)
         text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
         words = {"note": tr("Note"), "warning": tr("Warning"), "tip": tr("Tip")}
-        return for_qt(text, words) if path.suffix == ".md" else f"```\n{text}\n```\n"
+        return format_for_qt(text, words) if path.suffix == ".md" else f"```\n{text}\n```\n"
 
     def _picture(self, path: Path) -> QImage:
         reader, sharp = QImageReader(str(path)), self.devicePixelRatioF()

@@ -40,7 +40,7 @@ class ManualEntry(NamedTuple):
 
 
 @cache
-def contents() -> tuple[ManualEntry, ...]:
+def list_manual_entries() -> tuple[ManualEntry, ...]:
     """Return sections and pages in the order of the site's navigation."""
     return tuple(_entries(yaml.safe_load((DOCS / "mkdocs.yml").read_text(encoding="utf-8"))["nav"], 0))
 
@@ -71,7 +71,7 @@ def strip_markdown(text: str) -> str:
 def search_pages(words: str) -> list[ManualEntry]:
     """Return the parts of pages that have all words, those with the words in title or heading first."""
     wanted, hits = words.casefold().split(), list[tuple[int, ManualEntry]]()
-    for entry in contents() if wanted else ():
+    for entry in list_manual_entries() if wanted else ():
         text = strip_markdown((DOCS / entry.page).read_text(encoding="utf-8")) if entry.page else ""
         for part in re.split(r"^## ", text, flags=re.M):
             heading = "" if part.startswith("# ") else part.partition("\n")[0]
@@ -82,7 +82,7 @@ def search_pages(words: str) -> list[ManualEntry]:
     return [hit for _, hit in sorted(hits, key=lambda ranked: ranked[0])]
 
 
-def for_qt(text: str, words: dict[str, str]) -> str:
+def format_for_qt(text: str, words: dict[str, str]) -> str:
     """Return a page as Qt reads Markdown: an admonition becomes a quotation that begins with its title, or
     with what its kind is called in `words`.
     """

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.help.manual_browser import ManualBrowser
-from app.features.help.manual_pages import DOCS, ManualEntry, contents, search_pages
+from app.features.help.manual_pages import DOCS, ManualEntry, list_manual_entries, search_pages
 from app.translation import tr
 
 ROLE = Qt.ItemDataRole.UserRole
@@ -87,7 +87,7 @@ class ManualWindow(QDialog):
         """List the contents, or what has the words that are searched for."""
         self.tree.clear()
         above: list[QTreeWidget | QTreeWidgetItem] = [self.tree]
-        for entry in search_pages(words) if words.strip() else contents():
+        for entry in search_pages(words) if words.strip() else list_manual_entries():
             del above[entry.depth + 1 :]
             above.append(self._item(above[-1], entry))
         if words.strip() and not self.tree.topLevelItemCount():

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from app.features.labelling.review_watch import order_similar
 from app.translation import tr, tr_plural
-from app.widgets.vocabulary import vocabulary_title
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import Kind, Layer
-from metagraph.suggest.flags import chance_wrong, needs_look
+from metagraph.suggest.flags import estimate_chance_wrong, needs_look
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
@@ -34,8 +34,8 @@ class ClipGroup:
     @property
     def title(self) -> str:
         """Return the group in words, such as "Gesture · idle 1"."""
-        where = self.stance or vocabulary_title(self.layer)
-        return tr("{kind} · {where}", kind=vocabulary_title(self.kind), where=where)
+        where = self.stance or get_vocabulary_title(self.layer)
+        return tr("{kind} · {where}", kind=get_vocabulary_title(self.kind), where=where)
 
     def count(self) -> str:
         """Return the number of clips in words."""
@@ -58,6 +58,6 @@ def group_alike(review: Review, waiting: Sequence[str]) -> list[ClipGroup]:
         alone = p.kind.value in ("gesture", "fidget")
         stance = place.name if place is not None and alone else ""
         groups.setdefault((p.layer.value, p.kind.value, stance), []).append(clip)
-    wrong = lambda clip: -chance_wrong(found.proposals[clip])  # noqa: E731
+    wrong = lambda clip: -estimate_chance_wrong(found.proposals[clip])  # noqa: E731
     made = [ClipGroup(*key, tuple(sorted(clips, key=wrong))) for key, clips in groups.items()]
     return sorted(made, key=lambda g: (g.kind != "stance", -len(g.clips)))

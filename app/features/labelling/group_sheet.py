@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QHelpEvent, QImage, QMouseEvent, QPainter, QPa
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.shortening import shorten_to_lines_in_font
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr
@@ -148,7 +148,7 @@ class GroupSheet(QWidget):
     def _paint_card(
         self, painter: QPainter, rect: QRect, card: SheetCard, current: bool, names: tuple[str, ...]
     ) -> None:
-        look, out = theme(self.session.look.name), card.clip in self.left_out
+        look, out = get_theme(self.session.look.name), card.clip in self.left_out
         painter.setOpacity(1.0)
         painter.setBrush(QColor(look.field))
         painter.setPen(QPen(QColor(look.text if current else look.line), 1.6 if current else 1))

@@ -24,13 +24,13 @@ from PySide6.QtWidgets import (
 from app.features.labelling.clip_groups import ClipGroup, group_alike, is_doubtful
 from app.features.labelling.group_sheet import GroupSheet, SheetCard
 from app.features.labelling.review_session import Reviewing
-from app.look.names import drop_common_start, plain_action_name
-from app.look.theme import KIND_MARKS, strengthen, theme
+from app.look.names import drop_common_start, make_readable_name
+from app.look.theme import KIND_MARKS, get_theme, strengthen
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
-from app.widgets.vocabulary import vocabulary_title
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import KINDS
 from metagraph.suggest.review import Field
 
@@ -122,7 +122,7 @@ class GroupsDialog(QDialog):
         self.groups = group_alike(self.work.review, self.work.waiting())
         keys = [group.key for group in self.groups]
         at = keys.index(before.key) if before is not None and before.key in keys else max(0, row)
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         self.list.blockSignals(True)
         self.list.clear()
         for group in self.groups:
@@ -155,10 +155,10 @@ class GroupsDialog(QDialog):
             p = review.found.proposals[clip]
             reasons = [tr_phrase(p.kind.reason), *([tr_phrase(p.stance.reason)] if p.stance else [])]
             words = "\n".join([clips[clip].name, *reasons, *map(tr_phrase, p.conflicts)])
-            short = plain_action_name(name, group.stance)
+            short = make_readable_name(name, group.stance)
             cards.append(SheetCard(clip, short, words, p.confidence, is_doubtful(p)))
         self.sheet.show_cards(cards)
-        self._fill(self.kind, [(kind, vocabulary_title(kind)) for kind in KINDS], group.kind)
+        self._fill(self.kind, [(kind, get_vocabulary_title(kind)) for kind in KINDS], group.kind)
         first = group.clips[0]
         several = group.kind in ("stance", "transition")  # of several stances: none is the one of all
         choices = [] if several else review.choices(first, "stance")

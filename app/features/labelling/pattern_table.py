@@ -12,17 +12,17 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
-from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_plural
 from app.widgets.quiet_fields import ComboBox
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
 from metagraph.suggest.words.defaults import DEFAULTS, Field
 from metagraph.suggest.words.languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, MAYBE_TO, NOTHING
 from metagraph.suggest.words.patterns import FIELDS, Patterns, PatternsError, count_correction, forget_learned
 
 Index = QModelIndex | QPersistentModelIndex
-COLUMNS = lazy_texts(lambda: (tr("Words"), tr("About"), tr("Means"), tr("Source")))
-ABOUT = lazy_texts(
+COLUMNS = make_lazy_texts(lambda: (tr("Words"), tr("About"), tr("Means"), tr("Source")))
+ABOUT = make_lazy_texts(
     lambda: {
         "kinds": tr("kind"),
         "layers": tr("layer"),
@@ -54,7 +54,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     "stance": (),
     "end_stance": (),
 }
-SHOWN = lazy_texts(
+SHOWN = make_lazy_texts(
     lambda: {
         "other": tr("none of the four kinds"),
         "junk": tr("nothing"),
@@ -73,7 +73,7 @@ def describe_meaning(field: str, meaning: str | None) -> str:
     """Return in words what a meaning about a field is; free text stays as it is."""
     if meaning in SHOWN:
         return SHOWN[meaning]
-    return vocabulary_word(meaning or "") if MEANINGS.get(field) else meaning or ""
+    return get_vocabulary_word(meaning or "") if MEANINGS.get(field) else meaning or ""
 
 
 @dataclass(frozen=True)

@@ -38,20 +38,20 @@ from app.features.labelling.pattern_table import (
     fill_meanings,
     remove_pattern,
 )
-from app.look.theme import KIND_MARKS, theme
+from app.look.theme import KIND_MARKS, get_theme
 from app.project.document import Document
 from app.project.learned import Learned
 from app.project.pattern_files import read_patterns, write_patterns
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.errors import FileError
 from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, merge_patterns, read_names
 from metagraph.suggest.words.patterns import FIELDS
 
 FILTER = tr_noop("Name patterns (*.json);;All files (*)")
-PARTS = lazy_texts(
+PARTS = make_lazy_texts(
     lambda: (
         ("kind", tr("Kind")),
         ("layer", tr("Layer")),
@@ -250,7 +250,7 @@ class PatternsDialog(QDialog):
         self.read.setText(self._said(read_names([*names, name], self.learned.patterns)[name]))
 
     def _said(self, guess: NameGuess) -> str:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         rows = []
         for part, title in PARTS:
             belief = getattr(guess, part)
@@ -258,7 +258,7 @@ class PatternsDialog(QDialog):
                 continue
             text = escape(", ".join(belief.value) if part == "tags" else str(belief.value))
             if part in ("kind", "layer", "limb"):
-                text = escape(vocabulary_word(str(belief.value)))
+                text = escape(get_vocabulary_word(str(belief.value)))
             if part == "kind":
                 text = (
                     f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"

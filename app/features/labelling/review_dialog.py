@@ -33,7 +33,7 @@ from app.features.labelling.review_queue import ReviewQueue
 from app.features.labelling.review_session import Reviewing
 from app.features.labelling.review_stage import ReviewStage
 from app.features.labelling.review_watch import Watching
-from app.look.theme import strengthen, theme
+from app.look.theme import get_theme, strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.project.learned import Learned
@@ -41,13 +41,13 @@ from app.stage.figures import Figures
 from app.stage.playback_source import ShownPlayback, play_clip_alone
 from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
-from app.translation import lazy_texts, tr, tr_error, tr_phrase
-from app.widgets.vocabulary import vocabulary_word
+from app.translation import make_lazy_texts, tr, tr_error, tr_phrase
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import KINDS, Kind
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import DECIDING, Field, Review
 
-TITLES: dict[str, str] = lazy_texts(
+TITLES: dict[str, str] = make_lazy_texts(
     lambda: {
         "kind": tr("Kind"),
         "layer": tr("Layer"),
@@ -63,7 +63,7 @@ LEAST = 2 / 30  # seconds a clip keeps at least
 
 def name_choices(name: Field, choices: list[tuple[Any, str]]) -> list[tuple[Any, str]]:
     """Return choices in the window's words; stances are called as the user calls them."""
-    return [(v, vocabulary_word(w)) for v, w in choices] if name in ("kind", "layer", "limb") else choices
+    return [(v, get_vocabulary_word(w)) for v, w in choices] if name in ("kind", "layer", "limb") else choices
 
 
 _Tried = tuple[
@@ -207,7 +207,7 @@ class ReviewDialog(QDialog):
         return out
 
     def _restyle(self) -> None:
-        self.legend.setText(review_words.format_keys(theme(self.session.look.name)))
+        self.legend.setText(review_words.format_keys(get_theme(self.session.look.name)))
         self._refresh()
 
     # --- where it is
@@ -502,7 +502,9 @@ class ReviewDialog(QDialog):
             )
             self.timing.setText(review_words.ANYWAY)
             self.tags.setText("")
-            self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.look.name)))
+            self.stage.tell(
+                review_words.write_headline(self.review, project, clip, get_theme(self.session.look.name))
+            )
             return
         rows = []
         for name in DECIDING:
@@ -529,8 +531,10 @@ class ReviewDialog(QDialog):
         self.fields.show_rows(rows, self.row)
         if self.focusWidget() is not self.tags:
             self.tags.setText(", ".join(p.tags.value) if p.tags is not None else "")
-        self.timing.setText(review_words.timing(p, project.clips[clip].duration))
-        self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.look.name)))
+        self.timing.setText(review_words.describe_proposed_times(p, project.clips[clip].duration))
+        self.stage.tell(
+            review_words.write_headline(self.review, project, clip, get_theme(self.session.look.name))
+        )
 
     def _play(self) -> None:
         """Plan the clip as it would be placed, on a thread, and play it."""

@@ -12,7 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.look.theme import KIND_MARKS, WindowTheme, get_theme
 from app.stage.session import StageSession
 from app.translation import tr
 from metagraph.suggest.review import Field
@@ -152,7 +152,7 @@ class ReviewFields(QWidget):
     # --- drawing
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for placed in self._placed:

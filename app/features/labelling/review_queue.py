@@ -21,12 +21,12 @@ from PySide6.QtWidgets import (
 from app.features.labelling.clip_groups import is_doubtful
 from app.features.labelling.review_words import describe_length
 from app.look.names import drop_common_start
-from app.look.theme import KIND_MARKS, theme
+from app.look.theme import KIND_MARKS, get_theme
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop, tr_phrase, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph.model import Project
-from metagraph.suggest.propose import waiting
+from metagraph.suggest.propose import list_waiting_clips
 from metagraph.suggest.review import Review, ReviewPace
 
 CLIP = Qt.ItemDataRole.UserRole
@@ -178,7 +178,7 @@ class ReviewQueue(QWidget):
 
     def refresh(self, review: Review, project: Project) -> None:
         """Show what each clip is taken for now, and whether it is placed."""
-        look, open_ = theme(self.session.look.name), set(waiting(project))
+        look, open_ = get_theme(self.session.look.name), set(list_waiting_clips(project))
         there = [clip for clip in self._items if clip in project.clips]
         short = drop_common_start([project.clips[clip].name for clip in there])
         names = dict(zip(there, short, strict=True))

@@ -20,9 +20,9 @@ from metagraph.suggest.jumps.bridges import (
     describe_unbridged,
     find_missing_bridges,
 )
-from metagraph.suggest.left_aside import reasons, take_up_skipped
+from metagraph.suggest.left_aside import group_reasons, take_up_skipped
 from metagraph.suggest.proposal import Proposal, Proposals
-from metagraph.suggest.propose import propose, waiting
+from metagraph.suggest.propose import list_waiting_clips, propose
 from metagraph.suggest.review import Field, Review, ReviewPace
 
 REST = 400  # milliseconds of quiet after a correction before the rest is proposed again
@@ -70,7 +70,7 @@ class Reviewing(QObject):
         entries = self.document.project.clips
         self.clips = tuple(c for c in self.review.order() if c in entries)
         self.aside = tuple(
-            c for _, clips in reasons(found.aside) for c in clips if c in entries and c in found.spare
+            c for _, clips in group_reasons(found.aside) for c in clips if c in entries and c in found.spare
         )
         self.looked = True
         self.found.emit()
@@ -108,7 +108,7 @@ class Reviewing(QObject):
         """Return the clips that are not placed yet, in order. A clip that only lends a stance a still moment
         counts as placed.
         """
-        there = set(waiting(self.document.project))
+        there = set(list_waiting_clips(self.document.project))
         return [c for c in self.clips if c in there]
 
     def sure_ones(self, least: float) -> list[str]:
@@ -124,7 +124,7 @@ class Reviewing(QObject):
 
     def open_after(self, clip: str | None) -> str | None:
         """Return the next waiting or skipped clip, starting over after the last one."""
-        every, there = (*self.clips, *self.aside), set(waiting(self.document.project))
+        every, there = (*self.clips, *self.aside), set(list_waiting_clips(self.document.project))
         at = every.index(clip) if clip in every else -1
         return next((c for c in (*every[at + 1 :], *every[: at + 1]) if c in there), None)
 

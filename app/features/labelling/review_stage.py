@@ -21,13 +21,13 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from app.features.labelling.proposal_preview import Span
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.figures import Figures
 from app.stage.gl_view import make_view
 from app.stage.playback_source import ShownPlayback
 from app.stage.session import StageSession
 from app.translation import tr
-from preview.camera import frame_whole_figure
+from preview.camera import make_whole_figure_camera
 from preview.figure import MeshFigure
 from preview.scene import THEMES, Actor, Scene
 
@@ -53,7 +53,7 @@ class ReviewStrip(QWidget):
         return QSize(300, 30)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         box = QRectF(self.rect()).adjusted(0, 2, 0, -2)
@@ -143,7 +143,7 @@ class ReviewStage(QWidget):
         self._restyle()
 
     def _restyle(self) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         ground = QColor(look.panel)
         self.words.setStyleSheet(
             f"background: rgba({ground.red()}, {ground.green()}, {ground.blue()}, 215); border-radius: 6px; "
@@ -238,7 +238,7 @@ class ReviewStage(QWidget):
         room = np.array(
             [0.0, ABOVE * (high[1] - low[1]), 0.0]
         )  # what is written over the picture hides no face
-        self.view.camera = frame_whole_figure((low, high + room), aspect)
+        self.view.camera = make_whole_figure_camera((low, high + room), aspect)
 
         self._stood, self._tall = positions[0, [0, 2]], float(high[1] - low[1])
 

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from html import escape
 
 from app.look.theme import KIND_MARKS, KIND_TITLES, WindowTheme
-from app.translation import format_number, lazy_texts, tr, tr_noop, tr_phrase, tr_plural
-from app.widgets.vocabulary import vocabulary_title
+from app.translation import format_number, make_lazy_texts, tr, tr_noop, tr_phrase, tr_plural
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import Project
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
-KEYS = lazy_texts(
+KEYS = make_lazy_texts(
     lambda: (
         (tr("Enter"), tr("accept")),
         ("↑ ↓", tr("field")),
@@ -44,7 +44,7 @@ def format_keys(look: WindowTheme) -> str:
     )
 
 
-def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> str:
+def write_headline(review: Review, project: Project, clip: str, look: WindowTheme) -> str:
     """Return the proposal for a clip as rich text, with the evidence against it."""
     if clip not in review.found.proposals:
         return (
@@ -54,7 +54,7 @@ def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> 
         )
     p, places = review.found.proposals[clip], review.found.places
     kind = p.kind.value
-    where = [vocabulary_title(p.layer.value)]
+    where = [get_vocabulary_title(p.layer.value)]
     if p.stance is not None:
         where.append(places[p.stance.value].name)
     if p.end_stance is not None:
@@ -79,7 +79,7 @@ def describe_skipped(aside: Sequence[str]) -> str:
     )
 
 
-def timing(p: Proposal, duration: float) -> str:
+def describe_proposed_times(p: Proposal, duration: float) -> str:
     """Return a proposal's times as rich text. duration: of the clip, in seconds."""
     t, end = p.timing, p.timing.get("end")
     parts = [
@@ -116,7 +116,7 @@ def timing(p: Proposal, duration: float) -> str:
                 if name == "stroke"
                 else tr("some joints")
             )
-            words.append(f"{vocabulary_title(name)} {value}: {tr_phrase(belief.reason)}")
+            words.append(f"{get_vocabulary_title(name)} {value}: {tr_phrase(belief.reason)}")
     return "<br>".join(map(escape, words))
 
 

@@ -11,7 +11,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 
 from app.features.library.clip_badges import HEART, label_icon
-from app.features.library.clip_columns import stars
+from app.features.library.clip_columns import format_stars
 from app.look.domain_words import COLOR_LABELS
 from app.project.document import Document
 from app.stage.session import StageSession
@@ -92,7 +92,7 @@ class ClipActs:
         entry(tr("No label"), "color", "")
         menu.addSeparator()
         for rating in range(STARS, -1, -1):
-            entry(stars(rating) or tr("No stars"), "rating", rating, f"Ctrl+Shift+{rating}")
+            entry(format_stars(rating) or tr("No stars"), "rating", rating, f"Ctrl+Shift+{rating}")
         menu.addSeparator()
         loved = all(m.favourite for m in marks)
         action = menu.addAction(

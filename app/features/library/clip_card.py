@@ -14,7 +14,7 @@ from app.features.library.clip_badges import draw_badges
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_names import ClipNames
 from app.features.library.clip_pictures import ClipPictures
-from app.features.library.clip_sizes import picture_of
+from app.features.library.clip_sizes import place_picture
 from app.look.shortening import shorten_middle, shorten_to_font
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import tr
@@ -90,7 +90,7 @@ def draw_clip_card(
     painter.setBrush(QColor(look.hover if lit else look.field))
     painter.setPen(QPen(QColor(look.text if chosen else look.line), 1.6 if chosen else 1))
     painter.drawRoundedRect(rect, 6, 6)
-    draw_picture(painter, picture_of("cards", ink.side, place), ink.pictures, entry, look)
+    draw_picture(painter, place_picture("cards", ink.side, place), ink.pictures, entry, look)
     draw_stripe(painter, rect, facts, entry, look)
     font = QFont(painter.font())
     font.setPixelSize(14)

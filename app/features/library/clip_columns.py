@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.features.library.clip_facts import ClipFacts
-from app.features.library.clip_order import GIVEN, stances
+from app.features.library.clip_order import GIVEN, list_stance_names
 from app.look.domain_words import COLOR_TITLES
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.graph.clip_mark import STARS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 
@@ -29,7 +29,7 @@ class Column:
     shown: bool = True
 
 
-def stars(rating: int) -> str:
+def format_stars(rating: int) -> str:
     """Return a rating as it is drawn: as many full stars, the others empty; nothing for none."""
     return "★" * rating + "☆" * (STARS - rating) if rating else ""
 
@@ -52,7 +52,7 @@ def _note(facts: ClipFacts, entry: ClipEntry) -> str:
     return facts.mark(entry).note.replace("\n", " ")
 
 
-COLUMNS: tuple[Column, ...] = lazy_texts(
+COLUMNS: tuple[Column, ...] = make_lazy_texts(
     lambda: (
         Column("name", tr("Name"), lambda f, e: e.name, "name", 250, tr("The clip's name")),
         Column(
@@ -77,7 +77,7 @@ COLUMNS: tuple[Column, ...] = lazy_texts(
         Column(
             "stance",
             tr("Stance"),
-            lambda f, e: ", ".join(stances(f, e)),
+            lambda f, e: ", ".join(list_stance_names(f, e)),
             "stance",
             130,
             tr("The stances that use the clip"),
@@ -103,7 +103,7 @@ COLUMNS: tuple[Column, ...] = lazy_texts(
         Column(
             "rating",
             tr("Stars"),
-            lambda f, e: stars(f.mark(e).rating),
+            lambda f, e: format_stars(f.mark(e).rating),
             "rating",
             85,
             tr("Your rating of the clip"),

@@ -6,7 +6,7 @@ from functools import partial
 
 from PySide6.QtWidgets import QApplication
 
-from app.features.library.clip_columns import stars
+from app.features.library.clip_columns import format_stars
 from app.features.library.clip_groups import GROUPS
 from app.features.library.clip_sizes import Style
 from app.features.library.library_bar import BUTTONS
@@ -159,7 +159,7 @@ def _rating(library: LibraryFeature, number: int) -> Command:
         f"rate_{number}",
         MENU,
         "rating",
-        f"&{number}  {stars(number)}" if number else tr("&0  No stars"),
+        f"&{number}  {format_stars(number)}" if number else tr("&0  No stars"),
         partial(library.mark, "rating", number),
         (f"Ctrl+Shift+{number}",),
         tip=tr(

@@ -15,7 +15,7 @@ from app.features.library.clip_names import ClipNames
 from app.features.library.clip_pictures import ClipPictures
 from app.features.library.clip_rows import ENTRY, Index
 from app.features.library.clip_sizes import USUAL, Style, is_in_lines
-from app.look.theme import WindowTheme, theme
+from app.look.theme import WindowTheme, get_theme
 from app.look.theme_choice import ThemeChoice
 from metagraph.graph.model import ClipEntry
 
@@ -36,7 +36,7 @@ class ClipDelegate(QStyledItemDelegate):
 
     @property
     def _theme(self) -> WindowTheme:
-        return theme(self.look.name)
+        return get_theme(self.look.name)
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         entry: ClipEntry = index.data(ENTRY)

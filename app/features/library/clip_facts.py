@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 
 from app.project.document import Document
 from app.translation import tr
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.editing.half_labels import find_half_label, has_half_label
 from metagraph.graph.editing.marks import mark_of
@@ -45,7 +45,7 @@ class ClipFacts:
     def moved_words(self, entry: ClipEntry) -> str:
         """Return in words what a clip moves, with commas between."""
         return ", ".join(
-            tr("position") if part == "place" else vocabulary_word(part) for part in self.moved(entry)
+            tr("position") if part == "place" else get_vocabulary_word(part) for part in self.moved(entry)
         )
 
     def ahead(self, entries: Iterable[ClipEntry]) -> None:

@@ -7,14 +7,14 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from app.features.library.clip_facts import ClipFacts
-from app.features.library.clip_order import find_first_use, make_natural_key, stances
+from app.features.library.clip_order import find_first_use, list_stance_names, make_natural_key
 from app.look.domain_words import LAYER_LONG_TITLES, MANY_OF_KIND
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 
 NONE = "none"
 Group = tuple[Any, str]  # what it is sorted by, and its title
-UNUSED: Group = lazy_texts(lambda: ((1,), tr("Not placed yet")))
+UNUSED: Group = make_lazy_texts(lambda: ((1,), tr("Not placed yet")))
 
 
 def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
@@ -23,7 +23,7 @@ def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
 
 
 def _stance(facts: ClipFacts, entry: ClipEntry) -> Group:
-    names = stances(facts, entry)
+    names = list_stance_names(facts, entry)
     return ((0, make_natural_key(names[0])), names[0]) if names else UNUSED
 
 
@@ -44,7 +44,7 @@ def _kind(facts: ClipFacts, entry: ClipEntry) -> Group:
     return ((0, min(kinds)), MANY_OF_KIND[KINDS[min(kinds)]]) if kinds else UNUSED
 
 
-GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = lazy_texts(
+GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = make_lazy_texts(
     lambda: {
         NONE: (tr("No groups"), None),
         "folder": (tr("Folder"), _folder),

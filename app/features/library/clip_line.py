@@ -9,7 +9,7 @@ from app.features.library.clip_badges import HEART, PENCIL, TAG, draw_label
 from app.features.library.clip_card import ClipInk, draw_kinds, draw_picture, draw_stripe, list_clip_kinds
 from app.features.library.clip_columns import COLUMNS
 from app.features.library.clip_header import PLACES, ClipHeader
-from app.features.library.clip_sizes import picture_of
+from app.features.library.clip_sizes import place_picture
 from app.look.shortening import shorten_to_font
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import format_number
@@ -30,7 +30,7 @@ def draw_back(painter: QPainter, rect: QRect, look: WindowTheme, lit: bool, chos
 def draw_line(painter: QPainter, rect: QRect, entry: ClipEntry, row: int, ink: ClipInk) -> None:
     """Draw a clip in a line: picture, name, and at its end what is on it, its length and its kinds."""
     facts, names, look = ink.facts, ink.names, ink.look
-    box = picture_of("cards", ink.side, rect)
+    box = place_picture("cards", ink.side, rect)
     draw_stripe(painter, rect.adjusted(0, -3, 0, 3), facts, entry, look)
     draw_picture(painter, box, ink.pictures, entry, look, small=True)
     mark = facts.mark(entry)
@@ -71,7 +71,7 @@ def draw_columns(painter: QPainter, rect: QRect, entry: ClipEntry, header: ClipH
         if n == name:
             within = QRect(left, rect.top(), width, rect.height())
             draw_stripe(painter, within.adjusted(0, -3, 0, 3), facts, entry, look)
-            box = picture_of("columns", ink.side, within)
+            box = place_picture("columns", ink.side, within)
             draw_picture(painter, box, ink.pictures, entry, look, small=True)
             cell.setLeft(box.right() + 8)
         if column.id == "color" and facts.mark(entry).color:

@@ -26,7 +26,7 @@ from app.features.library.clip_header import ClipHeader
 from app.features.library.clip_layout import ClipLayout
 from app.features.library.clip_rows import ENTRY, ClipRows, Index
 from app.features.library.clip_scrub import ClipScrub
-from app.features.library.clip_sizes import SIZES, Style, measure_cell, picture_of
+from app.features.library.clip_sizes import SIZES, Style, measure_cell, place_picture
 from app.stage.session import StageSession
 from app.translation import tr, tr_plural
 from app.widgets.drop_frame import DropFrame
@@ -131,7 +131,7 @@ class ClipList(QListView):
 
     def picture_rect(self, index: Index) -> QRect:
         """Return where a clip's picture is."""
-        return picture_of(self.style_of, self.side, self.visualRect(index))
+        return place_picture(self.style_of, self.side, self.visualRect(index))
 
     def indexAt(self, point: QPoint) -> QModelIndex:
         row = self.layout_of.at(point + self._shift())

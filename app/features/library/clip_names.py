@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.features.library.clip_rows import ClipRows
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.look.plural import strip_stance
 from app.project.document import Document
 from metagraph.graph.model import LAYERS, ClipEntry
@@ -31,7 +31,7 @@ class ClipNames:
         kept, names = self._names(), self.stances()
         if entry.name not in kept:
             found = next((n for n in names if strip_stance(entry.name, n) != entry.name), "")
-            kept[entry.name] = found, plain_action_name(entry.name, found)
+            kept[entry.name] = found, make_readable_name(entry.name, found)
         return kept[entry.name]
 
     def _names(self) -> dict[str, tuple[str, str]]:

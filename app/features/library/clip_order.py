@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from app.features.library.clip_facts import ClipFacts
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from metagraph.graph.clip_mark import COLORS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 from metagraph.motion.moving import PARTS
@@ -35,14 +35,14 @@ def find_first_use(facts: ClipFacts, entry: ClipEntry) -> tuple[int, int]:
     )
 
 
-def stances(facts: ClipFacts, entry: ClipEntry) -> list[str]:
+def list_stance_names(facts: ClipFacts, entry: ClipEntry) -> list[str]:
     """Return the names of the stances that a clip is used in, in order."""
     found = {s.name for a in facts.uses(entry) if (s := facts.project.stance(a.stance)) is not None}
     return sorted(found, key=make_natural_key)
 
 
 def _stance(facts: ClipFacts, entry: ClipEntry) -> tuple[int, Any]:
-    names = stances(facts, entry)
+    names = list_stance_names(facts, entry)
     return (0, make_natural_key(names[0])) if names else (1, ())
 
 
@@ -66,7 +66,7 @@ def _by(first: Key) -> Key:
     return lambda facts, entry: (first(facts, entry), make_natural_key(entry.name))
 
 
-ORDERS: dict[str, tuple[str, Key]] = lazy_texts(
+ORDERS: dict[str, tuple[str, Key]] = make_lazy_texts(
     lambda: {
         GIVEN: (tr("As imported"), lambda facts, entry: ()),
         "name": (tr("Name"), lambda facts, entry: make_natural_key(entry.name)),

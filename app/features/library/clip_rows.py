@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from PySide6.QtCore import QAbstractListModel, QMimeData, QModelIndex, QPersistentModelIndex, Qt
 
-from app.features.library.clip_columns import stars
+from app.features.library.clip_columns import format_stars
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_filter import Filter
 from app.features.library.clip_groups import GROUPS, NONE
@@ -17,7 +17,7 @@ from app.features.library.clip_layout import Section
 from app.features.library.clip_order import GIVEN, ORDERS
 from app.translation import tr
 from app.widgets.mime import make_mime
-from metagraph.graph.generated import origin
+from metagraph.graph.generated import describe_origin
 from metagraph.graph.model import ClipEntry, Project
 
 Index = QModelIndex | QPersistentModelIndex
@@ -156,7 +156,7 @@ class ClipRows(QAbstractListModel):
         uses = ", ".join(f"{tr(a.kind)} ({tr(a.layer)})" for a in self.facts.uses(entry))
         drawn = entry.id in self.document.project.drawn
         uses = uses or (tr("used as a state") if drawn else tr("not placed yet"))
-        made = f"\n{origin(entry)}" if entry.made_by else ""
+        made = f"\n{describe_origin(entry)}" if entry.made_by else ""
         moves = self.facts.moved_words(entry)
         mark = self.facts.mark(entry)
         return tr(
@@ -178,7 +178,7 @@ class ClipRows(QAbstractListModel):
     def _marks(self, entry: ClipEntry) -> str:
         """Return a clip's label, rating and heart in words, after a comma each."""
         mark = self.facts.mark(entry)
-        some = (tr("{color} label", color=mark.color) if mark.color else "", stars(mark.rating))
+        some = (tr("{color} label", color=mark.color) if mark.color else "", format_stars(mark.rating))
         return "".join(f", {w}" for w in (*some, tr("a favourite") if mark.favourite else "") if w)
 
     def flags(self, index: Index) -> Qt.ItemFlag:

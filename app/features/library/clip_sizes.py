@@ -30,7 +30,7 @@ def measure_cell(style: Style, side: int, width: int) -> tuple[int, int]:
     return side + 2 * EDGE, side + TEXT
 
 
-def picture_of(style: Style, side: int, rect: QRect) -> QRect:
+def place_picture(style: Style, side: int, rect: QRect) -> QRect:
     """Return where the picture is within a clip's place."""
     if is_in_lines(style, side):
         return QRect(rect.left() + 12, rect.top() + (rect.height() - side) // 2, side, side)

@@ -7,14 +7,14 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
 from app.features.library.clip_sizes import Style, list_sizes
 from app.look import icons
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.look.theme_choice import ThemeChoice
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import Scrub
 
-BUTTONS: dict[Style, tuple[str, str, str]] = lazy_texts(
+BUTTONS: dict[Style, tuple[str, str, str]] = make_lazy_texts(
     lambda: {
         "cards": (
             "grid",
@@ -88,4 +88,4 @@ class LibraryBar(QWidget):
 
     def _restyle(self) -> None:
         for style, (name, _, _) in BUTTONS.items():
-            self.buttons[style].setIcon(icons.icon(name, theme(self.look.name).text, 16))
+            self.buttons[style].setIcon(icons.make_icon(name, get_theme(self.look.name).text, 16))

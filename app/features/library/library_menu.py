@@ -12,7 +12,7 @@ from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import QInputDialog, QMenu
 
 from app.features.library.clip_badges import HEART, PENCIL, label_icon
-from app.features.library.clip_columns import stars
+from app.features.library.clip_columns import format_stars
 from app.features.library.clip_filter import Filter
 from app.features.library.clip_groups import GROUPS
 from app.features.library.clip_list import ClipList
@@ -117,7 +117,7 @@ class LibraryMenu:
         menu.addSeparator()
         for rating in range(1, STARS + 1):
             on = rule.stars == rating
-            words = stars(rating)
+            words = format_stars(rating)
             words = tr("{stars} or more", stars=words) if rating < STARS else words
             entry(words, on, stars=0 if on else rating)
 

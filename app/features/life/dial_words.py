@@ -82,7 +82,7 @@ TIPS = (
 )
 
 
-def in_sentence(dial: Dial) -> str:
+def put_in_sentence(dial: Dial) -> str:
     """Return a dial's label inside a sentence: small in English; other languages keep it as it is."""
     label = tr(dial.label)
     return label.lower() if label == dial.label else label

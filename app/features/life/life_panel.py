@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.life.dial_words import in_sentence
+from app.features.life.dial_words import put_in_sentence
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr, tr_error
@@ -29,7 +29,7 @@ from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, Slider
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
-from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, manner, with_life
+from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, get_manner, with_life
 from metagraph.graph.model import MODES, Mode, Project
 from metagraph.graph.words import FEELINGS
 from metagraph.playback.planning.mood import MOODS
@@ -240,7 +240,7 @@ class LifePanel(QWidget):
             row.show_value(getattr(life, name))
         for mode, rows in self.manner_rows.items():
             for name, row in rows.items():
-                row.show_value(getattr(manner(life, mode), name))
+                row.show_value(getattr(get_manner(life, mode), name))
         self.area.setEnabled(life.on)
 
     def _edited(self, before: Project, after: Project) -> None:
@@ -253,7 +253,7 @@ class LifePanel(QWidget):
         """Set a number; what is dragged is one step to undo."""
         value = round(value, 4)
         self._change(
-            tr("Change {amount}", amount=in_sentence(dial)),
+            tr("Change {amount}", amount=put_in_sentence(dial)),
             f"life/{mode}/{dial.name}",
             mode,
             **{dial.name: value},

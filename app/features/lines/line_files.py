@@ -14,7 +14,7 @@ from typing import Any
 
 from app.translation import tr
 from metagraph.common.budgets import LIST_FILE
-from metagraph.common.files import is_file, is_inside, read_file, unforeseen_error
+from metagraph.common.files import is_file, is_inside, make_unforeseen_error, read_file
 from metagraph.errors import FileError
 from metagraph.formats.store import make_path_for_project
 from metagraph.graph.editing import performances as performance_edits
@@ -66,7 +66,7 @@ def read_lines(
                     remedy=tr("Choose a sound ({names}) or a list (.csv, .tsv).", names=", ".join(SOUNDS)),
                 )
         except Exception as error:  # one bad file spoils no other
-            notes.append(str(unforeseen_error(path, error)))
+            notes.append(str(make_unforeseen_error(path, error)))
     voices: dict[str, Any] = {}
     from metagraph.speech.lines import load_voices
 

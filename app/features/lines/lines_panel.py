@@ -29,13 +29,13 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.lines.line_files import LISTS, SOUNDS, Lines, add_lines, read_lines
-from app.look.theme import WindowTheme, theme
+from app.look.theme import WindowTheme, get_theme
 from app.project.chosen import keep_chosen
 from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
-from app.translation import format_number, lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
+from app.translation import format_number, make_lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.drop_frame import DropFrame
 from app.widgets.flow import FlowLayout
 from app.widgets.making import make_widget
@@ -45,7 +45,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
 from metagraph.playback.planning.line_lengths import find_spoken_seconds
 
-COLUMNS = lazy_texts(lambda: (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("Requests")))
+COLUMNS = make_lazy_texts(lambda: (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("Requests")))
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
 WIDEST = 180  # pixels of the ids at most
 EMPTY = tr_noop(
@@ -177,7 +177,7 @@ class LinesPanel(QWidget):
     def refresh(self) -> None:
         """Show the lines as they are."""
         self._stale = False
-        project, chosen, look = self.document.project, set(self.chosen()), theme(self.session.look.name)
+        project, chosen, look = self.document.project, set(self.chosen()), get_theme(self.session.look.name)
         here = self.table.currentItem()
         current = (here.data(Qt.ItemDataRole.UserRole), here.column()) if here is not None else None
         self._filling = True

@@ -18,18 +18,18 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.look.theme import KIND_MARKS, theme
+from app.look.theme import KIND_MARKS, get_theme
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr, tr_plural
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.expand import count_machine_size, find_end_stance, list_connections
 from metagraph.graph.model import Action, MetaGraph, Project
 
 MOST = 6000  # connections drawn; more would be one solid disc
 
 
-def places(graph: MetaGraph, area: QRectF) -> dict[str, QPointF]:
+def arrange_states(graph: MetaGraph, area: QRectF) -> dict[str, QPointF]:
     """Return where each state is: stances on a ring, their actions on rings round them."""
     stances = list(graph.stances)
     out: dict[str, QPointF] = {}
@@ -100,7 +100,7 @@ class MachinePanel(QWidget):
         painter.end()
 
     def _draw(self) -> QPixmap:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         ratio = self.devicePixelRatioF()
         out = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
         out.setDevicePixelRatio(ratio)
@@ -108,7 +108,7 @@ class MachinePanel(QWidget):
         painter = QPainter(out)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         graph = self.document.project.graphs[self.session.place.layer]
-        self._places = places(graph, QRectF(self.rect()))
+        self._places = arrange_states(graph, QRectF(self.rect()))
         chosen = set(self.session.selection.actions)
         line = QColor(t.text)
         whole = count_machine_size(self.document.project, self.session.place.layer)
@@ -166,7 +166,7 @@ class MachinePanel(QWidget):
 
     def _words(self, painter: QPainter, clips: int, states: int, links: int) -> list[QRectF]:
         """Say how large the machine is; return where that stands."""
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         lines = [
             (22, t.text, tr_plural("{count:,} connection", "{count:,} connections", links)),
             (
@@ -176,7 +176,7 @@ class MachinePanel(QWidget):
                     "between {count:,} state, only in the {layer} layer.",
                     "between {count:,} states, only in the {layer} layer.",
                     states,
-                    layer=vocabulary_word(self.session.place.layer),
+                    layer=get_vocabulary_word(self.session.place.layer),
                 ),
             ),
             (13, t.dim, tr_plural("You placed {count:,} clip.", "You placed {count:,} clips.", clips)),

@@ -7,12 +7,12 @@ from typing import Any, Literal
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.translation import lazy_texts, tr
-from app.widgets.form_fields import MIXED, Mixed, QuietChooser, Seconds, common_value
+from app.translation import make_lazy_texts, tr
+from app.widgets.form_fields import MIXED, Mixed, QuietChooser, Seconds, find_common_value
 from metagraph.graph.manual.machine import Link
 
 Way = Literal["none", "end", "part", "time"]
-WORDS: dict[Way, str] = lazy_texts(
+WORDS: dict[Way, str] = make_lazy_texts(
     lambda: {
         "none": tr("none"),
         "end": tr("when the source ends"),
@@ -22,7 +22,7 @@ WORDS: dict[Way, str] = lazy_texts(
 )
 
 
-def way_of(link: Link) -> Way:
+def find_exit_way(link: Link) -> Way:
     """Return how a link says when its source is left."""
     if link.exit_time is not None:
         return "time"
@@ -63,15 +63,15 @@ class ExitRow(QWidget):
 
     def show_links(self, links: list[Link]) -> None:
         """Show what several links have in common."""
-        ways: Any = common_value([way_of(x) for x in links])
-        when = common_value([x.condition.when for x in links])
+        ways: Any = find_common_value([find_exit_way(x) for x in links])
+        when = find_common_value([x.condition.when for x in links])
         none = {"request": tr("at once"), "finished": tr("at its end")}.get(str(when), tr("none"))
         entries = [(none if way == "none" else words, way) for way, words in WORDS.items()]
         self.way.show_entries(entries, None if ways is Mixed else ways, tr(MIXED))
         self.time.setVisible(ways == "time")
         self.part.setVisible(ways == "part")
         if ways == "time":
-            self.time.show_value(common_value([x.exit_time for x in links]))
+            self.time.show_value(find_common_value([x.exit_time for x in links]))
         elif ways == "part":
-            parts = common_value([x.exit_part for x in links])
+            parts = find_common_value([x.exit_part for x in links])
             self.part.show_value(parts if parts is Mixed else parts * 100)

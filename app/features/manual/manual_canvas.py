@@ -34,7 +34,7 @@ from app.features.manual.manual_overlay import ManualMarks, find_playing_state, 
 from app.features.manual.manual_pictures import ManualPictures
 from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fit_view
 from app.look.plural import count_clips
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
@@ -214,7 +214,7 @@ class ManualCanvas(QWidget):
         s = self.session
         pictures = self.pictures.of(scene, self.view, self.devicePixelRatioF())
         return painter.ManualLook(
-            theme(s.look.name),
+            get_theme(s.look.name),
             self.document.project,
             scene,
             self.view,

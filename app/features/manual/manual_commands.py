@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QMenu
 from app.features.manual import manual_many
 from app.features.manual.arranging import arrange_nodes
 from app.features.manual.drags.host import ManualHost
-from app.features.manual.manual_painter import describe_link, facts
+from app.features.manual.manual_painter import describe_link, describe_state_facts
 from app.features.manual.manual_scene import ManualHit
 from app.project.load import Load
 from app.translation import tr, tr_phrase, tr_plural
@@ -298,11 +298,13 @@ def describe_canvas_hit(canvas: ManualHost, hit: ManualHit) -> str:
             if hit.area == "edge"
             else tr("Drag to move, double-click to play it alone")
         )
-        return "\n".join(x for x in (state.name, facts(canvas.document.project, state), trouble, help_) if x)
+        return "\n".join(
+            x for x in (state.name, describe_state_facts(canvas.document.project, state), trouble, help_) if x
+        )
     if hit.area == "link" and hit.ident in manual.links:
         link = manual.links[hit.ident]
-        begins = tr("Any state") if link.source == ANY else manual_edits.manual_name(manual, link.source)
-        ends = f"{begins} → {manual_edits.manual_name(manual, link.target)}"
+        begins = tr("Any state") if link.source == ANY else manual_edits.get_manual_name(manual, link.source)
+        ends = f"{begins} → {manual_edits.get_manual_name(manual, link.target)}"
         when = (
             tr("on request: ")
             if link.condition.when == "request"

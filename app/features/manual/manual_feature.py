@@ -9,7 +9,14 @@ from PySide6.QtCore import QPointF
 
 from app.project.importing import Importing
 from app.shell.actions import Command
-from app.shell.command_table import Condition, Feature, all_met, any_met, has_clips_selected, not_met
+from app.shell.command_table import (
+    Condition,
+    Feature,
+    has_clips_selected,
+    require_all,
+    require_any,
+    require_not,
+)
 from app.shell.context import Shell
 from app.shell.verbs import Verb, Verbs
 from app.stage.problem_watch import ProblemWatch
@@ -105,13 +112,15 @@ def has_links_selected(feature: Feature) -> bool:
     return bool(feature.session.selection.links)
 
 
-drawn = all_met(is_manual_shown, any_met(has_states_selected, has_links_selected))
+drawn = require_all(is_manual_shown, require_any(has_states_selected, has_links_selected))
 VERBS: dict[Verb, Condition] = {
-    "remove": all_met(drawn, not_met(has_clips_selected)),  # a clip of the library is the library's to remove
+    "remove": require_all(
+        drawn, require_not(has_clips_selected)
+    ),  # a clip of the library is the library's to remove
     "copy": drawn,
     "paste": is_manual_shown,
     "select_all": is_manual_shown,
-    "rename": all_met(is_manual_shown, has_one_state_selected),
+    "rename": require_all(is_manual_shown, has_one_state_selected),
 }
 COMMANDS = (
     Command(

@@ -28,19 +28,21 @@ from app.features.manual.exit_row import ExitRow
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_mask import StateMask
 from app.look.domain_words import LAYER_LONG_TITLES
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.performance import StagePerformance
-from app.translation import lazy_texts, tr, tr_plural
+from app.translation import make_lazy_texts, tr, tr_plural
 from app.widgets.choice_row import LimbRow
-from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, common_value
+from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, find_common_value
 from app.widgets.making import make_widget
 from app.widgets.restyling import set_sheet
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual.machine import Link, State
 from metagraph.graph.model import LIMBS, Project
-from metagraph.playback.manual_playback import action_of
+from metagraph.playback.manual_playback import make_state_action
 
-WHEN = lazy_texts(lambda: ((tr("when the source has finished"), "finished"), (tr("on request"), "request")))
+WHEN = make_lazy_texts(
+    lambda: ((tr("when the source has finished"), "finished"), (tr("on request"), "request"))
+)
 
 
 class Inspector(QScrollArea):
@@ -255,7 +257,7 @@ class Inspector(QScrollArea):
     def _trouble(self, label: QLabel, idents: list[str]) -> None:
         words = [self.canvas.troubles[i] for i in idents if i in self.canvas.troubles]
         label.setText(words[0] if words else "")
-        set_sheet(label, f"color: {theme(self.session.look.name).warning}")
+        set_sheet(label, f"color: {get_theme(self.session.look.name).warning}")
 
     def _show_machine(self) -> None:
         manual = self.canvas.scene().manual
@@ -300,14 +302,14 @@ class Inspector(QScrollArea):
             if len(clips) == 1
             else tr("play {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", len(clips)))
         )
-        loop = common_value([s.loop for s in states])
+        loop = find_common_value([s.loop for s in states])
         self.loop.setTristate(loop is Mixed)
         self.loop.setCheckState(_check(loop))
-        spans = [project.span(action_of(s)) for s in states]
-        self.first.show_value(common_value([round(a, 4) for a, _ in spans]))
-        self.last.show_value(common_value([round(b, 4) for _, b in spans]))
-        self.limb.show_limb(common_value([s.limb for s in states]))
-        masks = common_value([(s.joints, s.joint_weights) for s in states])
+        spans = [project.span(make_state_action(s)) for s in states]
+        self.first.show_value(find_common_value([round(a, 4) for a, _ in spans]))
+        self.last.show_value(find_common_value([round(b, 4) for _, b in spans]))
+        self.limb.show_limb(find_common_value([s.limb for s in states]))
+        masks = find_common_value([(s.joints, s.joint_weights) for s in states])
         self.joints.setText(tr(MIXED) if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self.layer.setText(tr(first.layer))
@@ -323,15 +325,15 @@ class Inspector(QScrollArea):
         begins = escape(source.name) if source else tr("Any state")
         names = f"{begins} → {escape(target.name) if target else '?'}"
         self.ends.setText(names if one else tr_plural("{count:,} link", "{count:,} links", len(links)))
-        when = common_value([x.condition.when for x in links])
+        when = find_common_value([x.condition.when for x in links])
         self.when.show_entries(WHEN, None if when is Mixed else when, tr(MIXED))
-        trigger = common_value([x.condition.trigger for x in links])
+        trigger = find_common_value([x.condition.trigger for x in links])
         self.trigger.show_text(tr(MIXED) if trigger is Mixed else trigger, tuple(x.id for x in links))
         self.form.setRowVisible(self.trigger, when != "finished")
         self.form.setRowVisible(self.weight, when != "request")
-        self.weight.show_value(common_value([x.condition.weight for x in links]))
+        self.weight.show_value(find_common_value([x.condition.weight for x in links]))
         self.exit.show_links(links)
-        self.blend.show_value(common_value([x.blend for x in links]))
+        self.blend.show_value(find_common_value([x.blend for x in links]))
         self.fire.setVisible(one and when == "request")
         self.play.setEnabled(one)
         self.paste.setEnabled(len(commands.kept.links) == 1)
@@ -372,7 +374,7 @@ class Inspector(QScrollArea):
                 entry = project.clips.get(state.clip) if state is not None else None
                 if state is None or entry is None:
                     continue
-                start, end = project.span(action_of(state))
+                start, end = project.span(make_state_action(state))
                 shortest = 1 / entry.fps
                 if field == "start":
                     at: float | None = round(min(max(0.0, value), max(0.0, end - shortest)), 3)
@@ -388,7 +390,7 @@ class Inspector(QScrollArea):
 
     def _retrigger(self) -> None:
         links, words = self.links(), self.trigger.text()
-        mixed = bool(links) and common_value([x.condition.trigger for x in links]) is Mixed
+        mixed = bool(links) and find_common_value([x.condition.trigger for x in links]) is Mixed
         if links and not (mixed and words == tr(MIXED)) and any(x.condition.trigger != words for x in links):
             self._link(tr("Change trigger"), condition={"trigger": words})
 
@@ -413,7 +415,7 @@ class Inspector(QScrollArea):
                 if link is None or link.exit_time is not None:
                     continue
                 source = project.state(link.source)
-                span = project.span(action_of(source)) if source is not None else (0.0, 1.0)
+                span = project.span(make_state_action(source)) if source is not None else (0.0, 1.0)
                 at = round(max(span[0], span[1] - link.blend), 3)
                 project = manual_edits.update_links(project, [ident], exit_time=at, exit_part=None)
             return project

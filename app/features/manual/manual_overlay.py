@@ -13,7 +13,7 @@ from app.features.manual.manual_scene import ManualHit
 from app.stage.playback_source import ShownPlayback
 from app.translation import tr, tr_noop
 from metagraph.graph.model import Layer
-from metagraph.playback.manual_playback import clip_seconds
+from metagraph.playback.manual_playback import compute_clip_seconds
 
 TOLD = 8  # selected links, up to which each tells what it waits for
 EMPTY = tr_noop("Drop clips here to add states. Drag from a state's border to draw a link.")
@@ -50,7 +50,7 @@ def find_playing_state(shown: ShownPlayback, layer: Layer, seconds: float) -> tu
         return "", 0.0
     start, end = shown.project.span(turn.action)
     return turn.action.id, round(
-        (float(clip_seconds(shown.project, turn, seconds)) - start) / max(1e-6, end - start), 2
+        (float(compute_clip_seconds(shown.project, turn, seconds)) - start) / max(1e-6, end - start), 2
     )
 
 

@@ -339,7 +339,7 @@ def _whole(painter: QPainter, look: ManualLook, state: State, rect: QRectF) -> N
         y += step
     painter.setFont(plain)
     painter.setPen(QColor(t.dim))
-    words = _elided(facts(look.project, state), plain.toString(), int(room))
+    words = _elided(describe_state_facts(look.project, state), plain.toString(), int(room))
     painter.drawText(QRectF(left, y, room + 4, step), flags, words)
 
 
@@ -362,7 +362,7 @@ def name_lines(name: str, font: str, width: int) -> tuple[str, ...]:
     return _elided(name[:best].rstrip(), font, width), _elided(name[best:], font, width)
 
 
-def facts(project: Project, state: State) -> str:
+def describe_state_facts(project: Project, state: State) -> str:
     """Say how long a state plays, whether it repeats, and which arm it moves."""
     entry = project.clips.get(state.clip)
     length = entry.duration if entry is not None else 0.0

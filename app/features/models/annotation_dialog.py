@@ -30,16 +30,16 @@ from PySide6.QtWidgets import (
 
 from app.features.models.meaning_choices import ChoiceTable, Entries, MeaningRow
 from app.look.plural import list_in_words
-from app.look.theme import KIND_MARKS, strengthen, theme
+from app.look.theme import KIND_MARKS, get_theme, strengthen
 from app.project.annotation_reading import (
     AnnotationReading,
+    apply_reading,
     begin_reading,
     describe_doubts,
-    work_into_project,
 )
 from app.project.document import Document
 from app.stage.session import StageSession
-from app.translation import group_thousands, lazy_texts, tr, tr_context, tr_error, tr_noop, tr_plural
+from app.translation import group_thousands, make_lazy_texts, tr, tr_context, tr_error, tr_noop, tr_plural
 from app.widgets.act_strip import ActStrip, format_clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
@@ -65,10 +65,10 @@ MOST = 1000  # labels that can be said otherwise; those beyond are rare
 REMEMBERED = 400  # tiers and labels that are kept for the next project
 WORTH = 10  # acts from which a model is learned unless said otherwise
 OTHER = "other"
-LEGEND = lazy_texts(
+LEGEND = make_lazy_texts(
     lambda: (("gesture", tr("gesture")), ("fidget", tr("fidget")), ("transition", tr("change of stance")))
 )
-ROLE_TIPS = lazy_texts(
+ROLE_TIPS = make_lazy_texts(
     lambda: {
         "left arm": tr("What the left arm does: gestures, fidgets, changes of stance"),
         "right arm": tr("What the right arm does: gestures, fidgets, changes of stance"),
@@ -91,10 +91,10 @@ ROLE_TITLES = (
     tr_noop("Partner's speech"),
     tr_noop("Ignore"),
 )  # beside layers, as they are shown
-ROLE_ENTRIES: Entries = lazy_texts(
+ROLE_ENTRIES: Entries = make_lazy_texts(
     lambda: [(tr(role.capitalize()), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, *SPEECH, IGNORE)]
 )
-MEANING_TIPS = lazy_texts(
+MEANING_TIPS = make_lazy_texts(
     lambda: {
         "stance": tr("The label names the stance. The stance changes where another label begins."),
         **dict.fromkeys(PHASES, tr("A phase of a gesture. Consecutive phases form one gesture.")),
@@ -102,7 +102,7 @@ MEANING_TIPS = lazy_texts(
 )
 
 
-def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
+def list_meanings(meaning: str) -> list[tuple[str, object, str]]:
     """Return the choices for the meaning of a label: words, meaning, tip. The present meaning is one of
     them.
     """
@@ -119,7 +119,7 @@ def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
     if meaning not in known:
         known.insert(3, meaning)
     out: list[tuple[str, object, str]] = [
-        (meaning_words(m), m, MEANING_TIPS.get(split_meaning(m)[0], "")) for m in known
+        (describe_label_meaning(m), m, MEANING_TIPS.get(split_meaning(m)[0], "")) for m in known
     ]
     out.insert(
         -1,
@@ -132,7 +132,8 @@ def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
     return out
 
 
-def meaning_words(meaning: str) -> str:
+def describe_label_meaning(meaning: str) -> str:
+    """Return what a label means in words of the window, behind the mark of its kind."""
     first, tags = split_meaning(meaning)
     if first == IGNORE:
         return tr("Ignore")
@@ -210,7 +211,7 @@ class AnnotateDialog(QDialog):
         self.labels = self._table(
             tables, tr("Meaning of the labels"),
             (tr_context("annotation", "Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
-            lambda row: meaning_entries(self.reading.labels[row].meaning),
+            lambda row: list_meanings(self.reading.labels[row].meaning),
         )  # fmt: skip
         self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))
         self.labels.chosen.connect(lambda row, meaning: self._set_meaning(self.reading.labels[row], meaning))
@@ -350,7 +351,7 @@ class AnnotateDialog(QDialog):
         rows = [
             MeaningRow(
                 (x.text or tr("(empty)"), tr(x.layer), group_thousands(x.count)),
-                meaning_words(x.meaning),
+                describe_label_meaning(x.meaning),
                 x.meaning == IGNORE,
                 x.text,
             )
@@ -379,7 +380,7 @@ class AnnotateDialog(QDialog):
         doubts = describe_doubts(self.reading)
         self.doubts.setText("\n".join(doubts[:4]))
         self.doubts.setVisible(bool(doubts))
-        self.doubts.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
+        self.doubts.setStyleSheet(f"color: {get_theme(self.session.look.name).warning}")
         self._enable()
 
     def _enable(self) -> None:
@@ -417,7 +418,7 @@ class AnnotateDialog(QDialog):
         learned = [layer for layer, box in self.learn.items() if box.isChecked()]
         name = " ".join(self.called.text().split()) if self.keep.isChecked() else None
         tagged = self.as_states.isChecked() and self.as_states.isEnabled()
-        made = work_into_project(
+        made = apply_reading(
             self.document.project, self.reading, learned, tagged, name, max(0.0, self.smoothing.value())
         )
         self.document.edit(tr("Import annotation"), lambda _: made.project)

@@ -14,11 +14,11 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.features.models.heatmap import SIDES
 from app.features.models.state_names import name_state
-from app.look.theme import KIND_MARKS, theme
+from app.look.theme import KIND_MARKS, get_theme
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.still_plot import clear_plot, still_plot
-from metagraph.playback.learning.compare import SURE, ModelComparison, quantiles
+from app.widgets.still_plot import clear_plot, make_still_plot
+from metagraph.playback.learning.compare import SURE, ModelComparison, compute_quantiles
 from metagraph.playback.learning.learn import State
 
 WIDTH = 0.34  # of a bar; two stand side by side
@@ -90,7 +90,7 @@ class ComparePlot(QWidget):
         self._draw()  # in the theme's colours before there is anything, too
 
     def _plot(self) -> Any:
-        plot = still_plot(self)
+        plot = make_still_plot(self)
         plot.getAxis("left").setWidth(34)
         plot.plotItem.vb.sigResized.connect(self._name_bars)
         plot.setMinimumHeight(96)
@@ -104,7 +104,7 @@ class ComparePlot(QWidget):
         self._draw()
 
     def _draw(self) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         for plot in (self.often, self.long):
             clear_plot(plot, t)
         if self.found is None:
@@ -134,7 +134,9 @@ class ComparePlot(QWidget):
         self.often.setYRange(0, 108 * float(max(np.max(seen), np.max(made + chance), 0.05)), padding=0.0)
         self.long.setXRange(-0.5, count + 0.5, padding=0.02)
         tallies = [x for x in (found.observed, found.generated) if x is not None]
-        tops = [quantiles(x)[-1] for tally in tallies for x in (*tally.lengths, tally.rests) if len(x)]
+        tops = [
+            compute_quantiles(x)[-1] for tally in tallies for x in (*tally.lengths, tally.rests) if len(x)
+        ]
         self.long.setYRange(0, 1.08 * max(tops, default=1.0), padding=0)
         self.words.setText(describe_model_fit(found))
 
@@ -167,11 +169,11 @@ class ComparePlot(QWidget):
         """Draw the middle half of lengths as a box, the middle 80 % as a line, the median across."""
         if not len(lengths):
             return
-        low, quarter, middle, three, high = quantiles(lengths)
+        low, quarter, middle, three, high = compute_quantiles(lengths)
         line = pg.PlotDataItem([x, x], [low, high])
         line.setPen(pg.mkPen(color, width=1.4))
         plot.addItem(line)
-        pale = QColor(theme(self.session.look.name).panel)
+        pale = QColor(get_theme(self.session.look.name).panel)
         box = pg.BarGraphItem(x=[x], width=WIDTH - 0.05, y0=[quarter], height=[three - quarter])
         box.setOpts(pen=pg.mkPen(color, width=1.4), brush=color if filled else pale)
         plot.addItem(box)
@@ -219,7 +221,7 @@ def describe_long(found: ModelComparison, n: int) -> str:
     for word, tally in ((tr("seen"), found.observed), (tr("made"), found.generated)):
         lengths = None if tally is None else tally.lengths[n] if n < len(states) else tally.rests
         if lengths is not None and len(lengths):
-            low, _, middle, _, high = quantiles(lengths)
+            low, _, middle, _, high = compute_quantiles(lengths)
             parts.append(
                 tr(
                     "{word} {middle:.1f} s (mostly {low:.1f} to {high:.1f})",

@@ -21,10 +21,10 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.features.models.state_names import describe_tag, name_state_in_sentence
-from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.look.theme import KIND_MARKS, WindowTheme, get_theme
 from app.translation import tr
 from metagraph.graph.model import Layer, Markov
-from metagraph.playback.learning.learn import State, model_states
+from metagraph.playback.learning.learn import State, list_model_states
 
 HEAD = 38.0  # pixels above the columns
 SIDE = 104.0  # left of the rows
@@ -62,7 +62,7 @@ class HeatmapGrid:
         return row, column
 
 
-def grid(count: int, width: float, height: float) -> HeatmapGrid:
+def fit_grid(count: int, width: float, height: float) -> HeatmapGrid:
     """Return cells that fill a widget, within what is pleasant to look at."""
     wide = min(92.0, max(40.0, (width - SIDE - 4) / max(1, count)))
     high = min(44.0, max(19.0, (height - HEAD - 4) / max(1, count)))
@@ -82,19 +82,19 @@ def _rgb(color: QColor) -> tuple[float, float, float]:
     return color.redF(), color.greenF(), color.blueF()
 
 
-def ink(ground: QColor) -> QColor:
+def choose_ink(ground: QColor) -> QColor:
     """Return dark or light, whichever reads better on a ground; on middling ones black or white, since no
     other gives 4.5:1.
     """
-    soft = max(map(QColor, INKS), key=lambda c: contrast(c, ground))
+    soft = max(map(QColor, INKS), key=lambda c: measure_contrast(c, ground))
     return (
         soft
-        if contrast(soft, ground) >= 4.5
-        else max(QColor("#000000"), QColor("#ffffff"), key=lambda c: contrast(c, ground))
+        if measure_contrast(soft, ground) >= 4.5
+        else max(QColor("#000000"), QColor("#ffffff"), key=lambda c: measure_contrast(c, ground))
     )
 
 
-def contrast(a: QColor, b: QColor) -> float:
+def measure_contrast(a: QColor, b: QColor) -> float:
     """Return the contrast of two colours, 1..21 (WCAG 2)."""
 
     def light(color: QColor) -> float:
@@ -105,7 +105,7 @@ def contrast(a: QColor, b: QColor) -> float:
     return (bright + 0.05) / (dark + 0.05)
 
 
-def percent(probability: float) -> str:
+def format_percent(probability: float) -> str:
     """Return a probability as it stands in a cell: "·" for none, "<1" for next to none."""
     if probability <= 0:
         return "·"
@@ -114,7 +114,7 @@ def percent(probability: float) -> str:
 
 def describe_matrix_cell(model: Markov, layer: Layer, row: int, column: int) -> str:
     """Say a cell: "After a left gesture, a right fidget follows in 13 % of cases."."""
-    states = model_states(model)
+    states = list_model_states(model)
     p = model.matrix[row][column]
     before = name_state_in_sentence(states[row], layer)
     what = tr("the same") if row == column else name_state_in_sentence(states[column], layer)
@@ -193,14 +193,14 @@ class HeatMap(QWidget):
         return QSize(round(SIDE + 40 * n + 4), round(HEAD + 19 * n + 4))
 
     def grid(self) -> HeatmapGrid:
-        return grid(len(self.model.states) if self.model else 0, self.width(), self.height())
+        return fit_grid(len(self.model.states) if self.model else 0, self.width(), self.height())
 
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
         if self.model is None:
             return
-        t, cells, states = theme(self.look), self.grid(), model_states(self.model)
+        t, cells, states = get_theme(self.look), self.grid(), list_model_states(self.model)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         lit = self.hovered or (self.current if self.hasFocus() else (-2, -2))
@@ -235,8 +235,8 @@ class HeatMap(QWidget):
                 painter.setPen(Qt.PenStyle.NoPen)
                 painter.setBrush(fill)
                 painter.drawRoundedRect(rect, 3, 3)
-                painter.setPen(QColor(t.dim) if p <= 0 else ink(fill))
-                painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, percent(p))
+                painter.setPen(QColor(t.dim) if p <= 0 else choose_ink(fill))
+                painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, format_percent(p))
         painter.setOpacity(1.0)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         if self.hovered is not None and min(self.hovered) >= 0:
@@ -501,7 +501,7 @@ class HeatMap(QWidget):
 
     def _state_sentence(self, n: int) -> str:
         assert self.model is not None
-        words = name_state_in_sentence(model_states(self.model)[n], self.layer)
+        words = name_state_in_sentence(list_model_states(self.model)[n], self.layer)
         out = words[:1].upper() + words[1:]
         if self.model.lengths:
             mean, deviation = self.model.lengths[n]

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.session import StageSession
 
 HIGH = 34  # pixels of a row
@@ -48,7 +48,7 @@ class _Field(QStyledItemDelegate):
     def paint(
         self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
     ) -> None:
-        t = theme(self.table.session.look.name)
+        t = get_theme(self.table.session.look.name)
         words = str(index.data(Qt.ItemDataRole.DisplayRole) or "")
         if not words:
             return
@@ -114,7 +114,7 @@ class ChoiceTable(QTreeWidget):
         they are.
         """
         t, place, scroll = (
-            theme(self.session.look.name),
+            get_theme(self.session.look.name),
             self.currentIndex().row(),
             self.verticalScrollBar().value(),
         )

@@ -41,7 +41,7 @@ from metagraph.playback.learning.compare import ModelComparison, compare_model, 
 from metagraph.playback.learning.learn import (
     Act,
     State,
-    model_states,
+    list_model_states,
     read_acts_of_asks,
     remove_state,
     with_cell,
@@ -401,7 +401,7 @@ class ModelsPanel(QWidget):
     def state_menu(self, row: int) -> QMenu:
         """Return the menu of a state: another one, or away with this one. row: -1 for none."""
         menu, shown, layer = QMenu(self), self.model(), self.session.place.layer
-        there = set(model_states(shown))
+        there = set(list_model_states(shown))
         tags = dict.fromkeys(
             ("", *(tag for _, _, tag in there), *(("positive", "negative") if shown.tags else ()))
         )
@@ -417,7 +417,7 @@ class ModelsPanel(QWidget):
                         add.addAction(words, partial(self._add_state, state))
         add.setEnabled(not add.isEmpty())
         if 0 <= row < len(shown.states) and len(shown.states) > 1:
-            words = name_state(model_states(shown)[row], layer)
+            words = name_state(list_model_states(shown)[row], layer)
             menu.addAction(
                 tr("Remove {words}", words=words),
                 lambda: self._edit(tr("Remove state"), lambda m: remove_state(m, row)),

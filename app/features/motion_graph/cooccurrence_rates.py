@@ -22,12 +22,12 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import group_thousands, lazy_texts, tr, tr_noop
+from app.translation import group_thousands, make_lazy_texts, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation.edits import set_rates
 from metagraph.graph.conversation.model import Rates
 
-HEADS = lazy_texts(
+HEADS = make_lazy_texts(
     lambda: (
         tr("Pair"),
         tr("Matched"),

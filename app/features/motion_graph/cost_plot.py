@@ -11,10 +11,10 @@ import pyqtgraph as pg
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.still_plot import clear_plot, still_plot
+from app.widgets.still_plot import clear_plot, make_still_plot
 
 BINS = 80
 BEYOND = 0.995  # share of all costs that the plot shows
@@ -27,7 +27,7 @@ class CostPlot(QWidget):
         super().__init__(parent)
         self.session = session
         self.shown: Any = None
-        self.plot = still_plot(self)
+        self.plot = make_still_plot(self)
         self.plot.getAxis("left").setStyle(showValues=False)
         self.plot.getAxis("left").setWidth(12)
         layout = QVBoxLayout(self)
@@ -42,7 +42,7 @@ class CostPlot(QWidget):
         self._draw()
 
     def _draw(self) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         clear_plot(self.plot, look)
         self.plot.setLabel("bottom", tr("cost, m"), color=look.dim)
         found = self.shown

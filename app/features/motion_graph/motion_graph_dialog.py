@@ -29,9 +29,9 @@ from app.features.motion_graph.synthesis_jobs import (
     MOST,
     ChosenTakes,
     FoundMotion,
+    choose_takes,
     count_graph_states,
     synthesise,
-    takes_of,
 )
 from app.features.motion_graph.takes_list import TakesList
 from app.project.document import Document
@@ -226,7 +226,7 @@ class MotionGraphDialog(QDialog):
     def _changed(self) -> None:
         """Something was chosen: compare frames again, soon."""
         self.graph = None
-        self.takes = takes_of(self.document.project, self.picked.chosen())
+        self.takes = choose_takes(self.document.project, self.picked.chosen())
         if self._counted != (self.takes.clips, self.level.value()):
             self._show_table({})
         seconds = sum(clip.duration for clip in self.takes.clips)
@@ -245,11 +245,11 @@ class MotionGraphDialog(QDialog):
             return
 
         def work(_: WindowJob) -> Any:
-            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.graph import find_threshold
             from metagraph.synthesis.states import read_states
 
             states = known[1] if known is not None else read_states(takes.clips)
-            return takes.clips, states, threshold(states, k, level)
+            return takes.clips, states, find_threshold(states, k, level)
 
         self.jobs.start(tr("Comparing frames"), work, self._compared, self._incomparable, quick=True)
 
@@ -483,7 +483,7 @@ class MotionGraphDialog(QDialog):
         """Cut the selected takes, or all that are chosen, into clips that wait to be labelled."""
         ids = self.picked.selected()
         project, k, level = self.document.project, self.k.value(), self.level.value() / 100
-        clips = takes_of(project, ids).clips
+        clips = choose_takes(project, ids).clips
         if not clips:
             self._failed(ValueError(tr("choose takes first")))
             return
@@ -493,16 +493,16 @@ class MotionGraphDialog(QDialog):
         taken = {e.name for e in project.clips.values()}
 
         def work(job: WindowJob) -> Any:
-            from metagraph.synthesis.cut import candidates
-            from metagraph.synthesis.graph import threshold
+            from metagraph.synthesis.cut import find_candidates
+            from metagraph.synthesis.graph import find_threshold
             from metagraph.synthesis.states import read_states
 
-            limit = threshold(read_states(clips), k, level).limit
+            limit = find_threshold(read_states(clips), k, level).limit
             cuts = []
             for n, clip in enumerate(clips):
                 job.tell(n, len(clips))
                 cuts += cut_into_pieces(
-                    clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)]
+                    clip, [(start, end) for start, end, _ in find_candidates(clip, limit, LEAST, MOST)]
                 )
             return save(cuts, folder, FOLDER, taken) if cuts and not job.cancelled else ()
 

@@ -21,13 +21,13 @@ from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import describe_side
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, segments_heard_by
+from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, list_segments_heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
-KINDS: tuple[tuple[Sound, str], ...] = lazy_texts(
+KINDS: tuple[tuple[Sound, str], ...] = make_lazy_texts(
     lambda: (
         ("clause", tr("Clauses")),
         ("response", tr("Responses")),
@@ -192,7 +192,7 @@ class Wishes(QFrame):
             seconds = min(seconds, max(1.0, talk.length - start))
             from metagraph.research.motion_graph.search_evaluation import cut_segments
 
-            whole, side = segments_heard_by(talk, chosen[1]), talk.sides[chosen[1]]
+            whole, side = list_segments_heard_by(talk, chosen[1]), talk.sides[chosen[1]]
             segments = tuple(cut_segments(whole, start, seconds))
         return Wish(
             seconds,

@@ -95,10 +95,10 @@ class SoftWishes(QWidget):
 
     def wish(self) -> SoftWish:
         """Return what is requested now. Raises ValueError if a word is none."""
-        from metagraph.synthesis.iconic_words import word_wish
+        from metagraph.synthesis.iconic_words import parse_word_wish
         from metagraph.synthesis.soft_constraints import SoftWish
 
-        words = tuple(word_wish(text) for text in self.words.text().split(";") if text.strip())
+        words = tuple(parse_word_wish(text) for text in self.words.text().split(";") if text.strip())
         return SoftWish(
             self.loudness.value(),
             self.rate.value(),
@@ -114,7 +114,7 @@ def read_side_prosody(
     """Return what is known of the speech a side moves with, and of its sound where the wish needs that. side:
     None if nobody knows. folder: of the project. Raises FileError.
     """
-    from metagraph.speech.prosody import prosody
+    from metagraph.speech.prosody import measure_prosody
     from metagraph.speech.sound import read_sound
     from metagraph.synthesis.prosody_costs import SpokenTake
 
@@ -124,4 +124,4 @@ def read_side_prosody(
     silent = not side.words and not any(s.text for s in segments)
     if side.audio is not None and (wish.loudness or (wish.rate and silent)):
         samples, rate = read_sound((folder or Path()) / side.audio, side.channel, LONGEST, KEPT)
-    return SpokenTake(tuple(segments), side.words, prosody(segments, side.words, samples, rate))
+    return SpokenTake(tuple(segments), side.words, measure_prosody(segments, side.words, samples, rate))

@@ -16,7 +16,7 @@ import msgspec
 
 from app.features.motion_graph.soft_wishes import read_side_prosody
 from app.translation import tr, tr_phrase, tr_plural
-from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, segments_heard_by
+from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
@@ -96,14 +96,16 @@ def cut_to_take(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]
     return tuple(out)
 
 
-def takes_of(project: Project, ids: Collection[str]) -> ChosenTakes:
+def choose_takes(project: Project, ids: Collection[str]) -> ChosenTakes:
     """Return the chosen clips as takes; those without motion are left out."""
     found = [i for i in list_usable_clips(project) if i in ids]
     speech, sides = [], []
     for ident in found:
         recorded = find_recorded_side(project, ident)
         heard = (
-            segments_heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
+            list_segments_heard_by(project.conversations[recorded[0]], recorded[1])
+            if recorded is not None
+            else ()
         )
         speech.append(cut_to_take(heard, project.clips[ident].duration))
         sides.append(project.conversations[recorded[0]].sides[recorded[1]] if recorded is not None else None)
@@ -198,9 +200,9 @@ def synthesise(
     """
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import find_heard_at
-    from metagraph.synthesis.search.path_quality import quality
+    from metagraph.synthesis.search.path_quality import measure_quality
     from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech
-    from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, soft_report
+    from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, make_soft_report
 
     said = find_heard_at(graph.states, takes.speech)
     # Takes nobody annotated went with anything.
@@ -220,8 +222,8 @@ def synthesise(
     found = answer_speech(graph, said, wish.segments, wish.seconds, asked, searching, cancelled, soft)
     took, path = time.perf_counter() - began, found.path
     made = assemble(graph.states, takes.clips, path, name, retiming=found.retiming)
-    beside = soft_report(soft, graph.states, path, found.retiming).told()
-    looks = quality(graph.states, path)
+    beside = make_soft_report(soft, graph.states, path, found.retiming).told()
+    looks = measure_quality(graph.states, path)
     return FoundMotion(made, path.cost, len(path.jumps), took, looks, found.words(), beside)
 
 
@@ -236,7 +238,7 @@ def count_graph_states(
     paper's table 2).
     """
     from metagraph.synthesis.constraints import find_change_states
-    from metagraph.synthesis.graph import build_graph, threshold
+    from metagraph.synthesis.graph import build_graph, find_threshold
     from metagraph.synthesis.states import key_states, read_states
 
     states = read_states(takes.clips)
@@ -244,7 +246,7 @@ def count_graph_states(
     out = {}
     for n, k in enumerate(ks):
         progress(n, len(ks))
-        limit = threshold(states, k, level)
+        limit = find_threshold(states, k, level)
         whole = build_graph(states, limit, keys, connected=False, cancelled=cancelled)
         try:
             kept = build_graph(states, limit, keys, cancelled=cancelled).size

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtGui import QFocusEvent
 from PySide6.QtWidgets import QPlainTextEdit, QVBoxLayout, QWidget
 
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr
@@ -62,7 +62,9 @@ class NotesPanel(QWidget):
             self.finish()
             self.about = about
         self.title.say(
-            tr("On {name}", name=plain_action_name(found.name)) if found is not None else tr("On the project")
+            tr("On {name}", name=make_readable_name(found.name))
+            if found is not None
+            else tr("On the project")
         )
         self.text.setPlaceholderText(
             tr("Write down what to do or know about this character.")

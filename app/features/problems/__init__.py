@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QToolButton, QWidget
 
 from app.look import icons
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
@@ -63,7 +63,7 @@ class ProblemButton(QToolButton):
 
     def refresh(self) -> None:
         """Show how many there are now."""
-        problems, look = self.watch.problems, theme(self.session.look.name)
+        problems, look = self.watch.problems, get_theme(self.session.look.name)
         grave = [p for p in problems if p.severity != "hint"]
         hints = len(problems) - len(grave)
         color = (
@@ -76,5 +76,5 @@ class ProblemButton(QToolButton):
             if hints
             else tr("No problems")
         )
-        self.setIcon(icons.icon("warning" if problems else "done", color))
+        self.setIcon(icons.make_icon("warning" if problems else "done", color))
         set_sheet(self, f"color: {color}")

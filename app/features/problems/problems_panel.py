@@ -38,7 +38,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.look import icons
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.stage.fixes import Fix
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop, tr_phrase, tr_plural
@@ -75,7 +75,7 @@ class FixButtons(QStyledItemDelegate):
     def paint(
         self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
     ) -> None:
-        words, look = str(index.data() or ""), theme(self.panel.session.look.name)
+        words, look = str(index.data() or ""), get_theme(self.panel.session.look.name)
         if option.state & QStyle.StateFlag.State_Selected:
             painter.fillRect(option.rect, QColor(look.hover))
         if not words:
@@ -114,7 +114,7 @@ class FixButtons(QStyledItemDelegate):
         return super().editorEvent(event, model, option, index)
 
 
-def breakable(words: str) -> str:
+def make_breakable(words: str) -> str:
     """Return words whose names may go on in another line after each underscore."""
     return words.replace("_", "_\u200b")
 
@@ -128,12 +128,12 @@ class WrappedWords(QStyledItemDelegate):
         icon = ICON if index.data(Qt.ItemDataRole.DecorationRole) is not None else 0
         wide = max(40, tree.columnWidth(index.column()) - icon - MARGIN)
         words = option.fontMetrics.boundingRect(
-            0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, breakable(str(index.data()))
+            0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, make_breakable(str(index.data()))
         )
         return QSize(found.width(), max(24, words.height() + 8))
 
     def displayText(self, value: object, locale: QLocale | QLocale.Language) -> str:
-        return breakable(str(value))
+        return make_breakable(str(value))
 
 
 class ProblemsPanel(QWidget):
@@ -202,7 +202,7 @@ class ProblemsPanel(QWidget):
         self, problems: Sequence[Problem], fixes: Mapping[Problem, Fix | None] | None = None
     ) -> None:
         """Show problems. fixes: what mends some of them."""
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         fixes = fixes or {}
         state = (
             tuple(problems),
@@ -256,7 +256,7 @@ class ProblemsPanel(QWidget):
         fix = self.fixes.get(problem)
         message, remedy = tr_phrase(problem.message), tr_phrase(problem.remedy)
         item = QTreeWidgetItem([message, place, remedy, fix.words if fix is not None else ""])
-        item.setIcon(0, icons.icon("warning", colors[problem.severity]))
+        item.setIcon(0, icons.make_icon("warning", colors[problem.severity]))
         item.setForeground(0, QColor(text if problem.severity != "hint" else colors["hint"]))
         item.setToolTip(0, f"{tr(problem.severity)}: {message}. {remedy}")
         if fix is not None:

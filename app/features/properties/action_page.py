@@ -19,16 +19,16 @@ from PySide6.QtWidgets import (
 from app.features.properties.page_form import Edit, add_form
 from app.features.properties.timing_plot import TimingPlot
 from app.features.properties.variation_rows import ActionRows
-from app.look.theme import KIND_MARKS, KIND_TITLES, theme
+from app.look.theme import KIND_MARKS, KIND_TITLES, get_theme
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr, tr_plural
 from app.widgets.choice_row import LimbRow
-from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, common_value
+from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, find_common_value
 from app.widgets.halves import Halves
 from app.widgets.making import make_widget
 from app.widgets.restyling import set_sheet
-from app.widgets.vocabulary import vocabulary_title
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, LIMBS, Action
 from metagraph.graph.repeating import cycle_of, times_played
@@ -163,16 +163,19 @@ class ActionPage(Halves):
         """Show what actions have in common."""
         if not actions:
             return
-        project, t = self.document.project, theme(self.session.look.name)
+        project, t = self.document.project, get_theme(self.session.look.name)
         one = len(actions) == 1
-        kind, layer = common_value([a.kind for a in actions]), common_value([a.layer for a in actions])
+        kind, layer = (
+            find_common_value([a.kind for a in actions]),
+            find_common_value([a.layer for a in actions]),
+        )
         self.name.setReadOnly(not one)
         of = tuple(a.id for a in actions)
         self.name.show_text(
             actions[0].name if one else tr_plural("{count:,} action", "{count:,} actions", len(actions)), of
         )
         title = f"{KIND_MARKS[kind]} {tr(KIND_TITLES[kind])}" if kind is not Mixed else tr("Mixed kinds")
-        self.kind.setText(f"{title} · {vocabulary_title(layer) if layer is not Mixed else tr('layers')}")
+        self.kind.setText(f"{title} · {get_vocabulary_title(layer) if layer is not Mixed else tr('layers')}")
         set_sheet(self.kind, f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
         self.plot.set_curves(not self.low)
@@ -180,39 +183,39 @@ class ActionPage(Halves):
         if one:
             self.plot.show_action(actions[0])
         spans = [project.span(a) for a in actions]
-        self.start.show_value(common_value([s for s, _ in spans]))
-        self.end.show_value(common_value([e for _, e in spans]))
-        self.blend_in.show_value(common_value([a.timing.blend_in for a in actions]))
-        self.blend_out.show_value(common_value([a.timing.blend_out for a in actions]))
+        self.start.show_value(find_common_value([s for s, _ in spans]))
+        self.end.show_value(find_common_value([e for _, e in spans]))
+        self.blend_in.show_value(find_common_value([a.timing.blend_in for a in actions]))
+        self.blend_out.show_value(find_common_value([a.timing.blend_out for a in actions]))
         stance = kind == "stance"
         blend_title = self.form.labelForField(self.blend_row)
         if isinstance(blend_title, QLabel):
             blend_title.setText(tr("Loop seam blend") if stance else tr("Blend in, out"))
         self.blend_out.setVisible(not stance)
         self.form.setRowVisible(self.leave_row, not stance)
-        exits = common_value([a.timing.earliest_exit for a in actions])
-        leaves = common_value([a.timing.earliest_exit is not None for a in actions])
+        exits = find_common_value([a.timing.earliest_exit for a in actions])
+        leaves = find_common_value([a.timing.earliest_exit is not None for a in actions])
         _check(self.leave, leaves)
         self.earliest.setEnabled(exits is not None)
         self.earliest.show_value(0.0 if exits is None else exits)
         self.form.setRowVisible(self.repeat_row, all(a.kind in ("gesture", "fidget") for a in actions))
-        _check(self.repeats, common_value([a.timing.repeat > 0 for a in actions]))
+        _check(self.repeats, find_common_value([a.timing.repeat > 0 for a in actions]))
         self.repeat.setEnabled(any(a.timing.repeat > 0 for a in actions))
-        self.repeat.show_value(common_value([a.timing.repeat for a in actions]))
+        self.repeat.show_value(find_common_value([a.timing.repeat for a in actions]))
         self.repeats.setText(self._describe_repeats(actions))
         arms = layer == "arms" and not stance
         self.form.setRowVisible(self.limb, arms)
-        self.limb.show_limb(common_value([a.limb for a in actions]))
-        tags = common_value([a.tags for a in actions])
+        self.limb.show_limb(find_common_value([a.limb for a in actions]))
+        tags = find_common_value([a.tags for a in actions])
         self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
         self.tags.setPlaceholderText(tr(MIXED) if tags is Mixed else tr("positive, greeting, …"))
-        self.likelihood.show_value(common_value([a.likelihood for a in actions]))
+        self.likelihood.show_value(find_common_value([a.likelihood for a in actions]))
         self.variation.show_actions(project, actions)
         self.chosen_kind.show_entries(
             [(f"{KIND_MARKS[k]} {tr(KIND_TITLES[k])}", k) for k in KINDS], kind, tr(MIXED)
         )
         self._fill_stances(actions, kind)
-        masks = common_value([(a.joints, a.joint_weights) for a in actions])
+        masks = find_common_value([(a.joints, a.joint_weights) for a in actions])
         self.joints.setText(tr(MIXED) if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self._show_trouble()
@@ -226,18 +229,18 @@ class ActionPage(Halves):
         chosen = self.session.selection.actions
         wrong = self.misfits.get(chosen[0], "") if len(chosen) == 1 else ""
         self.trouble.setText(wrong)
-        set_sheet(self.trouble, f"color: {theme(self.session.look.name).warning}")
+        set_sheet(self.trouble, f"color: {get_theme(self.session.look.name).warning}")
         self.trouble.setVisible(bool(wrong))
 
     def _fill_stances(self, actions: Sequence[Action], kind: Any) -> None:
         project = self.document.project
-        layer = common_value([a.layer for a in actions])
+        layer = find_common_value([a.layer for a in actions])
         stances = project.graphs[layer].stances.values() if layer is not Mixed else ()
         for box, values in (
             (self.stance, [a.stance for a in actions]),
             (self.ends, [a.end_stance for a in actions]),
         ):
-            shared = common_value(values)
+            shared = find_common_value(values)
             box.show_entries(
                 [(s.name, s.id) for s in stances],
                 shared,
@@ -304,7 +307,7 @@ class ActionPage(Halves):
     def _retag(self) -> None:
         actions = self.session.selection.selected_actions()
         tags = tuple(dict.fromkeys(w.strip().lower() for w in self.tags.text().split(",") if w.strip()))
-        mixed = actions and common_value([a.tags for a in actions]) is Mixed
+        mixed = actions and find_common_value([a.tags for a in actions]) is Mixed
         if actions and not (mixed and not tags) and any(a.tags != tags for a in actions):
             self._set(tr("Change tags"), tags=tags)
 

@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QLabel, QWidget
 
 from app.features.properties.label_rows import LabelRows
 from app.features.properties.page_form import Edit, add_form, make_page_box
-from app.look.theme import KIND_MARKS, theme
+from app.look.theme import KIND_MARKS, get_theme
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_plural
 from app.widgets.restyling import set_sheet
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.playback.action_table import Column, list_clip_rows, write_cells
 
 
@@ -43,7 +43,7 @@ class ClipPage(QWidget):
 
     def show_clips(self, clips: Sequence[str]) -> None:
         """Show what clips are, and what uses them."""
-        project, t = self.document.project, theme(self.session.look.name)
+        project, t = self.document.project, get_theme(self.session.look.name)
         entries = [project.clips[c] for c in clips]
         total = sum(e.duration for e in entries)
         if len(entries) == 1:
@@ -73,9 +73,9 @@ class ClipPage(QWidget):
             where = escape(
                 tr(
                     "{kind} of {stance}, {layer}",
-                    kind=vocabulary_word(action.kind),
+                    kind=get_vocabulary_word(action.kind),
                     stance=stance.name if stance else "?",
-                    layer=vocabulary_word(action.layer),
+                    layer=get_vocabulary_word(action.layer),
                 )
             )
             lines.append(
@@ -109,4 +109,4 @@ class ClipPage(QWidget):
     def _say(self, trouble: str) -> None:
         self.trouble.setText(trouble)
         self.trouble.setVisible(bool(trouble))
-        set_sheet(self.trouble, f"color: {theme(self.session.look.name).warning}")
+        set_sheet(self.trouble, f"color: {get_theme(self.session.look.name).warning}")

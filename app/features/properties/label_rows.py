@@ -10,8 +10,8 @@ from PySide6.QtWidgets import QCompleter, QFormLayout, QLabel, QWidget
 
 from app.look.theme import KIND_MARKS, KIND_TITLES
 from app.translation import tr
-from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, common_value
-from app.widgets.vocabulary import vocabulary_title
+from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, find_common_value
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.editing.half_labels import find_half_label, has_half_label
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Project
 from metagraph.playback.action_table import Column, list_clip_rows, read_cell
@@ -59,8 +59,8 @@ class LabelRows(QWidget):
         self._project, self._rows = project, list_clip_rows(project, clips)
         titles: dict[str, list[tuple[str, object]]] = {
             "kind": [(f"{KIND_MARKS[kind]} {tr(KIND_TITLES[kind])}", kind) for kind in KINDS],
-            "layer": [(vocabulary_title(layer), layer) for layer in LAYERS],
-            "limb": [(vocabulary_title(limb), limb) for limb in LIMBS],
+            "layer": [(get_vocabulary_title(layer), layer) for layer in LAYERS],
+            "limb": [(get_vocabulary_title(limb), limb) for limb in LIMBS],
         }
         for name, entries in titles.items():
             shared = self._shared(name)
@@ -80,7 +80,7 @@ class LabelRows(QWidget):
 
     def _shared(self, name: str) -> object:
         column: Column = name  # type: ignore[assignment]
-        return common_value([read_cell(self._project, row, column) for row in self._rows] or [""])
+        return find_common_value([read_cell(self._project, row, column) for row in self._rows] or [""])
 
     def _choose(self, name: str, place: int) -> None:
         self.wanted.emit(name, str(self.choosers[name].itemData(place)))

@@ -12,7 +12,7 @@ from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.form_fields import QuietChooser, Seconds
-from app.widgets.vocabulary import vocabulary_title, vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_title, get_vocabulary_word
 from metagraph.graph import edits
 from metagraph.graph.model import PARTS, REACH
 from metagraph.graph.words import Part
@@ -43,7 +43,7 @@ class LayerPage(QWidget):
                 self,
                 tr(
                     "How much the layer moves the {part}: 0 not at all, 1 as in the clip, 2 twice as much",
-                    part=vocabulary_word(part),
+                    part=get_vocabulary_word(part),
                 ),
                 2,
                 "",
@@ -51,7 +51,7 @@ class LayerPage(QWidget):
             )
             field.valueChanged.connect(lambda v, p=part: self._weigh(p, v))
             self.weights[part] = field
-            form.addRow(vocabulary_title(part), field)
+            form.addRow(get_vocabulary_title(part), field)
         line = QFrame(self, frameShape=QFrame.Shape.HLine)
         line.setStyleSheet("color: palette(mid)")
         box.addWidget(line)
@@ -82,7 +82,7 @@ class LayerPage(QWidget):
         """Show the current layer's."""
         project, layer = self.document.project, self.session.place.layer
         graph = project.graphs[layer]
-        self.title.setText(tr("{layer} layer", layer=vocabulary_title(layer)))
+        self.title.setText(tr("{layer} layer", layer=get_vocabulary_title(layer)))
         for part in PARTS:
             self.weights[part].show_value(graph.weights.get(part, REACH[layer][part]))
         from metagraph.playback.planning.markov import model

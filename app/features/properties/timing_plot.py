@@ -21,19 +21,19 @@ from PySide6.QtWidgets import (
 
 from app.features.properties.jump_strip import JumpStrip
 from app.features.properties.page_form import ANY
-from app.look.theme import WindowTheme, theme
+from app.look.theme import WindowTheme, get_theme
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, compare_proposed_timing
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_phrase
+from app.translation import make_lazy_texts, tr, tr_phrase
 from app.widgets.restyling import set_sheet
 from app.widgets.still_plot import make_number_axes
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, handle_times, move_handle
-from metagraph.playback.timing.speed_curves import speed_of
+from metagraph.playback.timing.speed_curves import measure_action_speed
 
-WORDS = lazy_texts(
+WORDS = make_lazy_texts(
     lambda: {
         "start": tr("start"),
         "end": tr("end"),
@@ -135,7 +135,7 @@ class TimingPlot(QWidget):
 
     def _show_seen(self) -> None:
         """Show where the action can begin and end without a jump, as far as that is known by now."""
-        project, action, t = self.document.project, self.action, theme(self.session.look.name)
+        project, action, t = self.document.project, self.action, get_theme(self.session.look.name)
         curves = (
             self.compatibility.curves(action)
             if self.compatibility is not None and action is not None
@@ -175,7 +175,7 @@ class TimingPlot(QWidget):
             self.compatibility.use_proposed([self.action.id])
 
     def _restyle(self) -> None:
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         self.plot.setBackground(t.panel)
         for name in ("left", "bottom"):
             axis = self.plot.getAxis(name)
@@ -187,7 +187,7 @@ class TimingPlot(QWidget):
 
     def show_action(self, action: Action) -> None:
         """Show an action's timing."""
-        t = theme(self.session.look.name)
+        t = get_theme(self.session.look.name)
         project = self.document.project
         fresh = (
             self.action is None
@@ -203,7 +203,7 @@ class TimingPlot(QWidget):
             return
         color = t.kind(action.kind)
         if fresh:
-            speeds, words = speed_of(project, action)
+            speeds, words = measure_action_speed(project, action)
             self.curve.setData(np.arange(len(speeds)) / entry.fps, speeds)
             # In one go: each change of a range lets all lines and words find their places again.
             across = -0.02 * entry.duration, max(entry.duration, 0.1) * 1.02

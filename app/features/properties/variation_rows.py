@@ -11,18 +11,18 @@ from typing import Any
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QToolButton, QWidget
 
-from app.translation import lazy_texts, tr
-from app.widgets.form_fields import MIXED, Mixed, Seconds, common_value
+from app.translation import make_lazy_texts, tr
+from app.widgets.form_fields import MIXED, Mixed, Seconds, find_common_value
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
 from metagraph.playback.planning.director import repeat_interval
-from metagraph.playback.planning.prominence import prominence
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.planning.prominence import measure_prominence
+from metagraph.playback.timing.phases import find_phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
-PHASE_WORDS = lazy_texts(
+PHASE_WORDS = make_lazy_texts(
     lambda: {
         "ready": tr("End of the preparation"),
         "stroke_end": tr("Start of the hold"),
@@ -100,15 +100,15 @@ class ActionRows(QWidget):
         if acts:
             self._show_prominence(project, actions)
         if gestures:
-            found = [phases(project, a) for a in actions]
-            self.ready.show_value(common_value([p.ready for p in found]))
-            self.stroke_end.show_value(common_value([p.stroke_end for p in found]))
-            self.relax.show_value(common_value([p.relax for p in found]))
+            found = [find_phases(project, a) for a in actions]
+            self.ready.show_value(find_common_value([p.ready for p in found]))
+            self.stroke_end.show_value(find_common_value([p.stroke_end for p in found]))
+            self.relax.show_value(find_common_value([p.relax for p in found]))
             self.found.setEnabled(
                 any(getattr(a.timing, f) is not None for a in actions for f in PHASE_FIELDS)
             )
-        self.cooldown.show_value(common_value([a.cooldown for a in actions]))
-        spacing = common_value([a.spacing for a in actions])
+        self.cooldown.show_value(find_common_value([a.cooldown for a in actions]))
+        spacing = find_common_value([a.spacing for a in actions])
         self.spacing.blockSignals(True)
         least = -2 if spacing is Mixed else AS_THE_GRAPH
         if self.spacing.minimum() != least:  # which lays the form out again
@@ -120,8 +120,8 @@ class ActionRows(QWidget):
         self.spacing.blockSignals(False)
 
     def _show_prominence(self, project: Project, actions: Sequence[Action]) -> None:
-        shares = [prominence(project, a) for a in actions]
-        self.prominence.show_value(common_value([100 * share for share in shares]))
+        shares = [measure_prominence(project, a) for a in actions]
+        self.prominence.show_value(find_common_value([100 * share for share in shares]))
         variety = project.settings.variety
         soonest = min(repeat_interval(a.kind, x) for a, x in zip(actions, shares, strict=True)) * variety
         self.prominence.setToolTip(

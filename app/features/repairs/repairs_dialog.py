@@ -20,15 +20,15 @@ from PySide6.QtWidgets import (
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
-from app.translation import lazy_texts, tr, tr_error, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_plural
 from app.widgets.making import make_widget
-from app.widgets.tree_items import items_below, top_items
-from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
+from app.widgets.tree_items import list_items_below, list_top_items
+from metagraph.formats.repairs import Repaired, Reread, list_repairs, reread
 from metagraph.formats.takes import BIND_POSE, FRAME_TIME, FROM_OFFSET, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph.edit_error import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
-TITLES = lazy_texts(
+TITLES = make_lazy_texts(
     lambda: {
         BIND_POSE: tr("Remove bind poses at the ends"),
         LONE_FRAME: tr("Smooth single stray frames"),
@@ -92,7 +92,7 @@ class RepairsDialog(QDialog):
 
     def _fill(self, *_: object) -> None:
         project = self.document.project
-        found = repairs_of(project, self.clips)
+        found = list_repairs(project, self.clips)
         if found == self.found and self.tree.topLevelItemCount():
             return
         self.found = found
@@ -129,7 +129,7 @@ class RepairsDialog(QDialog):
         self._count()
 
     def _items(self) -> list[QTreeWidgetItem]:
-        return [item for top in top_items(self.tree) for item in items_below(top)]
+        return [item for top in list_top_items(self.tree) for item in list_items_below(top)]
 
     def changes(self) -> list[tuple[Repaired, bool]]:
         """Return the repairs whose tick was changed, with whether they are to be made."""

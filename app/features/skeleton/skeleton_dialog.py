@@ -24,10 +24,10 @@ from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.joint_mask import JOINT, fill_joint_tree
 from app.widgets.quiet_fields import ComboBox
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import PARTS, Part, Project
-from metagraph.motion.roles import ROLES, missing_roles
+from metagraph.motion.roles import ROLES, find_missing_roles
 
 ROW = 36  # pixels of a row, with a choice in it
 
@@ -62,7 +62,7 @@ class SkeletonDialog(QDialog):
             role.activated.connect(lambda _, j=name, box=role: self._set_role(j, box.currentData()))
             part = ComboBox(self.tree, toolTip=tr("The body part decides which layers move the joint"))
             for one in PARTS:
-                part.addItem(vocabulary_word(one), one)
+                part.addItem(get_vocabulary_word(one), one)
             part.activated.connect(lambda _, j=name, box=part: self._set_part(j, box.currentData()))
             self.tree.setItemWidget(item, 1, role)
             self.tree.setItemWidget(item, 2, part)
@@ -101,7 +101,7 @@ class SkeletonDialog(QDialog):
             font = self.items[name].font(0)
             font.setBold(name in project.parts or name in project.roles.values())
             self.items[name].setFont(0, font)
-        missing = missing_roles(found)
+        missing = find_missing_roles(found)
         words = tr(
             "{found} roles detected from the joint names and the hierarchy. Your corrections are bold.",
             found=len(found),

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from app.shell.context import Shell
 
 
-def screen_areas(shell: Shell) -> dict[str, list[int]]:
+def list_screen_areas(shell: Shell) -> dict[str, list[int]]:
     """Return name -> x, y, width, height on the screen, logical pixels, of all docks that are seen, and of
     what widgets in them name by `named_areas`.
     """

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.study.study_screen import format_markdown, format_minutes
-from app.look.theme import strengthen, theme
+from app.look.theme import get_theme, strengthen
 from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.making import make_widget
@@ -83,7 +83,7 @@ class StudyBar(QToolBar):
 
     def show_time(self, elapsed: float, minutes: float | None) -> None:
         """Show seconds so far, or left of the minutes there are; near the end it is said plainly."""
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         if minutes is None:
             self.time.setText(format_minutes(elapsed))
             self.time.setStyleSheet("")

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QDialog
 
 from app.features.study.operator_events import Hands
-from app.features.study.screen_areas import screen_areas
+from app.features.study.screen_areas import list_screen_areas
 from app.features.study.study_changes import describe_change
 from app.project.importing import Importing
 from app.stage.problem_watch import ProblemWatch
@@ -245,7 +245,7 @@ class Recorder(QObject):
         self._input_at = now
 
     def _tick(self) -> None:
-        areas = screen_areas(self.shell)
+        areas = list_screen_areas(self.shell)
         if areas != self._areas:
             self._areas = areas
             self._view("layout", areas=areas)

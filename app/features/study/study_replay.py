@@ -18,7 +18,7 @@ from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Project
 from metagraph.research.study.logs.log import read_log
-from metagraph.research.study.logs.replay import Again, SittingPart, first_project, list_sitting_parts
+from metagraph.research.study.logs.replay import Again, SittingPart, list_sitting_parts, load_first_project
 from metagraph.research.study.study_plan import CONDITION_TITLES, Study
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ class Replayer(QObject):
         self.bar.told.setText(tr("Loading the clips…"))
         self.shell.jobs.start(
             tr("Loading the clips"),
-            lambda job: first_project(self.study, part),
+            lambda job: load_first_project(self.study, part),
             lambda project: self._loaded(part, project),
             lambda error: self.bar.told.setText(tr_error(error)),
         )

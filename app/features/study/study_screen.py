@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.study.study_answers import Question
-from app.look.theme import strengthen, theme
+from app.look.theme import get_theme, strengthen
 from app.stage.session import StageSession
 from app.translation import tr
 from metagraph.research.study.questionnaires import Questionnaire
@@ -214,7 +214,7 @@ class Screen(QWidget):
         self.hide()
 
     def restyle(self) -> None:
-        look = theme(self.session.look.name)
+        look = get_theme(self.session.look.name)
         self.setStyleSheet(f"""
             Screen, Screen QScrollArea, Screen QScrollArea > QWidget > QWidget {{ background: {look.panel}; }}
             Screen QLabel {{ font-size: 15px; color: {look.text}; }}

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from app.look.domain_words import KIND_TITLES
-from app.translation import lazy_texts, tr
-from app.widgets.vocabulary import vocabulary_title
+from app.translation import make_lazy_texts, tr
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import KINDS, Project
 from metagraph.playback.action_table import CHOICES, Column
 
-TITLES: Mapping[Column, str] = lazy_texts(
+TITLES: Mapping[Column, str] = make_lazy_texts(
     lambda: {
         "name": tr("Name"),
         "clip": tr("Clip"),
@@ -47,7 +47,7 @@ def translate_cell(column: Column, text: str) -> str:
     """Return a cell's text in the window's language."""
     if column == "kind" and text:
         return KIND_TITLES[text]
-    return vocabulary_title(text) if column in CHOICES and text else text
+    return get_vocabulary_title(text) if column in CHOICES and text else text
 
 
 def parse_typed(column: Column, typed: str) -> str:

@@ -25,18 +25,18 @@ from app.features.table.replace_row import ReplaceRow
 from app.features.table.table_filter import WHICH, TableFilter, Which, keep_filters, read_filters
 from app.features.table.table_model import TableModel
 from app.features.table.table_view import TableView
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.shell.verbs import Verbs
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_error, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.soon import Soon
 from metagraph.graph.model import Project
 from metagraph.playback.action_table import COLUMNS, Cell, write_cells
 
-TITLES_OF: Mapping[Which, str] = lazy_texts(
+TITLES_OF: Mapping[Which, str] = make_lazy_texts(
     lambda: {
         "all": tr("All"),
         "actions": tr("Actions"),
@@ -58,7 +58,7 @@ class TablePanel(QWidget):
         super().__init__(parent)
         self.document, self.session = document, session
         self._selecting = self._behind = self._writing = False
-        self.rows = TableModel(theme(session.look.name))
+        self.rows = TableModel(get_theme(session.look.name))
         self.view = TableView(self.rows, self)
         self.view.written.connect(self.write)
         self.view.selectionModel().selectionChanged.connect(self._selected)
@@ -373,5 +373,5 @@ class TablePanel(QWidget):
         self._selecting = False
 
     def _restyle(self) -> None:
-        self.rows.look = theme(self.session.look.name)
+        self.rows.look = get_theme(self.session.look.name)
         self.rows.show_refused(self.rows.refused)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QApplication, QFileDialog
 
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.files import Files
 from app.project.jobs import WindowJob
 from app.shell.actions import Command
-from app.shell.command_table import Feature, any_met, has_actions_selected
+from app.shell.command_table import Feature, has_actions_selected, require_any
 from app.shell.context import Shell
 from app.translation import tr, tr_noop, tr_plural
 from metagraph.formats.store import SUFFIX
@@ -59,7 +59,7 @@ class TakingFeature(Feature):
         """Show what can be imported. name: the name of the source."""
         from app.features.taking.taking_dialog import TakingDialog
 
-        shell, look = self.shell, theme(self.session.look.name)
+        shell, look = self.shell, get_theme(self.session.look.name)
         TakingDialog(self.document, shell.jobs, piece, name, look, shell.widget).open()
 
     def copy(self) -> None:
@@ -121,7 +121,7 @@ COMMANDS = (
         TakingFeature.copy,
         ("Ctrl+Alt+C",),
         tip=tr_noop("Copy the selected actions, or else the visible stance with everything placed on it"),
-        enabled=any_met(has_actions_selected, find_stance_in_view),
+        enabled=require_any(has_actions_selected, find_stance_in_view),
         when="meta",
         menus=("action",),
     ),

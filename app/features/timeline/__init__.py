@@ -10,7 +10,7 @@ from app.features.timeline.timeline_commands import (
     has_marker_selected,
     has_requests_selected,
 )
-from app.shell.command_table import all_met, bind_commands, is_meta_graph_shown
+from app.shell.command_table import bind_commands, is_meta_graph_shown, require_all
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
 from app.translation import tr
@@ -18,8 +18,8 @@ from app.translation import tr
 
 def contribute(shell: Shell) -> Contribution:
     timeline, verbs = TimelineFeature(shell), shell.services[Verbs]
-    with_requests = partial(all_met(is_meta_graph_shown, has_requests_selected), timeline)
-    with_marker = partial(all_met(is_meta_graph_shown, has_marker_selected), timeline)
+    with_requests = partial(require_all(is_meta_graph_shown, has_requests_selected), timeline)
+    with_marker = partial(require_all(is_meta_graph_shown, has_marker_selected), timeline)
     verbs.offer("remove", with_requests, timeline.withdraw_requests, rank=1)
     verbs.offer("remove", with_marker, timeline.remove_marker, rank=1)
     verbs.offer("rename", with_marker, timeline.rename_marker, rank=1)

@@ -13,7 +13,7 @@ from app.features.timeline.drags.cut import CutDrag
 from app.look.theme import WindowTheme
 from app.translation import tr, tr_noop
 from app.widgets.lane_geometry import LEFT, elide_text, place_lanes
-from metagraph.graph.conversation.model import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, get_side_name
 from metagraph.graph.timeline import Cut, Shot
 
 EDGE = 4.0  # pixels on either side of a cut that take hold of it
@@ -28,8 +28,8 @@ def list_camera_shots(talk: Conversation) -> tuple[tuple[Shot, int, str], ...]:
     sides = range(len(talk.sides))
     return (
         ("two", 0, tr("Two-shot") if len(talk.sides) == 2 else tr("Everyone")),
-        *(("over", n, tr("Over the shoulder of {name}", name=side_name(talk, n))) for n in sides),
-        *(("close", n, tr("Close-up of {name}", name=side_name(talk, n))) for n in sides),
+        *(("over", n, tr("Over the shoulder of {name}", name=get_side_name(talk, n))) for n in sides),
+        *(("close", n, tr("Close-up of {name}", name=get_side_name(talk, n))) for n in sides),
     )
 
 
@@ -44,7 +44,7 @@ def describe_cut_briefly(cut: Cut, talk: Conversation) -> str:
     """Return the same in fewer words, for the lane."""
     if cut.shot == "two" or cut.side >= len(talk.sides):
         return describe_cut(cut, talk)
-    name = side_name(talk, cut.side)
+    name = get_side_name(talk, cut.side)
     return tr("Over: {name}", name=name) if cut.shot == "over" else tr("Close: {name}", name=name)
 
 

@@ -20,12 +20,12 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QWidget
 
 from app.features.timeline.lane_view import Lanes
-from app.look.names import plain_action_name
-from app.look.theme import theme
+from app.look.names import make_readable_name
+from app.look.theme import get_theme
 from app.project.importing import Importing
 from app.project.load import Load
 from app.translation import tr, tr_error, tr_plural
-from app.widgets.lane_geometry import lane_at
+from app.widgets.lane_geometry import find_lane_at
 from app.widgets.lane_paint import paint_badge
 from app.widgets.mime import load_of
 from metagraph.graph import edits
@@ -50,7 +50,7 @@ class LaneDrop:
     words: str = field(default_factory=partial(tr, "drop on the lane of a layer"))
 
 
-def lane_drop(
+def plan_lane_drop(
     project: Project, layer: Layer | None, stance: str | None, seconds: float, load: Load
 ) -> LaneDrop:
     """Return what dropping a load on a layer's lane does. stance: the layer's at that moment."""
@@ -58,7 +58,7 @@ def lane_drop(
         return LaneDrop(layer, seconds, stance)
     found = project.stance(stance)
     name, at = (
-        plain_action_name(found.name) if found is not None else "",
+        make_readable_name(found.name) if found is not None else "",
         tr("at {seconds:.2f} s", seconds=seconds),
     )
     if load.actions:
@@ -72,13 +72,13 @@ def lane_drop(
                 tr("a stance loop cannot be requested: request its stance instead"),
             )
         what = (
-            plain_action_name(actions[0].name)
+            make_readable_name(actions[0].name)
             if len(actions) == 1
             else tr_plural("{count:,} action", "{count:,} actions", len(actions))
         )
         return LaneDrop(layer, seconds, stance, True, tr("request {what} {at}", what=what, at=at))
     if load.clips and all(find_playing_action(project, layer, clip) is not None for clip in load.clips):
-        first = plain_action_name(project.clips[load.clips[0]].name)
+        first = make_readable_name(project.clips[load.clips[0]].name)
         what = first if load.count == 1 else tr_plural("{count:,} clip", "{count:,} clips", load.count)
         return LaneDrop(layer, seconds, stance, True, tr("request {what} {at}", what=what, at=at))
     if found is None:
@@ -138,14 +138,14 @@ class LaneDrops(QObject):
     def what(self, at: QPointF, load: Load) -> LaneDrop:
         """Return what letting a load go at a point would do."""
         lanes = self.lanes
-        name = lane_at(lanes.height(), at)
+        name = find_lane_at(lanes.height(), at)
         layer = name if name in LAYERS else None
         seconds = round(max(0.0, lanes.scale().seconds(at.x())), 2)
         plan = lanes.performance.shown.plan
         stance = plan.layers[layer].stance_at(seconds) if layer is not None else None
         if lanes.session.transport.show != "plan" or lanes.session.onstage.mode != "meta":
             return LaneDrop(None, seconds, None, False, tr("show the performance first"))
-        return lane_drop(self.document.project, layer, stance, seconds, load)
+        return plan_lane_drop(self.document.project, layer, stance, seconds, load)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         kind = event.type()
@@ -223,7 +223,7 @@ class _Mark(QWidget):
         self.hide()
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        look, painter = theme(self.lanes.session.look.name), QPainter(self)
+        look, painter = get_theme(self.lanes.session.look.name), QPainter(self)
         color = QColor(look.text if self._drop.possible else look.warning)
         if self._drop.possible:
             x = self.lanes.scale().x(self._drop.seconds)

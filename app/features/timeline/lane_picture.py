@@ -10,8 +10,8 @@ from PySide6.QtGui import QColor, QPainter
 
 from app.features.timeline.lane_titles import LOCK, paint_padlock
 from app.features.timeline.voice_lane import paint_voice
-from app.features.timeline.what_if import paint_ghost, seed_of
-from app.look.theme import theme
+from app.features.timeline.what_if import get_ghost_seed, paint_ghost
+from app.look.theme import get_theme
 from app.widgets.lane_geometry import LEFT, NAMES, RequestMark, place_lanes, split_lane
 from app.widgets.lane_paint import LaneScene, paint_lane_scene
 from app.widgets.request_menu import STAGE
@@ -21,7 +21,7 @@ def paint_lanes(
     view: Any, painter: QPainter, found: Sequence[RequestMark], ends: float | None, locked: Collection[str]
 ) -> None:
     """Paint all lanes. view: their widget. found: requests as they stand. ends: seconds at which all ends."""
-    t, ratio = theme(view.session.look.name), view.devicePixelRatioF()
+    t, ratio = get_theme(view.session.look.name), view.devicePixelRatioF()
     scene = LaneScene(
         view.performance.shown,
         found,
@@ -39,7 +39,7 @@ def paint_lanes(
     for name, lane in place_lanes(view.height(), view.sizes).items():
         if name == "words":
             paint_voice(painter, t, lane, view.scale(), view.width(), view.voices, ratio)
-        elif (seed := seed_of(name)) is not None:
+        elif (seed := get_ghost_seed(name)) is not None:
             plan = view.what_if.plans.get(seed)
             paint_ghost(painter, t, lane, view.scale(), view.width(), plan)
         if name == STAGE and "words" not in view.sizes.extra and view.voices.words():

@@ -7,10 +7,18 @@ from typing import Any
 from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QApplication
 
-from app.features.timeline.what_if import seed_of
-from app.look.names import names_in_tooltip
+from app.features.timeline.what_if import get_ghost_seed
+from app.look.names import describe_name_in_tooltip
 from app.translation import tr, tr_noop
-from app.widgets.lane_geometry import LEFT, RULER, cue_at, describe_mark, lane_at, mark_at, place_lanes
+from app.widgets.lane_geometry import (
+    LEFT,
+    RULER,
+    describe_mark,
+    find_cue_at,
+    find_lane_at,
+    mark_at,
+    place_lanes,
+)
 from app.widgets.lane_paint import describe_cue
 
 # of actions, within a sentence
@@ -26,10 +34,12 @@ def describe_place(view: Any, at: QPointF) -> str:
     mark = mark_at(view.marks(), at)
     if mark is not None:
         return describe_mark(mark, view.performance.requests.editable)
-    found = cue_at(view.performance.shown, view.scale(), view.height(), at, view.sizes)
+    found = find_cue_at(view.performance.shown, view.scale(), view.height(), at, view.sizes)
     if found is not None:
         cue = found[1]
-        name = names_in_tooltip(describe_cue(view.performance.shown.project, cue.action), cue.action.name)
+        name = describe_name_in_tooltip(
+            describe_cue(view.performance.shown.project, cue.action), cue.action.name
+        )
         words = tr(
             "{name}\n{kind}, {start:.2f} to {end:.2f} s",
             name=name,
@@ -40,12 +50,12 @@ def describe_place(view: Any, at: QPointF) -> str:
         if cue.hold > 0:
             words += tr(", held {hold:.2f} s", hold=cue.hold)
         return words + tr("\nClick to select it, double-click to play it in context")
-    lane = lane_at(view.height(), at, view.sizes)
+    lane = find_lane_at(view.height(), at, view.sizes)
     if lane is None:
         return ""
     if lane == "cameras":
         return view.cameras.tip(at)
-    seed = seed_of(lane)
+    seed = get_ghost_seed(lane)
     if seed is not None:
         row = place_lanes(view.height(), view.sizes)[lane]
         return view.what_if.tip(seed, view.scale().seconds(at.x()), (at.y() - row.top()) / row.height())

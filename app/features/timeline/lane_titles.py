@@ -16,13 +16,13 @@ from PySide6.QtWidgets import QMenu
 from app.features.timeline.drags.border import BorderDrag
 from app.look.theme import WindowTheme
 from app.stage.performance import StagePerformance
-from app.translation import lazy_texts, tr, tr_noop
+from app.translation import make_lazy_texts, tr, tr_noop
 from app.widgets.lane_geometry import LEFT, NAMES, RULER, TITLES, Sizes, place_lanes
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.graph.timeline import Lane
 
 SETTING = "timeline/heights"
-HEIGHTS = lazy_texts(
+HEIGHTS = make_lazy_texts(
     lambda: {tr("Compact"): 0.6, tr("Normal"): 1.0, tr("Tall"): 1.8}
 )  # of a lane's usual height
 SAID = (tr_noop("body"), tr_noop("arms"), tr_noop("head"))  # of layers, within a sentence

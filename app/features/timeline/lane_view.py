@@ -32,8 +32,8 @@ from app.features.timeline.lane_titles import LaneTitles, read_lane_heights
 from app.features.timeline.ruler import Ruler
 from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
 from app.features.timeline.voices import Voices
-from app.features.timeline.what_if import WhatIf, seed_of
-from app.look.theme import theme
+from app.features.timeline.what_if import WhatIf, get_ghost_seed
+from app.look.theme import get_theme
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop
@@ -44,8 +44,8 @@ from app.widgets.lane_geometry import (
     RULER,
     RequestMark,
     Sizes,
-    cue_at,
-    lane_at,
+    find_cue_at,
+    find_lane_at,
     mark_at,
     place_lanes,
     place_marks,
@@ -149,7 +149,7 @@ class Lanes(LaneSpan):
     # --- painting
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t, painter = theme(self.session.look.name), QPainter(self)
+        t, painter = get_theme(self.session.look.name), QPainter(self)
         painter.drawPixmap(0, 0, self._picture())
         painter.setFont(self.font())
         self.ruler.paint(painter, t, self.width(), self.height())
@@ -240,13 +240,13 @@ class Lanes(LaneSpan):
         if mark is not None:
             self._press(mark, event)
             return
-        seed = seed_of(lane_at(self.height(), event.position(), self.sizes))
+        seed = get_ghost_seed(find_lane_at(self.height(), event.position(), self.sizes))
         if seed is not None:
             self.what_if.take(seed)
             return
         self.session.onstage.select_requests(())
         self.performance.timeline.select(None)
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
+        found = find_cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
         if found is not None:
             self.session.jump(action=found[1].action.id)
         else:
@@ -315,7 +315,7 @@ class Lanes(LaneSpan):
             self.ruler.rename(marker.id)
         if event.position().y() < RULER:
             return
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
+        found = find_cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
         if found is not None:
             self.session.show_context(found[1].action.id)
         elif event.position().x() >= LEFT:
@@ -326,7 +326,7 @@ class Lanes(LaneSpan):
         if self.cameras.on(at):
             self.cameras.menu(at).popup(on_screen.toPoint())
             return
-        mark, lane = mark_at(self.marks(), at), lane_at(self.height(), at, self.sizes)
+        mark, lane = mark_at(self.marks(), at), find_lane_at(self.height(), at, self.sizes)
         if mark is not None and self.performance.requests.editable:
             make_request_marks_menu(self, mark).popup(on_screen.toPoint())
         else:

@@ -21,18 +21,18 @@ from PySide6.QtWidgets import (
 )
 
 from app.stage.performance import StagePerformance
-from app.translation import lazy_texts, tr, tr_error, tr_noop
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop
 from app.widgets.lane_geometry import describe_outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, describe_mood, describe_request
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
-from metagraph.graph.timeline_edits import lane_of
+from metagraph.graph.timeline_edits import find_lane
 from metagraph.graph.words import FEELINGS
 
 SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two
 UNSET = tr_noop("automatic")
-LABELS = lazy_texts(
+LABELS = make_lazy_texts(
     lambda: {
         "at": tr("Start at"),
         "stroke": tr("Stroke at"),
@@ -59,7 +59,7 @@ LABELS = lazy_texts(
         "stay": tr("Stay in the stance"),
     }
 )
-TIPS = lazy_texts(
+TIPS = make_lazy_texts(
     lambda: {
         "at": tr("Time in the performance. It can start later while another action plays."),
         "stroke": tr("When its stroke should come, instead of when it should start"),
@@ -226,7 +226,7 @@ class RequestEditor(QDialog):
             items = [(tr("none"), None), *((i, i) for i in project.lines)]
             value = None if value is None else str(value)
         elif name == "stance":
-            lane = lane_of(ask, project)
+            lane = find_lane(ask, project)
             items = [
                 (s.name, s.id)
                 for layer in LAYERS
@@ -234,7 +234,7 @@ class RequestEditor(QDialog):
                 for s in project.graphs[layer].stances.values()
             ]
         elif name == "action":
-            lane = lane_of(ask, project)
+            lane = find_lane(ask, project)
             items = [(x.name, x.id) for x in project.actions() if x.layer == lane and x.kind != "stance"]
         elif name == "to":
             items = [(n, n) for n in dict.fromkeys(("user", "ahead", *project.points))]

@@ -14,7 +14,7 @@ from app.features.timeline.drags.marker import MarkerDrag
 from app.features.timeline.drags.range import Grip, RangeDrag
 from app.look.theme import WindowTheme
 from app.translation import tr
-from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, elide_text, text_width
+from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, elide_text, measure_text_width
 from metagraph.graph.timeline import Marker
 
 EDGE = 5.0  # pixels on either side of an end of the range that take hold of it
@@ -229,7 +229,9 @@ class Ruler:
             ground = QColor(t.panel)
             ground.setAlpha(200)
             painter.fillRect(
-                QRectF(x + FLAG, NUMBERS + 1, text_width(words, font.toString()) + 4, RULER - NUMBERS - 2),
+                QRectF(
+                    x + FLAG, NUMBERS + 1, measure_text_width(words, font.toString()) + 4, RULER - NUMBERS - 2
+                ),
                 ground,
             )
             painter.save()

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QSettings
 
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.stage.performance import StagePerformance
-from app.translation import format_number, lazy_texts, tr
+from app.translation import format_number, make_lazy_texts, tr
 from app.widgets.lane_geometry import LaneScale, RequestMark
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
-WORDS = lazy_texts(lambda: {"in": tr("start of the loop range"), "out": tr("end of the loop range")})
+WORDS = make_lazy_texts(lambda: {"in": tr("start of the loop range"), "out": tr("end of the loop range")})
 REACH = 8.0  # pixels from which something is drawn to a line; ours
 WIDE = 24.0  # pixels of a gesture from which its stroke is a line of its own
 SETTING = "timeline/magnet"
@@ -60,13 +60,13 @@ def snap_lines(
         for cue in of.cues:
             if cue.end < begin or cue.start > end or cue.meta.partition("+")[0] in but:
                 continue
-            name = plain_action_name(cue.action.name)
+            name = make_readable_name(cue.action.name)
             out += [
                 SnapLine(cue.start, tr("start of {name}", name=name)),
                 SnapLine(cue.end, tr("end of {name}", name=name)),
             ]
             if cue.action.kind == "gesture" and (cue.end - cue.start) * scale.each >= WIDE:
-                stroke = phases(shown.project, cue.action).stroke
+                stroke = find_phases(shown.project, cue.action).stroke
                 if cue.entry <= stroke <= cue.once.last:
                     out.append(
                         SnapLine(

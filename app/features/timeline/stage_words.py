@@ -6,7 +6,7 @@ from app.stage.playback_source import ShownPlayback
 from app.stage.session import StageSession
 from app.translation import tr, tr_plural
 from app.widgets.lane_geometry import RequestMark, describe_outcome, describe_wanted
-from metagraph.graph.conversation.model import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, get_side_name
 from metagraph.graph.model import LAYERS
 
 
@@ -51,7 +51,7 @@ def describe_machine(shown: ShownPlayback, session: StageSession) -> str:
 
 def describe_talk(shown: ShownPlayback, talk: Conversation | None) -> str:
     """Return what is said of the one whose plan of a conversation is seen."""
-    who = side_name(talk, shown.side) if talk is not None else tr("A speaker")
+    who = get_side_name(talk, shown.side) if talk is not None else tr("A speaker")
     if shown.motion is not None:
         return tr(
             "{who} moves with the recording '{name}'. The graph would play this instead.",

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.project.importing import Importing
 from app.shell.actions import Command
-from app.shell.command_table import Feature, all_met, has_skeleton
+from app.shell.command_table import Feature, has_skeleton, require_all
 from app.shell.context import Shell
 from app.translation import tr_noop
 
@@ -169,7 +169,7 @@ def _command(
     return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": has_skeleton, **more})
 
 
-performing = all_met(has_skeleton, is_performance_shown)
+performing = require_all(has_skeleton, is_performance_shown)
 COMMANDS = (
     _command(
         "range_in",
@@ -316,7 +316,7 @@ COMMANDS = (
         tip=tr_noop(
             "Copies them as text that you can also paste into another window. Ctrl+C on the timeline."
         ),
-        enabled=all_met(has_kept_requests, has_requests_selected),
+        enabled=require_all(has_kept_requests, has_requests_selected),
     ),
     _command(
         "requests_paste",

@@ -21,12 +21,12 @@ from app.features.timeline.stage_words import count_cues, describe_machine, desc
 from app.features.timeline.voices import Voices
 from app.features.timeline.what_if import WhatIf
 from app.look import icons
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -34,14 +34,14 @@ from app.widgets.request_menu import MOOD_WORDS, make_request_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_conversation
-from metagraph.graph.conversation.model import side_name
+from metagraph.graph.conversation.model import get_side_name
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS
 
-IMPROVISED = lazy_texts(
+IMPROVISED = make_lazy_texts(
     lambda: {
         "talking": tr("Improvised, talking"),
         "listening": tr("Improvised, listening"),
@@ -192,10 +192,10 @@ class TimelinePanel(QWidget):
         return out
 
     def _restyle(self) -> None:
-        color = theme(self.session.look.name).text
-        self.magnet.setIcon(icons.icon("magnet", color))
-        self.ghosts.setIcon(icons.icon("ghosts", color))
-        self.ripple.setIcon(icons.icon("ripple", color))
+        color = get_theme(self.session.look.name).text
+        self.magnet.setIcon(icons.make_icon("magnet", color))
+        self.ghosts.setIcon(icons.make_icon("ghosts", color))
+        self.ripple.setIcon(icons.make_icon("ripple", color))
 
     def _switched(self) -> None:
         """Requests and kept performances are the meta-graph's."""
@@ -220,7 +220,7 @@ class TimelinePanel(QWidget):
         wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
         talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
         if talk is not None:  # then it is one of those who talk whose plan is seen
-            wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in range(len(talk.sides))]
+            wanted += [(f"{talk.name}: {get_side_name(talk, side)}", side) for side in range(len(talk.sides))]
         onstage = self.session.onstage
         shown = (onstage.performance or onstage.improvised) if talk is None else onstage.side
         if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:

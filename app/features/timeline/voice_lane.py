@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QFont, QPainter, QPen
 
 from app.features.timeline.voices import Voices
 from app.look.theme import WindowTheme
-from app.widgets.lane_geometry import LEFT, LaneScale, text_width
+from app.widgets.lane_geometry import LEFT, LaneScale, measure_text_width
 from app.widgets.waveforms import join_columns, paint_columns
 
 TEXT = 15.0  # pixels of the words' line
@@ -60,7 +60,7 @@ def paint_voice(
                 Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft,
                 text,
             )
-            free = left + text_width(text, key) + GAP
+            free = left + measure_text_width(text, key) + GAP
     painter.restore()
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QElapsedTimer, QObject, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QPainter
 
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.look.theme import WindowTheme
 from app.project.document import Document
 from app.project.jobs import Jobs
@@ -192,7 +192,7 @@ class WhatIf(QObject):
         here = (
             tr(
                 "{name}, {start:.2f} to {end:.2f} s\n",
-                name=plain_action_name(cue.action.name),
+                name=make_readable_name(cue.action.name),
                 start=cue.start,
                 end=cue.end,
             )
@@ -222,7 +222,7 @@ def plan_with(project: Project, kept: KeptPerformance | None, length: float, see
     return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
 
-def seed_of(lane: str | None) -> int | None:
+def get_ghost_seed(lane: str | None) -> int | None:
     """Return the seed of a lane of ghosts, None for another lane."""
     return int(lane.removeprefix(PREFIX)) if lane is not None and lane.startswith(PREFIX) else None
 

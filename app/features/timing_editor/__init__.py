@@ -10,7 +10,13 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.timing_editor.since import Since
 from app.shell.actions import Command
-from app.shell.command_table import Feature, all_met, bind_commands, has_actions_selected, is_meta_graph_shown
+from app.shell.command_table import (
+    Feature,
+    bind_commands,
+    has_actions_selected,
+    is_meta_graph_shown,
+    require_all,
+)
 from app.shell.context import Contribution, Panel, Shell
 from app.stage.compatibility_state import Compatibility
 from app.translation import tr, tr_noop
@@ -46,7 +52,7 @@ COMMANDS = (
         TimingFeature.flip,
         ("A",),
         tip=tr_noop("Show the selected actions as they were when you selected them, or as they are again"),
-        enabled=all_met(TimingFeature.has_subject, has_actions_selected, is_meta_graph_shown),
+        enabled=require_all(TimingFeature.has_subject, has_actions_selected, is_meta_graph_shown),
         checked=TimingFeature.is_before_shown,
     ),
 )

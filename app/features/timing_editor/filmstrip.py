@@ -24,7 +24,7 @@ def paint_poses(
     left, right = max(axis.x(0), axis.left), min(axis.x(axis.length), axis.left + axis.width)
     if right <= left:
         return
-    figure = room_of(pictures)
+    figure = find_figure_room(pictures)
     cell = max(16.0, rect.height() * figure.width() / max(1.0, figure.height()) + 2)
     count = max(1, int((right - left) / cell))
     wide = (right - left) / count
@@ -41,7 +41,7 @@ def paint_poses(
             painter.drawLine(QPointF(box.left(), box.top() + 3), QPointF(box.left(), box.bottom() - 3))
 
 
-def room_of(pictures: Sequence[QImage]) -> QRectF:
+def find_figure_room(pictures: Sequence[QImage]) -> QRectF:
     """Return the part of the pictures, of one size, that the figure takes in any of them, pixels; all of them
     if there is none.
     """

@@ -16,7 +16,7 @@ from app.features.timing_editor.paint import MIDDLE, TimingLook
 from app.features.timing_editor.rows import TrackRows
 from app.features.timing_editor.track import Facts, KeptHand
 from app.translation import format_number, tr
-from metagraph.graph.clip_source import course_of
+from metagraph.graph.clip_source import get_clip_course
 from metagraph.graph.editing.retiming import set_kept
 
 REACH = 5.0  # pixels from an end at which it is taken
@@ -49,7 +49,7 @@ def find_kept_seconds(facts: Facts, name: str) -> float | None:
     return float(getattr(kept, part.end)) if kept is not None and part is not None and part.end else None
 
 
-def kept_bar(axis: Axis, rows: TrackRows, facts: Facts, kept: KeptHand) -> QRectF:
+def place_kept_bar(axis: Axis, rows: TrackRows, facts: Facts, kept: KeptHand) -> QRectF:
     """Return where a kept hand stands."""
     row = rows.rows[f"hand {facts.hands.index(kept.hand)}"]
     left, right = axis.x(kept.first), axis.x(kept.last)
@@ -63,7 +63,7 @@ def paint_kept(
     t = look.t
     painter.setFont(look.small)
     for kept in facts.kept:
-        box = kept_bar(axis, rows, facts, kept)
+        box = place_kept_bar(axis, rows, facts, kept)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(t.hover))
         painter.drawRoundedRect(box, 3, 3)
@@ -99,7 +99,7 @@ def _free(rows: TrackRows, axis: Axis, facts: Facts, kept: KeptHand, place: QRec
     room = place.width() + 8
     others = (k for k in facts.kept if k.hand == kept.hand and k.place != kept.place)
     return not any(
-        kept_bar(axis, rows, facts, k).adjusted(-room, 0, room, 0).intersects(place) for k in others
+        place_kept_bar(axis, rows, facts, k).adjusted(-room, 0, room, 0).intersects(place) for k in others
     )
 
 
@@ -111,7 +111,7 @@ def hit_kept(
         if KeptPart.of(name) is not None and box.contains(at):
             return Hit("kept", rows.ident, name)
     for kept in facts.kept:
-        box = kept_bar(axis, rows, facts, kept)
+        box = place_kept_bar(axis, rows, facts, kept)
         if not box.adjusted(-REACH, 0, REACH, 0).contains(at):
             continue
         gaps = {end: abs(x - at.x()) for end, x in zip(ENDS, (box.left(), box.right()), strict=True)}
@@ -138,7 +138,7 @@ def describe_kept_hit(facts: Facts, hit: Hit) -> str:
 
 def change(host: Host, facts: Facts, kept: KeptHand) -> None:
     """Keep a hand from and until other seconds of the clip as it plays, in one step. Raises EditError."""
-    course = course_of(facts.entry)
+    course = get_clip_course(facts.entry)
     if course is None:
         return
     first, last = (round(s, 3) for s in course.moments(np.array([kept.first, kept.last])).tolist())

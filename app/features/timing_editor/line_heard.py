@@ -15,7 +15,7 @@ from app.stage.playback_source import ShownPlayback
 from app.widgets.waveforms import Envelope
 from metagraph.graph.model import Action, Project
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.voice import voice_for_speech
+from metagraph.playback.life.voice import choose_voice
 from metagraph.playback.planning.asked_lines import find_asked_line
 
 Array = NDArray[Any]
@@ -52,7 +52,7 @@ def lay_line(project: Project, ident: str, action: Action, stroke: float) -> Sai
     if ident not in project.lines:
         return None
     speech = _speech(project, ident)
-    voice = voice_for_speech(project.voices, speech)
+    voice = choose_voice(project.voices, speech)
     first = float(voice.accents[0]) if len(voice.accents) else 0.0
     return Said(speech, round(stroke - first, 3))
 
@@ -74,9 +74,7 @@ def find_line_stresses(project: Project, said: Said | None) -> tuple[float, ...]
     """Return the moments a line stresses, seconds of the clip."""
     if said is None:
         return ()
-    return tuple(
-        round(float(t) + said.offset, 3) for t in voice_for_speech(project.voices, said.speech).accents
-    )
+    return tuple(round(float(t) + said.offset, 3) for t in choose_voice(project.voices, said.speech).accents)
 
 
 class Waves:
@@ -107,7 +105,7 @@ def _sound(samples: Array) -> Envelope:
 
 def _peaks(project: Project, said: Said) -> Envelope:
     """Where there is no sound, its syllables are drawn as guessed from the text."""
-    voice = voice_for_speech(project.voices, said.speech)
+    voice = choose_voice(project.voices, said.speech)
     out = Envelope(max(voice.duration, 0.1))
     times = np.arange(int(voice.duration * out.rate) + 1) / out.rate
     loud: Array = voice.strengths if len(voice.strengths) else np.ones(len(voice.peaks))

@@ -13,12 +13,12 @@ from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import TimingLook, lay_out_ruler
 from app.features.timing_editor.rows import RULER, TrackRows
 from app.features.timing_editor.track import Facts, KeptHand
-from app.translation import format_number, lazy_texts, tr, tr_phrase
-from app.widgets.vocabulary import vocabulary_word
+from app.translation import format_number, make_lazy_texts, tr, tr_phrase
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.playback.timing.handles import WORDS
 from metagraph.suggest.jumps.snapping import Snap
 
-HINTS = lazy_texts(
+HINTS = make_lazy_texts(
     lambda: {
         "start": tr("where the action starts in the clip"),
         "end": tr("where the action ends in the clip"),
@@ -154,7 +154,7 @@ def paint_stretched_hand(
     if rows is not None and kept.hand in facts[ident].hands:
         painter.setPen(QPen(QColor(look.t.text), 1.4, Qt.PenStyle.DashLine))
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawRoundedRect(kept_rows.kept_bar(axis, rows, facts[ident], kept), 3, 3)
+        painter.drawRoundedRect(kept_rows.place_kept_bar(axis, rows, facts[ident], kept), 3, 3)
 
 
 def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
@@ -168,7 +168,7 @@ def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
         return tr(
             "{handle}{number}{own}: {hint}.\nDrag to move it, with Alt to avoid snapping. "
             "Double-click its number to type it.",
-            handle=vocabulary_word(WORDS[hit.name]),
+            handle=get_vocabulary_word(WORDS[hit.name]),
             number=number,
             own=own,
             hint=HINTS[hit.name],
@@ -177,7 +177,7 @@ def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
         return tr(
             "{name}: drag to move it. Drag with Shift to slip it: the same length plays another "
             "part of the clip.",
-            name=vocabulary_word(hit.name),
+            name=get_vocabulary_word(hit.name),
         )
     if hit.what == "stay":
         return tr(

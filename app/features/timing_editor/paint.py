@@ -16,7 +16,7 @@ from app.features.timing_editor.rows import GUTTER, RIGHT, RULER, TITLES, TrackR
 from app.features.timing_editor.track import Facts, describe_handle
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import format_number, tr
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from app.widgets.waveforms import join_columns, paint_columns
 
 Array = NDArray[Any]
@@ -98,7 +98,7 @@ def paint_row_names(painter: QPainter, look: TimingLook, rows: TrackRows, facts:
         painter.drawText(
             QRectF(26, y, GUTTER - 28, line),
             MIDDLE,
-            look.elided(vocabulary_word(curve.name), GUTTER - 28, True),
+            look.elided(get_vocabulary_word(curve.name), GUTTER - 28, True),
         )
         y += line
 
@@ -200,8 +200,8 @@ def paint_phase_blocks(
         painter.drawRoundedRect(box, 3, 3)
         inner = QRectF(max(left, axis.left) + 6, rect.top(), 0, rect.height())
         inner.setRight(min(right, axis.left + axis.width) - 4)
-        full = f"{vocabulary_word(name)} {format_number(last - first, '.2f')} s"
-        words = next((w for w in (full, vocabulary_word(name)) if look.wide(w) <= inner.width()), "")
+        full = f"{get_vocabulary_word(name)} {format_number(last - first, '.2f')} s"
+        words = next((w for w in (full, get_vocabulary_word(name)) if look.wide(w) <= inner.width()), "")
         painter.setPen(QColor(INK))
         painter.drawText(inner, MIDDLE, words)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from PySide6.QtCore import QRectF
 
-from app.translation import lazy_texts, tr
+from app.translation import make_lazy_texts, tr
 
 RULER, TITLE = 22.0, 20.0
 GUTTER = 86.0  # pixels at the left in which rows are named
@@ -27,7 +27,7 @@ SIZES: dict[str, tuple[float, float, float]] = {
 }
 MOST = {"poses": 150.0, "line": 60.0, "stance": 64.0}
 JOINT = 13.0  # pixels of a joint in the dope sheet
-TITLES = lazy_texts(
+TITLES = make_lazy_texts(
     lambda: {
         "poses": tr("poses"),
         "line": tr("line"),

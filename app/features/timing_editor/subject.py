@@ -33,7 +33,7 @@ from app.stage.thumbnails import Thumbnails
 from app.translation import tr
 from app.widgets.memo import Once
 from metagraph.graph import anatomy, edits
-from metagraph.graph.clip_source import course_of
+from metagraph.graph.clip_source import get_clip_course
 from metagraph.graph.editing.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.graph.model import Project
 from metagraph.graph.repeating import seconds_played
@@ -272,7 +272,7 @@ class Subject(QObject):
     def hold_here(self, seconds: float = HELD) -> None:
         """Hold the first action's clip at the playhead for a while longer. Raises EditError."""
         facts, now = next(iter(self.facts().values()), None), self.playhead()
-        course = course_of(facts.entry) if facts is not None else None
+        course = get_clip_course(facts.entry) if facts is not None else None
         if facts is None or course is None:
             return
         clip = facts.action.clip
@@ -285,7 +285,7 @@ class Subject(QObject):
         playhead to the end of its hold, at least for `KEPT` seconds. Raises EditError.
         """
         facts, now = next(iter(self.facts().values()), None), self.playhead()
-        course = course_of(facts.entry) if facts is not None else None
+        course = get_clip_course(facts.entry) if facts is not None else None
         if facts is None or course is None:
             return
         clip, part = facts.action.clip, self.session.transport.part

@@ -20,12 +20,12 @@ from PySide6.QtWidgets import (
 from app.features.timing_editor.kept_rows import find_kept_seconds, set_number
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
-from app.look.names import names_in_tooltip
-from app.look.theme import KIND_MARKS, theme
+from app.look.names import describe_name_in_tooltip
+from app.look.theme import KIND_MARKS, get_theme
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_plural
-from app.widgets.form_fields import QuietChooser, Seconds, common_value
+from app.widgets.form_fields import QuietChooser, Seconds, find_common_value
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
@@ -130,7 +130,7 @@ class TimingPanel(QWidget):
 
     def refresh(self) -> None:
         """Show what the subject is now."""
-        shown, t = self.subject.facts(), theme(self.session.look.name)
+        shown, t = self.subject.facts(), get_theme(self.session.look.name)
         first = next(iter(shown.values()), None)
         for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
@@ -140,7 +140,9 @@ class TimingPanel(QWidget):
             *((tr(words) if words != name else name, name) for name, words in joints),
         ]
         self.joint.show_entries(offered, self.subject.shows.joint)
-        self.speed.show_value(common_value([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
+        self.speed.show_value(
+            find_common_value([f.entry.retime.speed for f in shown.values()]) if shown else 1.0
+        )
         if first is None:
             self._done()
             self.name.setText("")
@@ -157,7 +159,7 @@ class TimingPanel(QWidget):
         )
         cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
         self.name.setText(f"{KIND_MARKS[first.action.kind]} {cut}")
-        self.name.setToolTip(names_in_tooltip(name, first.action.name) if len(shown) == 1 else name)
+        self.name.setToolTip(describe_name_in_tooltip(name, first.action.name) if len(shown) == 1 else name)
         set_sheet(self.name, f"color: {t.kinds[first.action.kind]}")
         worse = next((f for f in shown.values() if not f.fine), first)
         words = worse.verdict if len(shown) == 1 or worse.fine else f"{worse.name}: {worse.verdict}"

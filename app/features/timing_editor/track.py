@@ -10,17 +10,17 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from app.look.names import plain_action_name
+from app.look.names import make_readable_name
 from app.translation import format_number, tr, tr_phrase
 from app.widgets.memo import Once
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
-from metagraph.graph.clip_source import course_of
+from metagraph.graph.clip_source import get_clip_course
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
 from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, find_blocks, list_handles
-from metagraph.playback.timing.speed_curves import SpeedCurve, find_curves, speed_of
+from metagraph.playback.timing.speed_curves import SpeedCurve, find_curves, measure_action_speed
 from metagraph.suggest.jumps.found import Curves
 from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, find_far_ends
 from metagraph.suggest.stances.stance_distance import (
@@ -134,13 +134,13 @@ class TimingTrack:
         curves, speeds = self._curves.of(
             (action.clip, action.layer, action.limb, joint, tuple(project.roles.items())),
             (entry.motion, project.skeleton),
-            lambda: (find_curves(project, action, joint), speed_of(project, action)[0]),
+            lambda: (find_curves(project, action, joint), measure_action_speed(project, action)[0]),
         )
         graph = project.graphs[action.layer]
         loops = tuple(a for s in (action.stance, action.end_stance) if s for a in graph.of(s, "stance")[:1])
         both = self._far.of(
             (timeless, loops, tuple(graph.weights.items())),
-            (entry.motion, *(end_gaps.motion_of(project, a) for a in loops)),
+            (entry.motion, *(end_gaps.get_action_motion(project, a) for a in loops)),
             lambda: measure_stance_distance(project, action),
         )
         seen = SeenJumps(action, known) if known is not None else None
@@ -149,7 +149,7 @@ class TimingTrack:
         limb = action.limb if action.layer == "arms" else None
         return Facts(
             action,
-            plain_action_name(action.name, stance.name if stance is not None else "", limb),
+            make_readable_name(action.name, stance.name if stance is not None else "", limb),
             entry,
             project.span(action),
             list_handles(project, action),
@@ -167,7 +167,7 @@ class TimingTrack:
 
 def list_kept_hands(project: Project, entry: ClipEntry) -> tuple[KeptHand, ...]:
     """Return where hands are kept on the body."""
-    course = course_of(entry) if entry.retime.contacts else None
+    course = get_clip_course(entry) if entry.retime.contacts else None
     if course is None:
         return ()
     roles, names = (
@@ -184,7 +184,7 @@ def list_kept_hands(project: Project, entry: ClipEntry) -> tuple[KeptHand, ...]:
 
 def list_stays(entry: ClipEntry) -> tuple[Stay, ...]:
     """Return where a clip is held."""
-    course = course_of(entry) if entry.retime.holds else None
+    course = get_clip_course(entry) if entry.retime.holds else None
     if course is None:
         return ()
     return tuple(Stay(hold, *ends) for hold, ends in zip(entry.retime.holds, course.stays, strict=True))
@@ -192,7 +192,7 @@ def list_stays(entry: ClipEntry) -> tuple[Stay, ...]:
 
 def describe_handle(handle: Handle) -> str:
     """Return a handle's name and number: "blend in 0.20"."""
-    return f"{vocabulary_word(WORDS[handle.name])} {format_number(handle.number, '.2f')}"
+    return f"{get_vocabulary_word(WORDS[handle.name])} {format_number(handle.number, '.2f')}"
 
 
 def _verdict(project: Project, action: Action, seen: SeenJumps | None) -> tuple[str, bool]:

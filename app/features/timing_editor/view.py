@@ -27,7 +27,7 @@ from app.features.timing_editor.drags.loop import LoopDrag
 from app.features.timing_editor.drags.pan import Panning
 from app.features.timing_editor.drags.scrub import Scrubbing
 from app.features.timing_editor.drags.stay import StayDrag
-from app.features.timing_editor.drags.timing import TimingDrag, block_change, handle_change
+from app.features.timing_editor.drags.timing import TimingDrag, handle_change, make_block_change
 from app.features.timing_editor.hits import Hit, find_timing_hit
 from app.features.timing_editor.kept_rows import hit_kept, paint_kept
 from app.features.timing_editor.rows import (
@@ -40,15 +40,15 @@ from app.features.timing_editor.rows import (
 )
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.track import Facts, KeptHand, describe_handle
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.stage.session import StageSession
 from app.stage.transport import Transport
 from app.translation import tr, tr_noop
 from app.widgets.gesture import PointerHand
 from app.widgets.memo import Once
-from app.widgets.vocabulary import vocabulary_word
-from metagraph.suggest.jumps.snapping import Snap, snaps_of
+from app.widgets.vocabulary import get_vocabulary_word
+from metagraph.suggest.jumps.snapping import Snap, list_snaps
 
 ZOOM = 1.2
 TEXT = tr_noop(
@@ -163,7 +163,7 @@ class TimingView(QWidget):
         small = QFont(self.font())
         small.setPixelSize(13)
         small.setFeature(QFont.Tag("tnum"), 1)
-        return paint.TimingLook(theme(self.session.look.name), small)
+        return paint.TimingLook(get_theme(self.session.look.name), small)
 
     def _picture(self) -> tuple[QPixmap, dict[str, dict[str, QRectF]]]:
         """Return what only an edit, zooming or a new size changes, and where the numbers stand."""
@@ -267,7 +267,7 @@ class TimingView(QWidget):
     def _handle_drag(self, facts: Facts, name: str) -> TimingDrag:
         grip = next(h.at for h in facts.handles if h.name == name)
         project, now = self.document.project, self.subject.playhead()
-        snaps = snaps_of(
+        snaps = list_snaps(
             project, facts.action, name, facts.seen, facts.speeds, self.subject.stresses(facts), now
         )
 
@@ -287,13 +287,13 @@ class TimingView(QWidget):
             ends = next(((b.first, b.last) for b in shown.blocks if b.name == name), shown.span)
             return tr(
                 "{what} {start:.2f} to {end:.2f} s",
-                what=vocabulary_word(name) if name else tr("plays"),
+                what=get_vocabulary_word(name) if name else tr("plays"),
                 start=ends[0],
                 end=ends[1],
             )
 
-        snaps = snaps_of(self.document.project, facts.action, "ready", None, facts.speeds) if name else ()
-        return TimingDrag(self, facts, first, snaps, block_change(self.idents(), name), words)
+        snaps = list_snaps(self.document.project, facts.action, "ready", None, facts.speeds) if name else ()
+        return TimingDrag(self, facts, first, snaps, make_block_change(self.idents(), name), words)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         free = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)

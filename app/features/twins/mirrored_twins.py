@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from app.project.jobs import WindowJob
 from app.translation import tr, tr_error, tr_plural
-from metagraph.common.file_names import file_stem
+from metagraph.common.file_names import make_file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import Loaded
-from metagraph.formats.store import relative
+from metagraph.formats.store import make_path_relative
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.mirroring import TwinClip, make_twin_clips, mirror_clips, place_twins
@@ -94,13 +94,18 @@ def write_twin(twin: TwinClip, folder: Path) -> Loaded:
     """
     place = folder / FOLDER
     place.mkdir(exist_ok=True)
-    stem = file_stem(twin.name, "clip")
+    stem = make_file_stem(twin.name, "clip")
     path, n = place / f"{stem}.glb", 2
     while path.exists():
         path, n = place / f"{stem}_{n}.glb", n + 1
     write_glb(path, [twin.motion])
     (read,) = read_clips(path, REPAIRS)  # it is what it should be, so nothing of it is repaired
-    return relative(path, folder), 0, digest(path), adopt(read.renamed(twin.name), twin.motion.skeleton)
+    return (
+        make_path_relative(path, folder),
+        0,
+        digest(path),
+        adopt(read.renamed(twin.name), twin.motion.skeleton),
+    )
 
 
 def with_twins(project: Project, made: list[tuple[TwinClip, Loaded]]) -> Project:

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.welcome.welcome_pictures import PICTURES
-from app.look.theme import theme
+from app.look.theme import get_theme
 from app.project.document import Document
 from app.project.files import Files
 from app.stage.session import StageSession
@@ -73,7 +73,7 @@ class WelcomeCard(QAbstractButton):
         return QSize(290, 170)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        t, painter = theme(self.session.look.name), QPainter(self)
+        t, painter = get_theme(self.session.look.name), QPainter(self)
         words = QRectF(self.rect()).adjusted(14, 0, -14, -12)
         bold, flags = QFont(self.font()), Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
         bold.setWeight(QFont.Weight.DemiBold)
@@ -100,7 +100,7 @@ class WelcomeCard(QAbstractButton):
         state = (top, look, lit, self.hasFocus(), self.isEnabled(), size.toTuple(), ratio)
 
         def draw() -> QPixmap:
-            t, out = theme(look), QPixmap(size * ratio)
+            t, out = get_theme(look), QPixmap(size * ratio)
             out.setDevicePixelRatio(ratio)
             out.fill(Qt.GlobalColor.transparent)
             painter = QPainter(out)

@@ -15,10 +15,16 @@ import msgspec
 from metagraph.common.file_names import make_file_stems
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.common.xml_text import describe_replaced
-from metagraph.engines.engine_machine import EngineState, Machine, animations, machines, write_machine_glb
+from metagraph.engines.engine_machine import (
+    EngineState,
+    Machine,
+    list_machines,
+    make_animations,
+    write_machine_glb,
+)
 from metagraph.engines.engine_names import name_files, write_word
 from metagraph.engines.targets.losses import MACHINE
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import describe_error
 from metagraph.formats.atomic import write_atomically
@@ -27,7 +33,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.graph.requests import RequestError
 from metagraph.playback.bml.writer import write_bml
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 # --- BML
 
@@ -41,7 +47,7 @@ def list_blocks(project: Project) -> Iterator[tuple[str, tuple[a.AnyRequest, ...
         yield f"line {ident}", (said, *(x for x in line.asks if not isinstance(x, a.Bml)))
 
 
-def vocabulary(project: Project) -> dict[str, Any]:
+def make_block_vocabulary(project: Project) -> dict[str, Any]:
     """Return the words blocks may use: lexemes (tags and names) by layer and stance, postures, speech."""
     gestures: dict[str, Any] = {}
     for layer in LAYERS:
@@ -82,7 +88,9 @@ def write_blocks(order: ExportOrder) -> ExportedFiles:
         write_atomically(path, content)
         files.append(path)
     words = order.folder / f"{order.stem}.vocabulary.json"
-    write_atomically(words, json.dumps(vocabulary(order.project), indent=1, ensure_ascii=False).encode())
+    write_atomically(
+        words, json.dumps(make_block_vocabulary(order.project), indent=1, ensure_ascii=False).encode()
+    )
     none = (
         ()
         if files
@@ -152,10 +160,10 @@ def write_smartbody(order: ExportOrder) -> ExportedFiles:
     """Write the map, and a BVH for each animation it names and each posture."""
     from metagraph.formats.bvh.file import write_bvh
 
-    built = machines(order.project)
+    built = list_machines(order.project)
     script = order.folder / f"{order.stem}_gestures.py"
     wanted = {s.name for m in built for s in m.states if s.action.kind in ("gesture", "stance")}
-    clips = [clip for clip in animations(order.project, built) if clip.name in wanted]
+    clips = [clip for clip in make_animations(order.project, built) if clip.name in wanted]
     idents = {s.name: s.action.id for m in built for s in m.states}
     names = name_files({clip.name: idents[clip.name] for clip in clips})
     write_atomically(script, format_gesture_map(order.stem, built, names).encode())
@@ -174,14 +182,14 @@ FPS = 30.0  # frames a second that "from" and "to" count
 
 def _held(project: Project, state: EngineState) -> tuple[float, float, float]:
     """Return from when to when a gesture's animation may be held, and how long it is, seconds."""
-    action, found = state.action, phases(project, state.action)
+    action, found = state.action, find_phases(project, state.action)
     cycle = cycle_of(action.kind, action.timing, found.start, found.end)
     if cycle > 0:
         return cycle, max(cycle, state.seconds - cycle), state.seconds
     return found.stroke_end - found.start, found.relax - found.start, found.end - found.start
 
 
-def gestures(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
+def make_gesture_file(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return gesture.json: each gesture's way in, its hold, which repeats, and its way out; frames."""
     out: dict[str, Any] = {}
     for machine in built:
@@ -200,11 +208,11 @@ def gestures(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
 
 def write_sumerian(order: ExportOrder) -> ExportedFiles:
     """Write gesture.json and the GLB with its animations."""
-    built = machines(order.project)
+    built = list_machines(order.project)
     table, glb = order.folder / "gesture.json", order.folder / f"{order.stem}.glb"
-    body, notes = mesh_of(order)
+    body, notes = find_ordered_mesh(order)
     write_machine_glb(order.project, built, glb, body)
-    write_atomically(table, json.dumps(gestures(order.project, built), indent=1).encode())
+    write_atomically(table, json.dumps(make_gesture_file(order.project, built), indent=1).encode())
     return ExportedFiles((table, glb), notes)
 
 

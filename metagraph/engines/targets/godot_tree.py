@@ -35,9 +35,9 @@ from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from metagraph.common.wording import phrase, plural_phrase
-from metagraph.engines.engine_machine import Arrow, EngineState, Machine, machines, write_machine_glb
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, list_machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
@@ -88,7 +88,7 @@ class _Resources:
         return "\n".join((*lines, "[resource]", *fields, ""))
 
 
-def tree(project: Project, built: tuple[Machine, ...], version: Version) -> str:
+def write_animation_tree(project: Project, built: tuple[Machine, ...], version: Version) -> str:
     """Return the AnimationTree's root as the text of a .tres file."""
     out = _Resources(version)
     filters = {m.layer: m.joints for m in built} if version == 4 else find_owned_joints(project, built)
@@ -101,7 +101,9 @@ def tree(project: Project, built: tuple[Machine, ...], version: Version) -> str:
     for column, machine in enumerate(built, 1):
         layer, adder = machine.layer, f"add_{machine.layer}"
         paths = ", ".join(
-            json.dumps(p, ensure_ascii=False) for j in filters[layer] for p in paths_of(project, j, version)
+            json.dumps(p, ensure_ascii=False)
+            for j in filters[layer]
+            for p in list_track_paths(project, j, version)
         )
         add = out.add("AnimationNodeAdd2", "filter_enabled = true", f"filters = [{paths}]")
         fields += [
@@ -131,18 +133,18 @@ def find_owned_joints(project: Project, built: tuple[Machine, ...]) -> dict[Laye
     return {layer: tuple(joints) for layer, joints in out.items()}
 
 
-def paths_of(project: Project, joint: str, version: Version) -> tuple[str, ...]:
+def list_track_paths(project: Project, joint: str, version: Version) -> tuple[str, ...]:
     """Return the paths that a joint's tracks may have in an imported scene."""
     assert project.skeleton is not None
     name = re.sub(r"[:/]", "_", joint)
     node = ("Armature/" if sum(p < 0 for p in project.skeleton.parents) > 1 else "") + (
         "Skeleton3D" if version == 4 else "Skeleton"
     )
-    names = (name,) if version == 4 else (name, godot3_name(joint))
+    names = (name,) if version == 4 else (name, make_godot3_name(joint))
     return tuple(f"{node}:{n}" for n in dict.fromkeys(names))
 
 
-def godot3_name(joint: str) -> str:
+def make_godot3_name(joint: str) -> str:
     """Return a joint's name as Godot 3 imports it unless told otherwise: LeftThumb1 -> left_thumb_1."""
     word = (
         r"(?<![A-Z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2})|(?<![0-9])(?=[0-9])|(?<=[0-9])(?=[^0-9][a-z0-9])"
@@ -240,15 +242,15 @@ def _places(machine: Machine) -> Iterator[tuple[EngineState, Place]]:
 def write(order: ExportOrder) -> ExportedFiles:
     """Write both trees, the GLB and a guide."""
     project, stem = order.project, order.stem
-    built = machines(project, spell_for_godot)
+    built = list_machines(project, spell_for_godot)
     glb = order.folder / f"{stem}.glb"
-    body, notes = mesh_of(order)
+    body, notes = find_ordered_mesh(order)
     order.tell(0, 2, "clips")
     write_machine_glb(project, built, glb, body)
     order.tell(1, 2, "trees")
     texts = {
-        f"{stem}.tres": tree(project, built, 4),
-        f"{stem}.godot3.tres": tree(project, built, 3),
+        f"{stem}.tres": write_animation_tree(project, built, 4),
+        f"{stem}.godot3.tres": write_animation_tree(project, built, 3),
         f"{stem}.godot.md": write_godot_guide(stem, built),
     }
     for name, text in texts.items():

@@ -14,9 +14,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import EngineState, Machine, animations, machines
+from metagraph.engines.engine_machine import EngineState, Machine, list_machines, make_animations
 from metagraph.engines.targets.losses import MACHINE
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
@@ -118,7 +118,7 @@ def _value(value: Any) -> dict[str, Any]:
     return {"node": value, "socket": "value"}
 
 
-def behaviour(
+def make_interactivity(
     built: tuple[Machine, ...], places: Mapping[str, int], seconds: Mapping[str, float]
 ) -> dict[str, Any]:
     """Return the KHR_interactivity object. places, seconds: of the animations, by state name."""
@@ -224,19 +224,21 @@ def write(order: ExportOrder) -> ExportedFiles:
 
     project, glb = order.project, order.folder / f"{order.stem}.glb"
     assert project.skeleton is not None
-    built = machines(project)
-    body, notes = mesh_of(order)
+    built = list_machines(project)
+    body, notes = find_ordered_mesh(order)
     order.tell(0, 2, "clips")
-    clips = animations(project, built)
+    clips = make_animations(project, built)
     joints = find_joints_of_layers(project, built)
     moved = {s.name: joints[m.layer] for m in built for s in m.states}
-    chart = behaviour(built, {c.name: n for n, c in enumerate(clips)}, {c.name: c.duration for c in clips})
+    chart = make_interactivity(
+        built, {c.name: n for n, c in enumerate(clips)}, {c.name: c.duration for c in clips}
+    )
     order.tell(1, 2, "graph")
     write_glb(
         glb,
         clips,
         body,
-        engine=ForEngine(anatomy.base_pose(project), moved, {"KHR_interactivity": chart}),
+        engine=ForEngine(anatomy.get_base_pose(project), moved, {"KHR_interactivity": chart}),
     )
     events = order.folder / f"{order.stem}.events.json"
     names = {f"{m.layer}.action.{s.name}": s.action.name for m in built for s in m.states if not s.loop}

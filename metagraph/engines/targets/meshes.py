@@ -7,7 +7,7 @@ from metagraph.engines.targets.target import ExportOrder
 from metagraph.motion.character_mesh import CharacterMesh
 
 
-def mesh_of(order: ExportOrder) -> tuple[CharacterMesh | None, tuple[str, ...]]:
+def find_ordered_mesh(order: ExportOrder) -> tuple[CharacterMesh | None, tuple[str, ...]]:
     """Return the mesh that goes with an order, and what there is to say about it. Raises FileError."""
     assert order.project.skeleton is not None
     body, notes = place_mesh_on(order.project.skeleton, order.contents.character, order.project.hidden)

@@ -75,7 +75,7 @@ def read_record(folder: Path) -> ExportRecord | None:
         return None
 
 
-def foreign(folder: Path, wanted: Mapping[str, str], target: str, project: str) -> tuple[str, ...]:
+def find_foreign_files(folder: Path, wanted: Mapping[str, str], target: str, project: str) -> tuple[str, ...]:
     """Return the files that would be overwritten although they belong to something else, or were changed.
     wanted: the new files by name, with their digests; one that stands there already, byte for byte, is in
     nobody's way.
@@ -104,7 +104,7 @@ def place_files(
     before = read_record(folder)
     digests = {name: digest(staged.path / name) for name in names}
     refuse_inputs(folder / name for name in (*digests, RECORD))
-    others = foreign(folder, digests, target, project)
+    others = find_foreign_files(folder, digests, target, project)
     if others and not overwrite:
         raise ForeignFilesError(folder, others, before)
     gone = []

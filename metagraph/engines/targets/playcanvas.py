@@ -12,16 +12,16 @@ from collections.abc import Iterator
 from typing import Any
 
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import Arrow, Machine, machines, write_machine_glb
+from metagraph.engines.engine_machine import Arrow, Machine, list_machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf.writer import SCENE
 from metagraph.graph.model import Project
 
 
-def state_graph(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
+def make_anim_state_graph(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return the AnimStateGraph."""
     parameters: dict[str, Any] = {}
     for machine in built:
@@ -89,14 +89,14 @@ def _transitions(machine: Machine, arrow: Arrow) -> Iterator[dict[str, Any]]:
 
 def write(order: ExportOrder) -> ExportedFiles:
     """Write the state graph, a guide to its numbers, and the GLB."""
-    built = machines(order.project)
+    built = list_machines(order.project)
     graph, glb = order.folder / f"{order.stem}.animstategraph.json", order.folder / f"{order.stem}.glb"
-    body, notes = mesh_of(order)
+    body, notes = find_ordered_mesh(order)
     order.tell(0, 2, "clips")
     write_machine_glb(order.project, built, glb, body)
     order.tell(1, 2, "graph")
     write_atomically(
-        graph, json.dumps(state_graph(order.project, built), indent=1, ensure_ascii=False).encode()
+        graph, json.dumps(make_anim_state_graph(order.project, built), indent=1, ensure_ascii=False).encode()
     )
     numbers = order.folder / f"{order.stem}.numbers.json"
     write_atomically(

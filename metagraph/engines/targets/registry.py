@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 
 from metagraph.common.wording import phrase
-from metagraph.engines.export import require_exportable, stem_of
+from metagraph.engines.export import make_export_stem, require_exportable
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.losses import CONVERSATIONS
 from metagraph.engines.targets.next_steps import README, find_next_steps, list_steps, make_readme
@@ -26,7 +26,7 @@ from metagraph.engines.targets.target import (
     Tell,
 )
 from metagraph.formats.atomic import sync_together, write_atomically
-from metagraph.formats.store import writable
+from metagraph.formats.store import make_writable
 from metagraph.graph.model import Project
 
 # Modules of this package that have TARGETS, in the order of the lists shown to the user.
@@ -48,7 +48,7 @@ DEFAULT = "metagraph"
 
 
 @cache
-def targets() -> Mapping[str, ExportTarget]:
+def list_targets() -> Mapping[str, ExportTarget]:
     """Return all targets by name."""
     found: dict[str, ExportTarget] = {}
     for module in MODULES:
@@ -58,9 +58,9 @@ def targets() -> Mapping[str, ExportTarget]:
     return found
 
 
-def target(name: str) -> ExportTarget:
+def get_target(name: str) -> ExportTarget:
     """Return a target. Raises ExportError naming the existing ones."""
-    known = targets()
+    known = list_targets()
     if name in known:
         return known[name]
     near = get_close_matches(name, known, 1)
@@ -70,9 +70,9 @@ def target(name: str) -> ExportTarget:
     )
 
 
-def losses(project: Project, name: str) -> tuple[str, ...]:
+def describe_losses(project: Project, name: str) -> tuple[str, ...]:
     """Return in words what a target loses of a project."""
-    every = (*target(name).losses, CONVERSATIONS)
+    every = (*get_target(name).losses, CONVERSATIONS)
     return tuple(words for loss in every if (words := loss.told(project)) is not None)
 
 
@@ -91,9 +91,9 @@ def write_for_target(
     GLB is asked for and the target cannot unpack it; ForeignFilesError, an ExportError, if foreign files are
     in the way; FileError if a file cannot be written.
     """
-    chosen = target(name)
+    chosen = get_target(name)
     if contents.compress and not chosen.unpacks:
-        able = ", ".join(t.name for t in targets().values() if t.unpacks)
+        able = ", ".join(t.name for t in list_targets().values() if t.unpacks)
         raise ExportError(
             phrase(
                 "'{name}' cannot read a compressed GLB: export it without --compress, or for {able}",
@@ -101,14 +101,14 @@ def write_for_target(
                 able=able,
             )
         )
-    project = writable(project)
+    project = make_writable(project)
     warnings = require_exportable(project)
     place = Path(folder)
     with Staging(place) as staged:
-        order = ExportOrder(project, staged.path, stem_of(project), contents)
+        order = ExportOrder(project, staged.path, make_export_stem(project), contents)
         if tell is not None:
             order = replace(order, tell=tell)
-        lost = losses(project, name)
+        lost = describe_losses(project, name)
         with sync_together():
             made = _with_readme(chosen.write(order), chosen, order, lost)
         names = tuple(path.relative_to(staged.path).as_posix() for path in made.files)
@@ -116,7 +116,7 @@ def write_for_target(
     clips = len(project.uses.keys() | {project.base.clip} - {None})
     files = tuple(place / n for n in names)
     return TargetReport(
-        name, files, clips, lost, (*made.notes, *warnings), list_steps(name, stem_of(project))
+        name, files, clips, lost, (*made.notes, *warnings), list_steps(name, make_export_stem(project))
     )
 
 

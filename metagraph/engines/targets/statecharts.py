@@ -12,11 +12,11 @@ from typing import Any
 from xml.etree import ElementTree as Xml
 
 from metagraph.common.wording import phrase
-from metagraph.common.xml_text import xml_text
-from metagraph.engines.engine_machine import Arrow, EngineState, Machine, machines, write_machine_glb
+from metagraph.common.xml_text import clean_xml_text
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, list_machines, write_machine_glb
 from metagraph.engines.engine_names import write_word
 from metagraph.engines.targets.losses import MACHINE
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
 
@@ -50,7 +50,7 @@ def _ends(machine: Machine, state: EngineState) -> tuple[Arrow | None, float]:
     return done, min(others, default=0.0) if done is not None else 0.0
 
 
-def xstate(name: str, built: tuple[Machine, ...]) -> dict[str, Any]:
+def make_xstate(name: str, built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return the machine as XState 5's `createMachine` takes it. The action `play` says what to play, from
     the loops it begins with on; `missed`, which layer was asked for what cannot be taken up now.
     """
@@ -107,7 +107,7 @@ def _ms(seconds: float) -> str:
 NAMESPACE, OURS = "http://www.w3.org/2005/07/scxml", "urn:metagraph:scxml"
 
 
-def scxml(name: str, built: tuple[Machine, ...]) -> bytes:
+def make_scxml(name: str, built: tuple[Machine, ...]) -> bytes:
     """Return the machine as SCXML 1.0 with the null data model; attributes of our own name animation, loop,
     blend and the action.
     """
@@ -138,7 +138,7 @@ def _state(region: Xml.Element, machine: Machine, state: EngineState) -> None:
     end = (done.leave or 0.0) if done is not None else 0.0
     bound = done is not None and leave > 0
     own = {"my_animation": state.name, "my_loop": str(state.loop).lower(), "my_name": state.action.name}
-    node = _tag(region, "state", id=state.name, **{key: xml_text(text) for key, text in own.items()})
+    node = _tag(region, "state", id=state.name, **{key: clean_xml_text(text) for key, text in own.items()})
     taking = node
     if bound and leave < end:
         node.set("initial", f"{state.name}.bound")
@@ -174,7 +174,7 @@ def _timer(node: Xml.Element, event: str, seconds: float) -> None:
 
 def _write(order: ExportOrder, suffix: str, text: bytes, built: tuple[Machine, ...]) -> ExportedFiles:
     chart, glb = order.folder / f"{order.stem}.{suffix}", order.folder / f"{order.stem}.glb"
-    body, notes = mesh_of(order)
+    body, notes = find_ordered_mesh(order)
     order.tell(0, 2, "clips")
     write_machine_glb(order.project, built, glb, body)
     order.tell(1, 2, "chart")
@@ -184,14 +184,14 @@ def _write(order: ExportOrder, suffix: str, text: bytes, built: tuple[Machine, .
 
 
 def write_xstate(order: ExportOrder) -> ExportedFiles:
-    built = machines(order.project)
-    text = json.dumps(xstate(order.stem, built), indent=1, ensure_ascii=False)
+    built = list_machines(order.project)
+    text = json.dumps(make_xstate(order.stem, built), indent=1, ensure_ascii=False)
     return _write(order, "xstate.json", text.encode(), built)
 
 
 def write_scxml(order: ExportOrder) -> ExportedFiles:
-    built = machines(order.project)
-    return _write(order, "scxml", scxml(order.stem, built), built)
+    built = list_machines(order.project)
+    return _write(order, "scxml", make_scxml(order.stem, built), built)
 
 
 TARGETS = (

@@ -21,12 +21,12 @@ from metagraph.engines.targets.unity_yaml import (
     NOTHING,
     Inline,
     Written,
-    asset,
-    fields,
+    find_joint_path,
     format_yaml_number,
     format_yaml_text,
-    joint_path,
     main_id,
+    make_object_fields,
+    write_asset,
 )
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -68,7 +68,12 @@ def format_clip_asset(
     the pose that is subtracted in an additive layer, None for other layers.
     """
     skeleton, last = clip.skeleton, clip.frames - 1
-    turns = rotation.continuous(clip.rotations[:, list(moving.joints)].astype(np.float64)) * [1, -1, -1, 1]
+    turns = rotation.make_continuous(clip.rotations[:, list(moving.joints)].astype(np.float64)) * [
+        1,
+        -1,
+        -1,
+        1,
+    ]
     curves: dict[int, list[str]] = {1: [], 2: []}  # 1: position, 2: rotation
     bound: list[str] = []
 
@@ -89,7 +94,7 @@ def format_clip_asset(
         numbers = [frames[:, None] / clip.fps, values[rows], into * clip.fps, away * clip.fps]
         written = _write_keys(np.concatenate(numbers, 1), values.shape[2])
         for joint, count in zip(joints, counts, strict=True):
-            path = joint_path(skeleton, joint)
+            path = find_joint_path(skeleton, joint)
             curves[kind].append(_CURVE % ("".join(islice(written, count)), format_yaml_text(path)))
             bound.append(_BOUND % (zlib.crc32(path.encode()), kind))
 
@@ -102,7 +107,9 @@ def format_clip_asset(
     add(1, moving.shifted, shifts * np.array([-1.0, 1, 1]), SHIFT)
     add(2, moving.joints, np.ascontiguousarray(turns.swapaxes(0, 1)), TURN)
     zero = Inline(x=0, y=0, z=0)
-    whole = fields(0, name, serializedVersion=6, m_Legacy=0, m_Compressed=0, m_UseHighQualityCurve=1)
+    whole = make_object_fields(
+        0, name, serializedVersion=6, m_Legacy=0, m_Compressed=0, m_UseHighQualityCurve=1
+    )
     whole |= {
         "m_RotationCurves": Written("\n".join(curves[2])),
         "m_CompressedRotationCurves": [],
@@ -123,7 +130,7 @@ def format_clip_asset(
         "m_HasGenericRootTransform": 0,
         "m_HasMotionFloatCurves": 0,
     }
-    return asset((CLIP, main_id(CLIP), "AnimationClip", whole | {"m_Events": []}))
+    return write_asset((CLIP, main_id(CLIP), "AnimationClip", whole | {"m_Events": []}))
 
 
 def _settings(seconds: float, loop: bool, reference: Inline | None) -> dict[str, Any]:

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import Arrow, EngineState, Machine, animations, machines
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, list_machines, make_animations
 from metagraph.engines.engine_names import name_files
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.unity_clips import Moving, format_clip_asset
 from metagraph.engines.targets.unity_yaml import (
@@ -31,14 +31,14 @@ from metagraph.engines.targets.unity_yaml import (
     STATES,
     TRANSITION,
     Inline,
-    asset,
-    fields,
-    guid,
-    joint_path,
-    local_id,
+    find_joint_path,
     main_id,
-    meta,
+    make_guid,
+    make_local_id,
+    make_object_fields,
     to,
+    write_asset,
+    write_meta,
 )
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
@@ -60,7 +60,7 @@ MOMENT = Loss(
 UNTRIED = phrase("written field by field as Unity writes its own files; not tested in Unity")
 
 
-def controller(
+def write_unity_controller(
     project: Project,
     name: str,
     built: tuple[Machine, ...],
@@ -86,7 +86,9 @@ def controller(
         layers.append(
             _layer(machine.layer, to(MASK, project.name, f"{machine.layer}.mask"), machine.layer != "body")
         )
-    whole = fields(0, name, serializedVersion=5, m_AnimatorParameters=parameters, m_AnimatorLayers=layers)
+    whole = make_object_fields(
+        0, name, serializedVersion=5, m_AnimatorParameters=parameters, m_AnimatorLayers=layers
+    )
     objects: list[Row] = [(CONTROLLER, main_id(CONTROLLER), "AnimatorController", whole)]
     objects += [
         _machine(BASE, [(BASE, 0, 0)], BASE),
@@ -99,14 +101,14 @@ def controller(
             clip = to(CLIP, project.name, f"{clips[state.name]}.anim")
             objects.append(_state(state.name, clip, leaving, state.action.name))
             objects += leaving
-    return asset(*objects)
+    return write_asset(*objects)
 
 
 def _layer(name: str, mask: Inline, adds: bool) -> dict[str, Any]:
     out: dict[str, Any] = {
         "serializedVersion": 5,
         "m_Name": name,
-        "m_StateMachine": Inline(fileID=local_id("layer", name)),
+        "m_StateMachine": Inline(fileID=make_local_id("layer", name)),
         "m_Mask": mask,
     }
     out |= {
@@ -137,7 +139,7 @@ def _machine(layer: str, places: list[tuple[str, int, int]], start: str) -> Row:
     children = [
         {
             "serializedVersion": 1,
-            "m_State": Inline(fileID=local_id(name)),
+            "m_State": Inline(fileID=make_local_id(name)),
             "m_Position": _at(300 + 260 * column, 120 + 60 * row),
         }
         for name, column, row in places
@@ -158,8 +160,13 @@ def _machine(layer: str, places: list[tuple[str, int, int]], start: str) -> Row:
         "m_ExitPosition": _at(50, 220),
         "m_ParentStateMachinePosition": _at(50, 320),
     }
-    own |= {"m_DefaultState": Inline(fileID=local_id(start))}
-    return STATES, local_id("layer", layer), "AnimatorStateMachine", fields(1, layer, 6, **own)
+    own |= {"m_DefaultState": Inline(fileID=make_local_id(start))}
+    return (
+        STATES,
+        make_local_id("layer", layer),
+        "AnimatorStateMachine",
+        make_object_fields(1, layer, 6, **own),
+    )
 
 
 def _state(name: str, motion: Inline, leaving: list[Row], called: str = "") -> Row:
@@ -192,7 +199,12 @@ def _state(name: str, motion: Inline, leaving: list[Row], called: str = "") -> R
         "m_MirrorParameter": "",
         "m_CycleOffsetParameter": "",
     }
-    return STATE, local_id(name), "AnimatorState", fields(1, name, 6, **own, m_TimeParameter="")
+    return (
+        STATE,
+        make_local_id(name),
+        "AnimatorState",
+        make_object_fields(1, name, 6, **own, m_TimeParameter=""),
+    )
 
 
 def _at(x: int, y: int) -> Inline:
@@ -230,7 +242,7 @@ def _transition(arrow: Arrow, value: str, conditions: list[dict[str, Any]], leav
     own: dict[str, Any] = {
         "m_Conditions": conditions,
         "m_DstStateMachine": NOTHING,
-        "m_DstState": Inline(fileID=local_id(arrow.target.name)),
+        "m_DstState": Inline(fileID=make_local_id(arrow.target.name)),
     }
     own |= {
         "m_Solo": 0,
@@ -246,12 +258,12 @@ def _transition(arrow: Arrow, value: str, conditions: list[dict[str, Any]], leav
         "m_HasFixedDuration": 1,
         "m_InterruptionSource": 0,
     }
-    ident = local_id(arrow.source.name, arrow.target.name, arrow.on, value)
+    ident = make_local_id(arrow.source.name, arrow.target.name, arrow.on, value)
     return (
         TRANSITION,
         ident,
         "AnimatorStateTransition",
-        fields(1, "", **own, m_OrderedInterruption=1, m_CanTransitionToSelf=1),
+        make_object_fields(1, "", **own, m_OrderedInterruption=1, m_CanTransitionToSelf=1),
     )
 
 
@@ -259,12 +271,12 @@ def make_avatar_mask(skeleton: Skeleton, machine: Machine) -> bytes:
     """Return a layer's AvatarMask: all joints, those of the layer with weight 1."""
     elements = [{"m_Path": "", "m_Weight": 1}]
     elements += [
-        {"m_Path": joint_path(skeleton, j), "m_Weight": int(name in machine.joints)}
+        {"m_Path": find_joint_path(skeleton, j), "m_Weight": int(name in machine.joints)}
         for j, name in enumerate(skeleton.names)
     ]
     human = "01000000" * 13  # the body parts of humanoid rigs
-    whole = fields(0, machine.layer, m_Mask=human, m_Elements=elements)
-    return asset((MASK, main_id(MASK), "AvatarMask", whole))
+    whole = make_object_fields(0, machine.layer, m_Mask=human, m_Elements=elements)
+    return write_asset((MASK, main_id(MASK), "AvatarMask", whole))
 
 
 def write(order: ExportOrder) -> ExportedFiles:
@@ -273,25 +285,25 @@ def write(order: ExportOrder) -> ExportedFiles:
     """
     from metagraph.formats.gltf.writer import write_glb
 
-    project, built = order.project, machines(order.project)
+    project, built = order.project, list_machines(order.project)
     skeleton = project.skeleton
     assert skeleton is not None
-    body, notes = mesh_of(order)
+    body, notes = find_ordered_mesh(order)
     made: list[Path] = []
 
     def put(name: str, content: bytes, klass: int | None) -> None:
         for path, data in (
             (order.folder / name, content),
-            (order.folder / f"{name}.meta", meta(guid(project.name, name), klass)),
+            (order.folder / f"{name}.meta", write_meta(make_guid(project.name, name), klass)),
         ):
             write_atomically(path, data)
             made.append(path)
 
     states = [state for machine in built for state in machine.states]
-    clips = {clip.name: clip for clip in animations(project, built)}
+    clips = {clip.name: clip for clip in make_animations(project, built)}
     # Not all file systems tell "Wave" from "wave".
     names = {name: file.lower() for name, file in name_files({s.name: s.action.id for s in states}).items()}
-    base = anatomy.base_pose(project)
+    base = anatomy.get_base_pose(project)
     off = np.abs(base.translations - skeleton.rest_translations).max(1) > 1e-6
     shifted = {*np.flatnonzero(off).tolist()}.union(*(clip.translated for clip in clips.values()))
     still = Clip(BASE, skeleton, 30, np.stack([base.rotations] * 2), np.stack([base.translations[:1]] * 2))
@@ -314,7 +326,11 @@ def write(order: ExportOrder) -> ExportedFiles:
                 CLIP,
             )
     seconds = {name: clip.duration for name, clip in clips.items()}
-    put(f"{order.stem}.controller", controller(project, order.stem, built, names, seconds), CONTROLLER)
+    put(
+        f"{order.stem}.controller",
+        write_unity_controller(project, order.stem, built, names, seconds),
+        CONTROLLER,
+    )
     put(f"{order.stem}.unity.md", write_unity_guide(order.stem, skeleton, built).encode(), None)
     if body is not None:
         made.append(order.folder / f"{order.stem}.glb")

@@ -45,22 +45,22 @@ def main_id(klass: int) -> int:
     return klass * 100000
 
 
-def local_id(*words: str) -> int:
+def make_local_id(*words: str) -> int:
     """Return an object's id in its file; the same words give the same id in every export."""
     return 1 + (int.from_bytes(hashlib.sha256("\n".join(words).encode()).digest()[:8], "big") >> 1)
 
 
-def guid(project: str, file: str) -> str:
+def make_guid(project: str, file: str) -> str:
     """Return a file's id in Unity's project."""
     return hashlib.md5(f"{project}\n{file}".encode(), usedforsecurity=False).hexdigest()
 
 
 def to(klass: int, project: str, file: str) -> Inline:
     """Return a reference to a file's main object."""
-    return Inline(fileID=main_id(klass), guid=guid(project, file), type=2)
+    return Inline(fileID=main_id(klass), guid=make_guid(project, file), type=2)
 
 
-def asset(*objects: tuple[int, int, str, Mapping[str, Any]]) -> bytes:
+def write_asset(*objects: tuple[int, int, str, Mapping[str, Any]]) -> bytes:
     """Return a file of objects: class, id, type and fields."""
     lines = ["%YAML 1.1", "%TAG !u! tag:unity3d.com,2011:"]
     for klass, ident, kind, fields in objects:
@@ -68,13 +68,13 @@ def asset(*objects: tuple[int, int, str, Mapping[str, Any]]) -> bytes:
     return ("\n".join(lines) + "\n").encode()
 
 
-def fields(hidden: int, name: str, version: int = 0, **more: Any) -> dict[str, Any]:
+def make_object_fields(hidden: int, name: str, version: int = 0, **more: Any) -> dict[str, Any]:
     """Return the fields that all objects begin with, and their own."""
     first = {"serializedVersion": version} if version else {}
     return {**first, "m_ObjectHideFlags": hidden, **_HEAD, "m_Name": name, **more}
 
 
-def meta(ident: str, klass: int | None) -> bytes:
+def write_meta(ident: str, klass: int | None) -> bytes:
     """Return the `.meta` of a file: of an asset with a main object, of a text where None."""
     native = "" if klass is None else f"  mainObjectFileID: {main_id(klass)}\n"
     kind = "TextScriptImporter" if klass is None else "NativeFormatImporter"
@@ -125,6 +125,6 @@ def format_yaml_text(value: str) -> str:
     return written.removesuffix("...\n").rstrip("\n")
 
 
-def joint_path(skeleton: Skeleton, joint: int) -> str:
+def find_joint_path(skeleton: Skeleton, joint: int) -> str:
     """Return the way to a joint from the object that the skeleton's roots are in."""
     return "/".join(skeleton.names[at] for at in skeleton.chain(joint))

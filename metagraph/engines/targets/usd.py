@@ -15,7 +15,7 @@ import msgspec
 
 from metagraph.common.wording import phrase
 from metagraph.engines.export import list_exported_clips
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.runtimes import write_with_sounds
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.usd.usda import (
@@ -120,7 +120,7 @@ def write(order: ExportOrder) -> ExportedFiles:
     document = msgspec.json.decode(made.files[0].read_bytes())
     project = order.project
     assert project.skeleton is not None
-    body, _ = mesh_of(order)  # what there is to say of it is said already
+    body, _ = find_ordered_mesh(order)  # what there is to say of it is said already
     resting = document["layers"]["body"]
     first = next(
         (a["clip"] for a in resting["actions"] if a["kind"] == "stance" and a["stance"] == resting["start"]),

@@ -17,22 +17,22 @@ import numpy as np
 
 from metagraph.common.files import read_file
 from metagraph.common.wording import phrase, plural_phrase
-from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
+from metagraph.engines.engine_machine import count_unrepeated, make_clip_as_played
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.losses import PERFORMANCES
-from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import FileError
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
 from metagraph.graph.face.curves import fit_curves_to_face
-from metagraph.graph.face.expression_presets import presets_of
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.face.expression_presets import make_presets
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.roles import REQUIRED
-from metagraph.motion.skeleton import Pose, Skeleton, unique_names
-from metagraph.motion.t_pose import t_pose
+from metagraph.motion.skeleton import Pose, Skeleton, make_names_unique
+from metagraph.motion.t_pose import make_t_pose
 
 META = "vrm_meta.json"
 LICENCE = "https://vrm.dev/licenses/1.0/"
@@ -57,7 +57,7 @@ _USUAL = ("Proximal", "Intermediate", "Distal")
 _EYE_REACH = 30.0
 
 
-def humanoid(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
+def find_vrm_bones(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
     """Return VRM's bone -> joint. A bone without the one VRM wants above it is left out."""
     out: dict[str, int] = {}
     for role, joint in find_known_roles(skeleton, roles).items():
@@ -129,12 +129,12 @@ def _remedy() -> str:
     return f"Its fields are VRM 1.0's: {', '.join(fields)}."
 
 
-def extension(
+def make_vrm_extension(
     project: Project, bones: Mapping[str, int], targets: tuple[str, ...], mesh: int, meta: dict[str, Any]
 ) -> dict[str, Any]:
     """Return `VRMC_vrm`. targets: the mesh's; mesh: its node."""
     presets: dict[str, Any] = {}
-    for name, mix in presets_of(targets, project.face.channels).items():
+    for name, mix in make_presets(targets, project.face.channels).items():
         binds = [{"node": mesh, "index": targets.index(t), "weight": w} for t, w in mix.items()]
         presets[name] = {"morphTargetBinds": binds, "isBinary": False}
         presets[name] |= dict.fromkeys(("overrideBlink", "overrideLookAt", "overrideMouth"), "none")
@@ -180,10 +180,10 @@ def find_vrm_pose(skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
             )
         )
     _, at = skeleton.globals(skeleton.rest)
-    axes = axes_of(skeleton, roles, at)
+    axes = find_body_axes(skeleton, roles, at)
     if axes[2] @ [0, 0, 1] < 0.95:
         raise ExportError(phrase("a VRM character must face +Z in its rest pose, and this one does not"))
-    return _grounded(t_pose(skeleton, roles, axes[0]), skeleton, roles)
+    return _grounded(make_t_pose(skeleton, roles, axes[0]), skeleton, roles)
 
 
 def _write(order: ExportOrder) -> ExportedFiles:
@@ -191,19 +191,19 @@ def _write(order: ExportOrder) -> ExportedFiles:
     assert skeleton is not None
     roles = anatomy.project_roles(project)
     stand = find_vrm_pose(skeleton, roles)
-    body, notes = mesh_of(order)
+    body, notes = find_ordered_mesh(order)
     if body is None:
         raise ExportError(
             phrase("VRM needs a character: choose a mesh that fits the clips, then export again")
         )
     order.tell(0, 2, "clips")
-    bones = humanoid(skeleton, roles)
+    bones = find_vrm_bones(skeleton, roles)
     meta, said = meta_of(project, order.contents.base)
     mesh = len(skeleton) + (sum(int(p) < 0 for p in skeleton.parents) > 1)
     used = [project.clips[c] for c in project.uses if c in project.clips]
-    played = [clip_as_played(project, entry) for entry in used]
+    played = [make_clip_as_played(project, entry) for entry in used]
     clips = [fit_curves_to_face(project, motion) for motion in played if motion is not None]
-    names = unique_names([clip.name for clip in clips])
+    names = make_names_unique([clip.name for clip in clips])
     path = order.folder / f"{order.stem}.vrm"
     write_glb(
         path,
@@ -211,7 +211,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
         replace(body, skeleton=skeleton),
         engine=ForEngine(
             stand=stand,
-            extensions={"VRMC_vrm": extension(project, bones, body.morphs, mesh, meta)},
+            extensions={"VRMC_vrm": make_vrm_extension(project, bones, body.morphs, mesh, meta)},
         ),
     )
     order.tell(2, 2, "done")

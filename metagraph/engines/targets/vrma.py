@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 
 from metagraph.common.file_names import make_file_stems
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import clip_as_played, count_unrepeated
+from metagraph.engines.engine_machine import count_unrepeated, make_clip_as_played
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.losses import PERFORMANCES
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
-from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_pose, humanoid
+from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_bones, find_vrm_pose
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
-from metagraph.graph.face.expression_presets import measure_presets, presets_of
+from metagraph.graph.face.expression_presets import make_presets, measure_presets
 from metagraph.graph.model import Action, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -46,7 +46,7 @@ def cut_action(project: Project, action: Action) -> Clip | None:
     if entry.motion is None:
         return None
     if action.timing.repeat > 0 and len(project.uses[entry.id]) == 1:
-        return clip_as_played(project, entry)
+        return make_clip_as_played(project, entry)
     motion = entry.motion.dense
     start, end = project.span(action)
     first, last = round(start * motion.fps), round(end * motion.fps)
@@ -65,7 +65,7 @@ def add_face(clip: Clip, bones: Mapping[str, int], stand: Pose) -> tuple[Clip, P
     if clip.morphs and clip.weights is not None:
         weights = {name: clip.weights[:, n] for n, name in enumerate(clip.morphs)}
         presets: dict[str, Any] = {}
-        for preset, values in measure_presets(presets_of(clip.morphs), weights).items():
+        for preset, values in measure_presets(make_presets(clip.morphs), weights).items():
             if float(np.max(values)) >= _SEEN:
                 presets[preset] = {"node": len(clip.skeleton) + len(names)}
                 names.append(f"expression {preset}")
@@ -138,7 +138,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
     assert skeleton is not None
     roles = anatomy.project_roles(project)
     stand = find_vrm_pose(skeleton, roles)
-    bones = humanoid(skeleton, roles)
+    bones = find_vrm_bones(skeleton, roles)
     stated = {bone: {"node": joint} for bone, joint in bones.items() if bone not in _EYES}
     actions = list(project.actions())
     made, listed = [], []

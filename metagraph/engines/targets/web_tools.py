@@ -43,7 +43,7 @@ LONGEST = 120.0  # seconds that fetching, and bundling, may take
 LARGEST = 64 << 20  # bytes of one of their files
 
 
-def web_tools_folder() -> Path | None:
+def find_web_tools_folder() -> Path | None:
     """Return the folder they are kept in between exports; None if nobody's home is known."""
     return cache_folder(f"web-{THREE}-{ESBUILD}")
 
@@ -113,7 +113,7 @@ def import_map(at: str, *, checked: bool) -> str:
 
 
 def _modules() -> Path | None:
-    place = web_tools_folder()
+    place = find_web_tools_folder()
     return place / "node_modules" if place is not None and programs.is_own(place) else None
 
 
@@ -138,7 +138,7 @@ def _esbuild() -> Path | None:
 
 def _fetch() -> bool:
     """Let npm fetch both; return whether it said that it did. Their own scripts are not run."""
-    npm, place = programs.system_program("npm"), web_tools_folder()
+    npm, place = programs.find_system_program("npm"), find_web_tools_folder()
     if npm is None or place is None or not programs.make_own(place):
         return False
     command = [

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
+from metagraph.engines.translation.gesture_word_lists import make_gesture_word_modules
 from metagraph.engines.translation.listing import RUNTIMES
 from metagraph.engines.translation.translating import translate_runtimes
 
@@ -21,7 +21,7 @@ def mark_generated(paths: Iterable[Path]) -> str:
 
 def main() -> int:
     """Write what differs; say what."""
-    files = translate_runtimes() | gesture_word_lists()
+    files = translate_runtimes() | make_gesture_word_modules()
     for path, text in (files | {ATTRIBUTES: mark_generated(files)}).items():
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.braces import Braces
-from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items
+from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, put_in_brackets
 from metagraph.engines.translation.lifting import lift_comprehensions
 from metagraph.engines.translation.printing import (
     ALONE,
@@ -120,7 +120,7 @@ class Cpp(Braces):
         self.out.append("")
         explicit = "explicit " if sum(f.default is None for f in node.fields) <= 1 else ""
         given = [self.parameter(f, "_") for f in node.fields]
-        self.line((f"{explicit}{node.name}", bracket_items("(", given, ")")))
+        self.line((f"{explicit}{node.name}", put_in_brackets("(", given, ")")))
         values = [f"{self.word(f.name)}({self.moved(f)})" for f in node.fields]
         self.depth += 1
         self.line((": ", Group(Nest(_commas(values))), " {}"))
@@ -172,7 +172,7 @@ class Cpp(Braces):
         lead = "" if record is not None and not of else "inline "
         return (
             f"{lead}{self.type(node.returns)} {of}{self.word(node.name)}",
-            bracket_items("(", given, ")"),
+            put_in_brackets("(", given, ")"),
             tail,
         )
 
@@ -241,9 +241,9 @@ class Cpp(Braces):
     def unpacked(self, node: x.Unpack) -> None:
         names = [self.plain(t) for t in node.targets]
         lead = (
-            ("auto ", bracket_items("[", names, "]"))
+            ("auto ", put_in_brackets("[", names, "]"))
             if node.new
-            else ("std::tie", bracket_items("(", names, ")"))
+            else ("std::tie", put_in_brackets("(", names, ")"))
         )
         self.line((*lead, " = ", self.plain(node.value), ";"), node.beside)
 
@@ -289,11 +289,11 @@ class Cpp(Braces):
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
-                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
+                    put_in_brackets("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.New():
                 self.type(node.type)
-                given = bracket_items("(", [self.plain(a) for a in node.arguments], ")")
+                given = put_in_brackets("(", [self.plain(a) for a in node.arguments], ")")
                 return (f"lang::made<{node.type.name}>", given), ALONE
             case x.Replaced():
                 return self.replaced(node), ALONE
@@ -308,16 +308,16 @@ class Cpp(Braces):
             case x.Slice():
                 ends = ["0" if node.first is None else self.plain(node.first)]
                 ends += [] if node.last is None else [self.plain(node.last)]
-                return ("lang::part", bracket_items("(", [self.plain(node.of), *ends], ")")), ALONE
+                return ("lang::part", put_in_brackets("(", [self.plain(node.of), *ends], ")")), ALONE
             case x.Gathered():
                 return self.gathered(node), ALONE
             case x.Mapped():
                 pairs: list[Document] = [
                     ("{", self.plain(k), ", ", self.plain(v), "}") for k, v in node.items
                 ]
-                return (self.type(node.type), bracket_items("{", pairs, "}")), ALONE
+                return (self.type(node.type), put_in_brackets("{", pairs, "}")), ALONE
             case x.Formatted():
-                return ("lang::text", bracket_items("(", [self.piece(p) for p in node.parts], ")")), ALONE
+                return ("lang::text", put_in_brackets("(", [self.piece(p) for p in node.parts], ")")), ALONE
         return super().expression(node)
 
     def named(self, node: x.Named) -> tuple[Document, int]:
@@ -410,17 +410,17 @@ class Cpp(Braces):
             self.plain(changes[f.name]) if f.name in changes else (of, f"->{self.word(f.name)}")
             for f in self.record_of(node.type).fields
         ]
-        return (f"lang::made<{node.type.name}>", bracket_items("(", given, ")"))
+        return (f"lang::made<{node.type.name}>", put_in_brackets("(", given, ")"))
 
     def gathered(self, node: x.Gathered) -> Document:
         kind = self.type(node.type)
         if not node.spread:
-            return (kind, bracket_items("{", [self.plain(i) for i in node.items], "}"))
+            return (kind, put_in_brackets("{", [self.plain(i) for i in node.items], "}"))
         parts: list[Document] = [
             self.plain(item) if n in node.spread else (f"{kind}{{", self.plain(item), "}")
             for n, item in enumerate(node.items)
         ]
-        return ("lang::together", bracket_items("(", parts, ")"))
+        return ("lang::together", put_in_brackets("(", parts, ")"))
 
 
 def _commas(parts: Sequence[str]) -> Document:

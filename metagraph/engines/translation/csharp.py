@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.braces import Braces
-from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items
+from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, put_in_brackets
 from metagraph.engines.translation.printing import (
     ALONE,
     CHOICE,
@@ -19,8 +19,8 @@ from metagraph.engines.translation.printing import (
     TIMES,
     UNARY,
     TranslationError,
-    camel,
-    pascal,
+    make_camel_case,
+    make_pascal_case,
 )  # fmt: skip
 
 VALUES = ("int", "bits", "float", "bool", "tuple")
@@ -75,7 +75,7 @@ class CSharp(Braces):
 
     def rules(self, module: str) -> str:
         """Return the static class of a module's functions and constants."""
-        return pascal(self.known(module)) + "Rules"
+        return make_pascal_case(self.known(module)) + "Rules"
 
     # --- declarations
 
@@ -104,15 +104,19 @@ class CSharp(Braces):
         self.line("{")
         self.depth += 1
         for f in node.fields:
-            self.line(f"public {'' if node.changes else 'readonly '}{self.type(f.type)} {pascal(f.name)};")
+            self.line(
+                f"public {'' if node.changes else 'readonly '}{self.type(f.type)} {make_pascal_case(f.name)};"
+            )
         self.out.append("")
-        self.line((f"public {node.name}", bracket_items("(", [self.parameter(f) for f in node.fields], ")")))
+        self.line(
+            (f"public {node.name}", put_in_brackets("(", [self.parameter(f) for f in node.fields], ")"))
+        )
         self.line("{")
         self.depth += 1
         for f in node.fields:
-            name = self.word(camel(f.name))
+            name = self.word(make_camel_case(f.name))
             made = self.made_later(f)
-            self.line((f"{pascal(f.name)} = ", (f"{name} ?? ", made) if made else name, ";"))
+            self.line((f"{make_pascal_case(f.name)} = ", (f"{name} ?? ", made) if made else name, ";"))
         self.depth -= 1
         self.line("}")
         for method in node.methods:
@@ -133,11 +137,11 @@ class CSharp(Braces):
 
     def function(self, node: x.Function, access: str = "") -> None:
         self.serial = 0
-        self.taken = {camel(n.name) for n in x.walk(node.body) if isinstance(n, x.Local)}
+        self.taken = {make_camel_case(n.name) for n in x.walk(node.body) if isinstance(n, x.Local)}
         self.comments(node.comments)
         self.documented(node.about)
         access = access or ("public static " if node.public else "private static ")
-        head = f"{access}{self.type(node.returns)} {pascal(node.name)}"
+        head = f"{access}{self.type(node.returns)} {make_pascal_case(node.name)}"
         if node.property:
             self.line(head)
             self.line("{")
@@ -146,8 +150,12 @@ class CSharp(Braces):
             self.depth -= 1
             self.line("}")
             return
-        self.line((head, bracket_items("(", [self.parameter(p) for p in node.parameters], ")")))
-        late = [(self.word(camel(p.name)), made) for p in node.parameters if (made := self.made_later(p))]
+        self.line((head, put_in_brackets("(", [self.parameter(p) for p in node.parameters], ")")))
+        late = [
+            (self.word(make_camel_case(p.name)), made)
+            for p in node.parameters
+            if (made := self.made_later(p))
+        ]
         self.line("{")
         self.depth += 1
         for name, made in late:
@@ -157,9 +165,9 @@ class CSharp(Braces):
         self.line("}")
 
     def parameter(self, node: x.Parameter) -> Document:
-        name = f"{self.type(node.type)} {self.word(camel(node.name))}"
+        name = f"{self.type(node.type)} {self.word(make_camel_case(node.name))}"
         if node.rest:
-            return f"params {self.type(node.type.of[0])}[] {self.word(camel(node.name))}"
+            return f"params {self.type(node.type.of[0])}[] {self.word(make_camel_case(node.name))}"
         if node.default is None:
             return name
         if self.made_later(node):
@@ -262,10 +270,10 @@ class CSharp(Braces):
     # --- expressions
 
     def local(self, node: x.Local) -> str:
-        return self.aliases.get(node.name) or self.word(camel(node.name))
+        return self.aliases.get(node.name) or self.word(make_camel_case(node.name))
 
     def shared(self, name: str) -> str:
-        return pascal(name.lower()) if name.isupper() else pascal(name)
+        return make_pascal_case(name.lower()) if name.isupper() else make_pascal_case(name)
 
     def operation(self, node: x.Builtin) -> tuple[Document, int]:
         if node.name in ("any", "all", "first", "first_or") and isinstance(
@@ -276,7 +284,7 @@ class CSharp(Braces):
             of, item, low, key = node.arguments
             return (
                 "PlainLists.Insert",
-                bracket_items("(", [*(self.plain(a) for a in (of, item, low)), self.keyed(key)], ")"),
+                put_in_brackets("(", [*(self.plain(a) for a in (of, item, low)), self.keyed(key)], ")"),
             ), ALONE
         if node.name in ("sorted_by", "sorted"):
             return self.ordered(node), ALONE
@@ -355,11 +363,11 @@ class CSharp(Braces):
             return self.named(node)
         match node:
             case x.Call():
-                return (self.strong(node.function, ALONE), bracket_items("(", self.given(node), ")")), ALONE
+                return (self.strong(node.function, ALONE), put_in_brackets("(", self.given(node), ")")), ALONE
             case x.New():
                 return (
                     f"new {node.type.name}",
-                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
+                    put_in_brackets("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.Replaced():
                 return self.replaced(node), ALONE
@@ -378,7 +386,7 @@ class CSharp(Braces):
             case x.Slice():
                 ends = ["0" if node.first is None else self.plain(node.first)]
                 ends += [] if node.last is None else [self.plain(node.last)]
-                return ("PlainLists.Part", bracket_items("(", [self.plain(node.of), *ends], ")")), ALONE
+                return ("PlainLists.Part", put_in_brackets("(", [self.plain(node.of), *ends], ")")), ALONE
             case x.Gathered():
                 return self.gathered(node), ALONE
             case x.Mapped():
@@ -387,7 +395,7 @@ class CSharp(Braces):
                 ]
                 return (
                     f"new {self.type(node.type)}",
-                    bracket_items(" { ", pairs, " }") if pairs else "()",
+                    put_in_brackets(" { ", pairs, " }") if pairs else "()",
                 ), ALONE
             case x.Comprehension():
                 return self.comprehension(node), ALONE
@@ -418,8 +426,8 @@ class CSharp(Braces):
                 return ((of, ".Value") if node.type.kind in VALUES else of), ALONE
             case x.Member():
                 if isinstance(node.of, x.This):
-                    return pascal(node.name), ALONE
-                return (self.strong(node.of, ALONE), f".{pascal(node.name)}"), ALONE
+                    return make_pascal_case(node.name), ALONE
+                return (self.strong(node.of, ALONE), f".{make_pascal_case(node.name)}"), ALONE
 
     def given(self, node: x.Call) -> list[Document]:
         *first, last = node.arguments or (None,)
@@ -471,12 +479,14 @@ class CSharp(Braces):
         of = self.strong(node.of, ALONE)
         given: list[Document] = []
         for f in record.fields:
-            given.append(self.plain(changes[f.name]) if f.name in changes else (of, f".{pascal(f.name)}"))
-        return (f"new {node.type.name}", bracket_items("(", given, ")"))
+            given.append(
+                self.plain(changes[f.name]) if f.name in changes else (of, f".{make_pascal_case(f.name)}")
+            )
+        return (f"new {node.type.name}", put_in_brackets("(", given, ")"))
 
     def gathered(self, node: x.Gathered) -> Document:
         if node.type.kind == "tuple":
-            return bracket_items("(", [self.plain(i) for i in node.items], ")")
+            return put_in_brackets("(", [self.plain(i) for i in node.items], ")")
         kind = self.type(node.type)
         if node.spread:
             parts: list[Document] = []
@@ -488,7 +498,7 @@ class CSharp(Braces):
                 )
                 parts.append(one if n == 0 else (".Concat(", one, ")"))
             return (*parts, ".ToList()")
-        inner = bracket_items(" { ", [self.plain(i) for i in node.items], " }") if node.items else "()"
+        inner = put_in_brackets(" { ", [self.plain(i) for i in node.items], " }") if node.items else "()"
         return (f"new {kind}", inner)
 
     def comprehension(self, node: x.Comprehension) -> Document:

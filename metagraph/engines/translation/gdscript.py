@@ -7,7 +7,14 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from metagraph.engines.translation import tree as x
-from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items, flat
+from metagraph.engines.translation.layout import (
+    Document,
+    Group,
+    LineBreak,
+    Nest,
+    put_in_brackets,
+    put_on_one_line,
+)
 from metagraph.engines.translation.lifting import lift_comprehensions
 from metagraph.engines.translation.printing import (
     ALONE,
@@ -18,7 +25,7 @@ from metagraph.engines.translation.printing import (
     UNARY,
     Printer,
     TranslationError,
-    pascal,
+    make_pascal_case,
 )  # fmt: skip
 
 
@@ -51,7 +58,7 @@ class GDScript(Printer):
         self.out.append("")
         modules = [m for m in self.used if m != self.module.name]
         for module in sorted(modules):
-            self.line(f'const {pascal(self.known(module))} = preload("{self.known(module)}.gd")')
+            self.line(f'const {make_pascal_case(self.known(module))} = preload("{self.known(module)}.gd")')
         if any(h == "Util" for h in self.helpers):
             self.line('const Util = preload("util.gd")')
         return "\n".join([*self.out, *body]).strip() + "\n"
@@ -84,7 +91,7 @@ class GDScript(Printer):
             self.line(f"var {self.word(m.name)}", m.about)
         self.out.append("")
         given = [self.parameter(f, "_") for f in node.fields]
-        self.line(("func _init", bracket_items("(", given, ")"), ":"))
+        self.line(("func _init", put_in_brackets("(", given, ")"), ":"))
         self.depth += 1
         for f in node.fields:
             name = f"{f.name}_"
@@ -114,7 +121,7 @@ class GDScript(Printer):
         self.line(
             (
                 f"{lead}{self.word(node.name)}",
-                bracket_items("(", [self.parameter(p) for p in node.parameters], ")"),
+                put_in_brackets("(", [self.parameter(p) for p in node.parameters], ")"),
                 ":",
             )
         )
@@ -185,7 +192,7 @@ class GDScript(Printer):
         """A test, in brackets where it must be broken over lines."""
         found = self.plain(test)
         room = self.WIDTH - 4 * self.depth - 12
-        return found if len(flat(found)) <= room else ("(", found, ")")
+        return found if len(put_on_one_line(found)) <= room else ("(", found, ")")
 
     def held(self, value: x.Expression) -> Document:
         """A value, in brackets where it must be broken over lines and has none of its own."""
@@ -254,13 +261,13 @@ class GDScript(Printer):
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
-                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
+                    put_in_brackets("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.New():
                 return (
                     self.class_of(node.type),
                     ".new",
-                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
+                    put_in_brackets("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.Replaced():
                 changes = dict(node.changes)
@@ -269,7 +276,7 @@ class GDScript(Printer):
                     self.plain(changes[f.name]) if f.name in changes else (of, f".{self.word(f.name)}")
                     for f in self.record_of(node.type).fields
                 ]
-                return (self.class_of(node.type), ".new", bracket_items("(", given, ")")), ALONE
+                return (self.class_of(node.type), ".new", put_in_brackets("(", given, ")")), ALONE
             case x.Comparison():
                 word = {"is": "==", "is not": "!="}.get(node.operator, node.operator)
                 if node.left.type.bare.kind in ("list", "tuple", "map", "record") and node.operator in (
@@ -298,12 +305,12 @@ class GDScript(Printer):
                 last: Document = (
                     (self.strong(node.of, ALONE), ".size()") if node.last is None else self.plain(node.last)
                 )
-                return ("Util.part", bracket_items("(", [of, first, last], ")")), ALONE
+                return ("Util.part", put_in_brackets("(", [of, first, last], ")")), ALONE
             case x.Gathered():
                 return self.gathered(node)
             case x.Mapped():
                 pairs: list[Document] = [(self.plain(k), ": ", self.plain(v)) for k, v in node.items]
-                return bracket_items("{", pairs, "}"), ALONE
+                return put_in_brackets("{", pairs, "}"), ALONE
             case x.Formatted():
                 return self.formatted(node), PLUS
         return super().expression(node)
@@ -337,19 +344,19 @@ class GDScript(Printer):
                 )
             return name
         self.used.setdefault(node.module, set()).add(node.name)
-        return f"{pascal(self.known(node.module))}.{name}"
+        return f"{make_pascal_case(self.known(node.module))}.{name}"
 
     def class_of(self, kind: x.Type) -> str:
         if kind.module == self.module.name:
             return kind.name
         self.used.setdefault(kind.module, set()).add(kind.name)
-        return f"{pascal(self.known(kind.module))}.{kind.name}"
+        return f"{make_pascal_case(self.known(kind.module))}.{kind.name}"
 
     def gathered(self, node: x.Gathered) -> tuple[Document, int]:
         if node.type.kind == "set":
-            return bracket_items("{", [(self.plain(i), ": true") for i in node.items], "}"), ALONE
+            return put_in_brackets("{", [(self.plain(i), ": true") for i in node.items], "}"), ALONE
         if not node.spread:
-            return bracket_items("[", [self.plain(i) for i in node.items], "]"), ALONE
+            return put_in_brackets("[", [self.plain(i) for i in node.items], "]"), ALONE
         parts: list[Document] = []
         for n, item in enumerate(node.items):
             one: Document = self.strong(item, PLUS) if n in node.spread else ("[", self.plain(item), "]")
@@ -380,4 +387,4 @@ class GDScript(Printer):
                     ("Util.thousandths(", self.plain(part[0]), ")") if exact else self.plain(part[0])
                 )
         pattern = json.dumps(text, ensure_ascii=False)
-        return (pattern, " % ", bracket_items("[", given, "]"))
+        return (pattern, " % ", put_in_brackets("[", given, "]"))

@@ -9,7 +9,7 @@ from typing import Any
 
 from metagraph.engines.translation.listing import RUNTIMES
 from metagraph.speech.language_packs import list_language_packs
-from metagraph.speech.text_gestures import list_lexicon_languages, words_for_gesture
+from metagraph.speech.text_gestures import list_lexicon_languages, load_gesture_words
 from metagraph.speech.word_gestures import GestureRule
 
 JAVASCRIPT = RUNTIMES / "javascript" / "gesture_words.js"
@@ -20,7 +20,7 @@ _ABOUT = "Lexicons of gestures by language, as {} has them, with words that say 
 _MADE = "Made from metagraph/speech/gesture_words/*.json; change those, and translate anew."
 
 
-def gesture_word_lists() -> dict[Path, str]:
+def make_gesture_word_modules() -> dict[Path, str]:
     """Return the texts of the modules by their paths."""
     return {JAVASCRIPT: _javascript(), GODOT: _gdscript(), UNITY: _csharp(), CPP: _cpp()}
 
@@ -78,7 +78,7 @@ def _fields(code: str, depth: int, form: str, indent: str = " ") -> str:
     """Return a lexicon's fields, each on lines of its own that end with a comma. form: of a name and what it
     is.
     """
-    lexicon, pack = words_for_gesture(code), list_language_packs().get(code)
+    lexicon, pack = load_gesture_words(code), list_language_packs().get(code)
     edge = indent * depth
     deeper = edge + (indent if indent == "\t" else 2 * indent)
     rules = ",\n".join(f"{deeper}{_rule(rule)}" for rule in lexicon.rules)

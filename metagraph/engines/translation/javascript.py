@@ -6,7 +6,7 @@ import json
 
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.braces import Braces
-from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items
+from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, put_in_brackets
 from metagraph.engines.translation.printing import (
     ALONE,
     CHOICE,
@@ -15,7 +15,7 @@ from metagraph.engines.translation.printing import (
     PLUS,
     UNARY,
     TranslationError,
-    camel,
+    make_camel_case,
 )  # fmt: skip
 
 
@@ -46,13 +46,13 @@ class JavaScript(Braces):
                 self.line(
                     (
                         "import ",
-                        bracket_items("{", sorted(names), "}", ","),
+                        put_in_brackets("{", sorted(names), "}", ","),
                         f' from "./{self.known(module)}.js";',
                     )
                 )
         if self.helpers:
             helpers = sorted(self.helpers)
-            self.line(("import ", bracket_items("{", helpers, "}", ","), ' from "./basics.js";'))
+            self.line(("import ", put_in_brackets("{", helpers, "}", ","), ' from "./basics.js";'))
         head = [o.replace("{", "{ ").replace("}", " }") if o.startswith("import {") else o for o in self.out]
         gap = [] if not body or body[0] == "" or not (self.used or self.helpers) else [""]
         return "\n".join([*head, *gap, *body]).strip() + "\n"
@@ -68,15 +68,15 @@ class JavaScript(Braces):
 
     def record(self, node: x.RecordClass) -> None:
         self.out.append("")
-        fields = "; ".join(f"{camel(f.name)}: {self.type(f.type)}" for f in node.fields)
+        fields = "; ".join(f"{make_camel_case(f.name)}: {self.type(f.type)}" for f in node.fields)
         self.documented(f"{node.about}\n\n{fields}.")
         self.line(f"export class {node.name} {{")
         self.depth += 1
         given = [self.parameter(f) for f in node.fields]
-        self.line(("constructor", bracket_items("(", given, ")", ","), " {"))
+        self.line(("constructor", put_in_brackets("(", given, ")", ","), " {"))
         self.depth += 1
         for f in node.fields:
-            self.line(f"this.{camel(f.name)} = {self.word(camel(f.name))};")
+            self.line(f"this.{make_camel_case(f.name)} = {self.word(make_camel_case(f.name))};")
         self.depth -= 1
         self.line("}")
         for method in node.methods:
@@ -87,14 +87,17 @@ class JavaScript(Braces):
 
     def method(self, node: x.Function) -> None:
         self.documented(node.about)
-        given = bracket_items("(", [self.parameter(p) for p in node.parameters], ")", ",")
-        self.line((("get " if node.property else "") + camel(node.name), given, " {"))
+        given = put_in_brackets("(", [self.parameter(p) for p in node.parameters], ")", ",")
+        self.line((("get " if node.property else "") + make_camel_case(node.name), given, " {"))
         self.block(node.body)
         self.line("}")
 
     def function(self, node: x.Function) -> None:
         self.comments(node.comments)
-        types = [f"@param {{{self.documented_type(p)}}} {self.word(camel(p.name))}" for p in node.parameters]
+        types = [
+            f"@param {{{self.documented_type(p)}}} {self.word(make_camel_case(p.name))}"
+            for p in node.parameters
+        ]
         back = [] if node.returns == x.NONE else [f"@returns {{{self.type(node.returns)}}}"]
         self.documented(node.about, [*types, *back])
         given: list[Document] = []
@@ -102,13 +105,13 @@ class JavaScript(Braces):
             given.append(self.parameter(p))
         export = "export " if node.public else ""
         self.line(
-            (f"{export}function {self.function_name(node.name)}", bracket_items("(", given, ")", ","), " {")
+            (f"{export}function {self.function_name(node.name)}", put_in_brackets("(", given, ")", ","), " {")
         )
         self.block(node.body)
         self.line("}")
 
     def parameter(self, node: x.Parameter) -> Document:
-        name = self.word(camel(node.name))
+        name = self.word(make_camel_case(node.name))
         if node.rest:
             return f"...{name}"
         return name if node.default is None else (f"{name} = ", self.plain(node.default))
@@ -162,12 +165,12 @@ class JavaScript(Braces):
         item = node.target
         if isinstance(item, x.ItemOf) and item.of.type.bare.kind == "map":
             given = [self.plain(item.place), self.plain(node.value)]
-            self.line((self.strong(item.of, ALONE), bracket_items(".set(", given, ")"), ";"), node.beside)
+            self.line((self.strong(item.of, ALONE), put_in_brackets(".set(", given, ")"), ";"), node.beside)
         else:
             super().assignment(node)
 
     def unpacked(self, node: x.Unpack) -> None:
-        names = bracket_items("[", [self.target(t) for t in node.targets], "]")
+        names = put_in_brackets("[", [self.target(t) for t in node.targets], "]")
         word = ("let " if node.changes else "const ") if node.new else ""
         self.line((word, names, " = ", self.plain(node.value), ";"), node.beside)
 
@@ -194,14 +197,14 @@ class JavaScript(Braces):
     # --- expressions
 
     def local(self, node: x.Local) -> str:
-        return self.word(camel(node.name))
+        return self.word(make_camel_case(node.name))
 
     def function_name(self, name: str) -> str:
         """A module's own functions keep their underscore, so that variables may be called as they are."""
-        return "_" * name.startswith("_") + self.word(camel(name))
+        return "_" * name.startswith("_") + self.word(make_camel_case(name))
 
     def constant_name(self, name: str) -> str:
-        return name if name.isupper() or name.strip("_").isupper() else camel(name)
+        return name if name.isupper() or name.strip("_").isupper() else make_camel_case(name)
 
     def operation(self, node: x.Builtin) -> tuple[Document, int]:
         if node.name in ("any", "all", "first", "first_or") and isinstance(
@@ -249,17 +252,17 @@ class JavaScript(Braces):
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
-                    bracket_items("(", self.given(node), ")", ","),
+                    put_in_brackets("(", self.given(node), ")", ","),
                 ), ALONE
             case x.New():
                 self.used.setdefault(node.type.module, set()).add(node.type.name)
                 return (
                     f"new {node.type.name}",
-                    bracket_items("(", [self.plain(a) for a in node.arguments], ")", ","),
+                    put_in_brackets("(", [self.plain(a) for a in node.arguments], ")", ","),
                 ), ALONE
             case x.Replaced():
                 self.helpers.add("but")
-                changes = [(f"{camel(n)}: ", self.plain(v)) for n, v in node.changes]
+                changes = [(f"{make_camel_case(n)}: ", self.plain(v)) for n, v in node.changes]
                 pairs = Group(
                     ("{ ", *[d for n, c in enumerate(changes) for d in ((", ", c) if n else (c,))], " }")
                 )
@@ -284,10 +287,10 @@ class JavaScript(Braces):
                 first: list[Document] = ["0"] if node.first is None and node.last is not None else []
                 return (
                     self.strong(node.of, ALONE),
-                    bracket_items(".slice(", [*first, *(self.plain(e) for e in ends)], ")"),
+                    put_in_brackets(".slice(", [*first, *(self.plain(e) for e in ends)], ")"),
                 ), ALONE
             case x.Gathered():
-                inner = bracket_items(
+                inner = put_in_brackets(
                     "[",
                     [
                         ("...", self.plain(i)) if n in node.spread else self.plain(i)
@@ -298,8 +301,8 @@ class JavaScript(Braces):
                 )
                 return (inner if node.type.kind != "set" else ("new Set(", inner, ")")), ALONE
             case x.Mapped():
-                pairs_ = [bracket_items("[", [self.plain(k), self.plain(v)], "]") for k, v in node.items]
-                return ("new Map(", bracket_items("[", pairs_, "]", ",") if pairs_ else "", ")"), ALONE
+                pairs_ = [put_in_brackets("[", [self.plain(k), self.plain(v)], "]") for k, v in node.items]
+                return ("new Map(", put_in_brackets("[", pairs_, "]", ",") if pairs_ else "", ")"), ALONE
             case x.Comprehension():
                 return self.comprehension(node), ALONE
             case x.Lambda():
@@ -329,7 +332,7 @@ class JavaScript(Braces):
             case x.KnownValue():
                 return self.expression(node.of)
             case x.Member():
-                return (self.strong(node.of, ALONE), f".{camel(node.name)}"), ALONE
+                return (self.strong(node.of, ALONE), f".{make_camel_case(node.name)}"), ALONE
 
     def given(self, node: x.Call) -> list[Document]:
         if not node.rest:

@@ -41,7 +41,7 @@ class Tail:
 Document = str | LineBreak | Nest | Group | Tail | tuple["Document", ...]
 
 
-def bracket_items(opening: str, items: Sequence[Document], closing: str, trailing: str = "") -> Document:
+def put_in_brackets(opening: str, items: Sequence[Document], closing: str, trailing: str = "") -> Document:
     """Return items in brackets, with commas between. trailing: after the last where each has its own line."""
     if not items:
         return opening + closing
@@ -51,7 +51,7 @@ def bracket_items(opening: str, items: Sequence[Document], closing: str, trailin
     return Group((opening, Nest((LineBreak(), *between)), Tail(trailing), LineBreak(), closing))
 
 
-def flat(document: Document) -> str:
+def put_on_one_line(document: Document) -> str:
     """Return a document on one line."""
     if isinstance(document, str):
         return document
@@ -60,8 +60,8 @@ def flat(document: Document) -> str:
     if isinstance(document, Tail):
         return ""
     if isinstance(document, tuple):
-        return "".join(flat(d) for d in document)
-    return flat(document.of)
+        return "".join(put_on_one_line(d) for d in document)
+    return put_on_one_line(document.of)
 
 
 def break_lines(document: Document, indent: int, step: str, width: int, before: int = 0) -> list[str]:
@@ -88,7 +88,7 @@ def break_lines(document: Document, indent: int, step: str, width: int, before: 
         elif isinstance(d, Nest):
             put(d.of, depth + 1 if broken else depth, broken, after)
         elif isinstance(d, Group):
-            fits = place() + len(flat(d)) + after <= width
+            fits = place() + len(put_on_one_line(d)) + after <= width
             put(d.of, depth, not fits, after)
         else:
             for n, one in enumerate(d):
@@ -97,9 +97,9 @@ def break_lines(document: Document, indent: int, step: str, width: int, before: 
                 for r in rest:
                     if isinstance(r, LineBreak) and broken:
                         break
-                    near += len(flat(r))
+                    near += len(put_on_one_line(r))
                     if isinstance(r, Group):
-                        near -= len(flat(r))
+                        near -= len(put_on_one_line(r))
                         break
                 else:
                     near += after

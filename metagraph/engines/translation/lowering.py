@@ -20,7 +20,7 @@ from metagraph.engines.translation.source import SourceModule, list_defined, unw
 from metagraph.engines.translation.typed import BITS
 
 
-def module_of(source: SourceModule) -> x.Module:
+def convert_module(source: SourceModule) -> x.Module:
     """Return a module in the small tree. Raises SubsetError for what is outside the subset."""
     return _Lowering(source).module()
 

@@ -17,9 +17,9 @@ from metagraph.engines.translation.layout import (
     Group,
     LineBreak,
     Nest,
-    bracket_items,
     break_lines,
-    flat,
+    put_in_brackets,
+    put_on_one_line,
 )
 
 LANGUAGES = Path(__file__).with_name("languages.toml")
@@ -35,13 +35,13 @@ class TranslationError(Exception):
     """What a language has no words for yet: the module and what it is."""
 
 
-def camel(name: str) -> str:
+def make_camel_case(name: str) -> str:
     """Return `some_name` as `someName`; a leading underscore is left out."""
     first, *rest = name.strip("_").split("_")
     return first + "".join(w[:1].upper() + w[1:] for w in rest)
 
 
-def pascal(name: str) -> str:
+def make_pascal_case(name: str) -> str:
     """Return `some_name` as `SomeName`."""
     return "".join(w[:1].upper() + w[1:] for w in name.strip("_").split("_"))
 
@@ -80,12 +80,12 @@ class Printer:
     def line(self, document: Document = "", beside: str = "") -> None:
         text = f"  {self.COMMENT} {beside}" if beside else ""
         indent = self.STEP * self.depth
-        if not flat(document) and not text:
+        if not put_on_one_line(document) and not text:
             self.out.append("")
             return
         made = break_lines(document, self.depth, self.STEP, self.WIDTH, len(indent.expandtabs(4)))
         if (
-            len(flat(document)) + len(text) + len(indent.expandtabs(4)) > self.WIDTH
+            len(put_on_one_line(document)) + len(text) + len(indent.expandtabs(4)) > self.WIDTH
             and text
             and len(made) == 1
         ):
@@ -189,7 +189,7 @@ class Printer:
         parts: list[Document] = []
         for piece in re.split(r"(\{[^}]*\})", pattern):
             if piece == "{*}":
-                parts.append(bracket_items("(", [self.plain(a) for a in node.arguments], ")"))
+                parts.append(put_in_brackets("(", [self.plain(a) for a in node.arguments], ")"))
             elif piece == "{&}":
                 parts = [self.paired(tuple(parts), node.arguments)]
             elif piece[:1] == "{":
@@ -207,7 +207,7 @@ class Printer:
         """Return calls of what takes two: `most(a, most(b, c))`."""
         out = self.plain(arguments[-1])
         for one in reversed(arguments[:-1]):
-            out = (word, bracket_items("(", [self.plain(one), out], ")"))
+            out = (word, put_in_brackets("(", [self.plain(one), out], ")"))
         return out
 
     def helper(self, text: str) -> str:

@@ -16,14 +16,14 @@ from metagraph.engines.translation.csharp import CSharp
 from metagraph.engines.translation.gdscript import GDScript
 from metagraph.engines.translation.javascript import JavaScript
 from metagraph.engines.translation.listing import LISTING, NATIVE, RUNTIMES, Translated
-from metagraph.engines.translation.lowering import module_of
-from metagraph.engines.translation.printing import Printer, TranslationError, pascal
+from metagraph.engines.translation.lowering import convert_module
+from metagraph.engines.translation.printing import Printer, TranslationError, make_pascal_case
 from metagraph.engines.translation.source import SourceModule, SubsetError
 
 ROOT = Path(__file__).parents[3]
 PLACES: dict[type[Printer], Callable[[str], str]] = {  # where each language's file of a module is
     JavaScript: lambda word: f"javascript/{word}.js",
-    CSharp: lambda word: f"unity/Core/{pascal(word)}.cs",
+    CSharp: lambda word: f"unity/Core/{make_pascal_case(word)}.cs",
     Cpp: lambda word: f"cpp/{word}.hpp",
     GDScript: lambda word: f"godot/addons/metagraph/core/{word}.gd",
 }
@@ -39,11 +39,11 @@ def translate_runtimes() -> dict[Path, str]:
 
 def read_modules(listing: Sequence[Translated], root: Path) -> dict[Translated, x.Module]:
     """Return listed modules below a folder. Raises SubsetError for what mypy or the subset refuses."""
-    found = type_modules(listing, root)
-    return {one: module_of(source) for one, source in found.items()}
+    found = read_typed_modules(listing, root)
+    return {one: convert_module(source) for one, source in found.items()}
 
 
-def type_modules(listing: Sequence[Translated], root: Path) -> dict[Translated, SourceModule]:
+def read_typed_modules(listing: Sequence[Translated], root: Path) -> dict[Translated, SourceModule]:
     """Return listed modules as mypy has them. Raises SubsetError with what it finds wrong."""
     options = Options()
     options.export_types = options.preserve_asts = options.local_partial_types = True

@@ -25,7 +25,7 @@ _TENS = 10.0 ** np.arange(23)  # the powers of ten that are exact
 _SPACE, _PLUS, _MINUS, _DOT, _ZERO, _E = b" +-.0e"
 
 
-def decimals(data: bytes, start: int) -> Array:
+def read_decimals(data: bytes, start: int) -> Array:
     """Return every number after `start` as float64. Raises ValueError for a word that is no number, as
     `float` would. The first words must be at least 8 bytes from the beginning of the data.
     """

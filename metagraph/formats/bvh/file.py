@@ -26,13 +26,13 @@ from metagraph.common.files import read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.bvh.decimal_text import decimals
+from metagraph.formats.bvh.decimal_text import read_decimals
 from metagraph.formats.bvh.space import USUAL, find_relative_joints, find_unit, is_z_up, stand_up
 from metagraph.formats.takes import FRAME_TIME, FROM_OFFSET, UNIT, UP, drop_stray_poses, note_repair
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
-from metagraph.motion.roles import find_roles, missing_roles
-from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.motion.roles import find_missing_roles, find_roles
+from metagraph.motion.skeleton import Skeleton, make_names_unique
 
 Array = NDArray[Any]
 
@@ -359,7 +359,7 @@ def _fps(text: str, step: float) -> float:
 def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     """Return every number after `start` as float64."""
     try:
-        numbers = decimals(data, start)
+        numbers = read_decimals(data, start)
         if (np.abs(numbers) <= 1e9).all():
             return numbers
     except ValueError:
@@ -395,12 +395,12 @@ def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) ->
         for joint, own in zip(joints, columns, strict=True)
     ]
     orders = ["".join(name[0] for name in joint.channels if name[1] == "r") for joint in joints]
-    out = rotation.identity_rotations((frames, len(joints)))
+    out = rotation.make_identity_rotations((frames, len(joints)))
     for order in set(orders) - {""}:
         same = [i for i, o in enumerate(orders) if o == order]
         angles = np.radians(values[:, [turns[i] for i in same]])
         out[:, same] = rotation.from_euler(angles, order)
-    return rotation.continuous(out.astype(np.float32))
+    return rotation.make_continuous(out.astype(np.float32))
 
 
 def _clip(
@@ -414,7 +414,7 @@ def _clip(
     as_is: Collection[str],
 ) -> Clip:
     """Build the clip from channels, units and axes."""
-    names = unique_names([j.name for j in joints])
+    names = make_names_unique([j.name for j in joints])
     if names != tuple(j.name for j in joints):
         notes.append("joints without a name or with a repeated one were given names of their own")
     if any(name[1] == "s" for j in joints for name in j.channels):
@@ -424,19 +424,19 @@ def _clip(
     columns = _columns(joints)
     placed = _placed(joints, columns, offsets, values)
     rotations = _rotations(values, joints, columns)
-    skeleton = Skeleton(names, parents.copy(), rotation.identity_rotations((len(joints),)), offsets)
+    skeleton = Skeleton(names, parents.copy(), rotation.make_identity_rotations((len(joints),)), offsets)
     roles = find_roles(skeleton)
-    if missing_roles(roles):  # of unknown names the shape tells, as of a figure with Y up
+    if find_missing_roles(roles):  # of unknown names the shape tells, as of a figure with Y up
         upright = replace(skeleton, rest_translations=rotation.rotate_vectors(_TO_Y_UP, offsets))
         turned = find_roles(upright)
-        roles = roles if missing_roles(turned) else turned
+        roles = roles if find_missing_roles(turned) else turned
 
     scale, found = _metres(skeleton, roles, scale, notes, as_is)
     repairs += found
     offsets = offsets * scale
     placed = {i: p * scale for i, p in placed.items()}
     up, rest_too = is_z_up(skeleton, roles, rotations, placed, offsets)
-    rest_rotations = rotation.identity_rotations((len(joints),))
+    rest_rotations = rotation.make_identity_rotations((len(joints),))
     if up:
         repairs.append(Repair(UP, "its Z axis points up: turned to Y up", UP not in as_is))
     if up and UP not in as_is:

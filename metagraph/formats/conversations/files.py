@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.formats.conversations.languages import Lists, Speaking, languages_of
-from metagraph.formats.conversations.sounds import ConversationReading, length_of, read_side_voices
+from metagraph.formats.conversations.languages import Lists, Speaking, choose_languages
+from metagraph.formats.conversations.sounds import ConversationReading, measure_sound_length, read_side_voices
 from metagraph.formats.conversations.words import (
     SideVoice,
     TranscribedSide,
     cut_words_to_sound,
-    sides_of,
+    match_sides,
     tell_unheard,
 )
 from metagraph.formats.store import make_path_for_project
@@ -36,8 +36,8 @@ from metagraph.graph.conversation.model import (
     Side,
 )
 from metagraph.playback.planning.choice import key32
-from metagraph.speech.activity import HUSH, LEAST, activity
-from metagraph.speech.clauses import find_stress_time, segment_by_sound, segments
+from metagraph.speech.activity import HUSH, LEAST, find_activity
+from metagraph.speech.clauses import find_segments, find_segments_by_sound, find_stress_time
 from metagraph.speech.language_packs import LanguagePack
 from metagraph.speech.pitch import smooth
 from metagraph.speech.sound import HeardSound, read_head
@@ -111,11 +111,11 @@ def read_conversation(
             ),
             remedy=phrase("Add one transcript that names the speakers, or one for each channel."),
         )
-    found = sides_of(reading.notes, voices, said, most)
-    length = max(length_of(v) for v, _ in found)
+    found = match_sides(reading.notes, voices, said, most)
+    length = max(measure_sound_length(v) for v, _ in found)
     sides = [one for _, one in found]
     speaking = speaking if speaking is not None else Speaking()
-    spoken = languages_of(reading.notes, [_called(v, one) for v, one in found], sides, speaking)
+    spoken = choose_languages(reading.notes, [_called(v, one) for v, one in found], sides, speaking)
     lists = tuple(speaking.lists_for(n, language) for n, language in enumerate(spoken))
     # the side whose lists are the conversation's
     shared = next((n for n, language in enumerate(spoken) if language is not None), 0)
@@ -166,14 +166,14 @@ def _side(
     shared = any(v is voice for m, (v, _) in enumerate(found) if m != n)
     partner = _all_of([v.heard for v in dict.fromkeys(v for v, _ in found) if v is not voice])
     called = _called(voice, said)
-    words = cut_words_to_sound(reading.notes, called, said, length_of(voice))
+    words = cut_words_to_sound(reading.notes, called, said, measure_sound_length(voice))
     if said.segments is not None:
         segmented = _kept(reading, called, said, voice, [one.name for _, one in found])
     elif words or not shared:
         if language is not None:
-            segmented = segments(words, voice.pitch, voice.heard, *lists, partner, language)
+            segmented = find_segments(words, voice.pitch, voice.heard, *lists, partner, language)
         else:
-            segmented = segment_by_sound(words, voice.pitch, voice.heard, None if shared else partner)
+            segmented = find_segments_by_sound(words, voice.pitch, voice.heard, None if shared else partner)
     else:
         segmented = ()
     if not words and said.segments is None:
@@ -216,7 +216,7 @@ def _kept(
     """
     given = said.segments or ()
     sides = {n: names.index(name) for n, name in enumerate(said.names) if name in names}
-    length, tones = length_of(voice), smooth(voice.pitch)
+    length, tones = measure_sound_length(voice), smooth(voice.pitch)
     out = []
     for s in given:
         end = min(s.end, length)
@@ -278,7 +278,7 @@ def _tell_wordless(
         why = phrase("it is silent. Check the microphone, or choose another channel")
     elif top - floor < LEAST:
         why = phrase("the recording is a steady noise. Check the microphone, or record closer to the speaker")
-    elif activity(voice.heard, None, None):
+    elif find_activity(voice.heard, None, None):
         why = phrase("it contains the partner, or no voice. Add a transcript if someone speaks")
     else:
         why = phrase("no speech was found. Add a transcript if someone speaks")

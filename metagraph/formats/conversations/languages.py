@@ -58,7 +58,7 @@ class Speaking:
         return (language.responses, language.hesitations) if language is not None else ((), ())
 
 
-def languages_of(
+def choose_languages(
     notes: list[str], called: Sequence[str], said: Sequence[TranscribedSide], speaking: Speaking
 ) -> tuple[LanguagePack | None, ...]:
     """Return what each is read in, None if nobody knows; say how that was found."""

@@ -17,7 +17,7 @@ from metagraph.common.wording import join_phrases, phrase
 from metagraph.errors import FileError
 from metagraph.formats.conversations.words import SideVoice
 from metagraph.speech.activity import HUSH
-from metagraph.speech.pitch import pitch
+from metagraph.speech.pitch import measure_pitch
 from metagraph.speech.sound import analyse_sound, read_recording
 
 Array = NDArray[Any]
@@ -42,7 +42,7 @@ class ConversationReading:
             raise CancelledError
 
 
-def length_of(voice: SideVoice) -> float:
+def measure_sound_length(voice: SideVoice) -> float:
     """Return how long a sound is in whole milliseconds: nothing that is written down ends after it."""
     return math.floor(voice.heard.duration * 1000 + 1e-6) / 1000
 
@@ -210,7 +210,7 @@ def _voice(
     reading.go_on()
     heard = analyse_sound(samples, rate)
     reading.go_on()
-    return SideVoice(path, channel, called, heard, pitch(samples, rate))
+    return SideVoice(path, channel, called, heard, measure_pitch(samples, rate))
 
 
 def _tell_clipped(reading: ConversationReading, called: str, clipped: float) -> None:

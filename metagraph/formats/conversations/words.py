@@ -18,7 +18,7 @@ from metagraph.common.wording import join_phrases, phrase
 from metagraph.errors import FileError
 from metagraph.formats.transcripts.words import Transcript, count, join_as_list
 from metagraph.graph.conversation.model import SHORTEST, Segment, Word
-from metagraph.speech.activity import HUSH, activity
+from metagraph.speech.activity import HUSH, find_activity
 from metagraph.speech.pitch import Pitch
 from metagraph.speech.sound import HeardSound
 
@@ -56,7 +56,7 @@ class TranscribedSide:
     names: tuple[str, ...] = ()
 
 
-def sides_of(
+def match_sides(
     notes: list[str], voices: Sequence[SideVoice], said: list[tuple[Path, Transcript]], most: int
 ) -> tuple[tuple[SideVoice, TranscribedSide], ...]:
     """Return the sides: the sound of each, and what the transcripts say of it. voices: one a channel or file,
@@ -307,7 +307,7 @@ def cut_words_to_sound(notes: list[str], called: str, said: TranscribedSide, len
 
 def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: SideVoice) -> None:
     """Report words if nothing is to be heard: the transcript of another recording, or shifted."""
-    spoken = activity(voice.heard, None, None)
+    spoken = find_activity(voice.heard, None, None)
     heard = sum(any(s.start - 0.2 < (w.start + w.end) / 2 < s.end + 0.2 for s in spoken) for w in words)
     if len(words) >= 5 and heard < 0.5 * len(words):
         notes.append(

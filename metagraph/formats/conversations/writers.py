@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 import msgspec
 
-from metagraph.common.xml_text import escape, quote_xml, xml_text
+from metagraph.common.xml_text import clean_xml_text, escape, quote_xml
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.transcripts.words import TO_ALL
 from metagraph.graph.conversation.model import EVERYBODY, Conversation, Side
@@ -202,7 +202,7 @@ def _filled(rows: Sequence[Row], length: float) -> list[Row]:
 
 
 def _quoted(text: str) -> str:
-    return '"' + " ".join(xml_text(text).split()).replace('"', '""') + '"'
+    return '"' + " ".join(clean_xml_text(text).split()).replace('"', '""') + '"'
 
 
 def _url(place: Path) -> str:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from metagraph.common.budgets import CLIP_SECONDS, FBX_MEMORY, FBX_SAMPLES, NODES
-from metagraph.formats.gltf.binary import BinaryChunk, glb_bytes
+from metagraph.formats.gltf.binary import BinaryChunk, make_glb_bytes
 
 FPS = 30.0  # if the file's own rate is not one that motion is recorded at
 _RATES = (10.0, 240.0)
@@ -117,7 +117,7 @@ def _convert(scene: Any) -> bytes:
     animations = _animations(read, document, body)
     if animations:
         document["animations"] = animations
-    return glb_bytes(document, body)
+    return make_glb_bytes(document, body)
 
 
 def _read(scene: Any) -> _Scene:

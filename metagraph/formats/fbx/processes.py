@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from metagraph.common.programs import python_command, start
+from metagraph.common.programs import make_python_command, start
 from metagraph.formats.fbx import child as fbx_child
 
 HEAD = struct.Struct("<Bq")  # code, length
@@ -43,7 +43,7 @@ class _Reader:
         self.count = 0
         self.said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the process)
         self.process = start(
-            python_command(fbx_child.__name__),
+            make_python_command(fbx_child.__name__),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self.said,

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from metagraph.formats.gltf.meshopt import MeshoptFilter, MeshoptMode
 from metagraph.formats.gltf.meshopt_encoding import (
-    exponential,
-    octahedral,
+    encode_exponential,
+    encode_octahedral,
+    encode_quaternions,
     pack_attributes,
     pack_indices,
-    quaternions,
 )
 from metagraph.motion import rotation
 
@@ -48,7 +48,7 @@ class Packing:
         """Return floats as they will be read back."""
         if self.filter != "EXPONENTIAL":
             return values
-        whole = np.frombuffer(exponential(values, self.amount), "<i4")
+        whole = np.frombuffer(encode_exponential(values, self.amount), "<i4")
         floats: Array = np.ldexp((whole << 8 >> 8).astype(np.float32), whole >> 24)
         return floats.reshape(values.shape)
 
@@ -57,12 +57,12 @@ class Packing:
         if self.mode != "ATTRIBUTES":
             return pack_indices(np.frombuffer(raw, "<u2" if stride == 2 else "<u4"))
         if self.filter == "EXPONENTIAL":
-            raw = exponential(np.frombuffer(raw, "<f4"), self.amount)
+            raw = encode_exponential(np.frombuffer(raw, "<f4"), self.amount)
         elif self.filter == "QUATERNION":
             turns = np.frombuffer(raw, "<i2").reshape(-1, 4).astype(np.float64)
-            raw = quaternions(rotation.normalize(turns), self.amount)
+            raw = encode_quaternions(rotation.normalize(turns), self.amount)
         elif self.filter == "OCTAHEDRAL":
-            raw = octahedral(np.frombuffer(raw, "<i1").reshape(-1, 4)[:, :3], self.amount)
+            raw = encode_octahedral(np.frombuffer(raw, "<i1").reshape(-1, 4)[:, :3], self.amount)
         return pack_attributes(raw, stride)
 
 
@@ -216,7 +216,7 @@ class BinaryChunk:
         self._pools = {}
 
 
-def glb_bytes(document: dict[str, Any], body: BinaryChunk) -> bytes:
+def make_glb_bytes(document: dict[str, Any], body: BinaryChunk) -> bytes:
     """Return the file: header, JSON and binary chunk. The accessors, views and buffers of `body` are added to
     `document`.
     """

@@ -109,7 +109,7 @@ def note_unused_channels(gltf: Gltf, table: ChannelTable, number: int) -> list[s
     return [f"channels for '{path[:40]}' were left out" for path in paths]
 
 
-def morph_channels(
+def list_morph_channels(
     table: ChannelTable, number: int, expressions: Collection[int] = ()
 ) -> list[tuple[int, str, int, int]]:
     """Return an animation's channels of weights: input, mode, node, output. `expressions` are nodes whose
@@ -128,7 +128,7 @@ def morph_channels(
     return [(source, _NAMES[mode], node, output) for source, mode, node, output in rows]
 
 
-def sound_times(gltf: Gltf, inputs: Array) -> dict[int, Array]:
+def read_plain_key_times(gltf: Gltf, inputs: Array) -> dict[int, Array]:
     """Return key times by accessor, as float64, if they are plain ascending scalars, as in almost all files.
     Others are read when they are needed, and refused there if they are invalid.
     """

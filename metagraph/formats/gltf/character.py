@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import PICTURE_PIXELS, VERTICES
-from metagraph.common.pictures import picture_size
+from metagraph.common.pictures import read_picture_size
 from metagraph.errors import FileError
 from metagraph.formats.gltf.file import Gltf
 from metagraph.formats.gltf.morphs import read_morph_names
@@ -385,7 +385,7 @@ def _no_picture(data: bytes) -> str:
     """
     if data[:8] != b"\x89PNG\r\n\x1a\n" and data[:3] != b"\xff\xd8\xff":
         return "is neither PNG nor JPEG"
-    size = picture_size(data)
+    size = read_picture_size(data)
     if size is None:
         return "is damaged"
     return f"is {size[0]} x {size[1]} pixels, too many" if size[0] * size[1] > PICTURE_PIXELS else ""

@@ -14,14 +14,14 @@ from metagraph.common.wording import phrase
 from metagraph.formats.gltf.channels import (
     JointChannels,
     check_channels,
-    morph_channels,
+    list_morph_channels,
     note_unused_channels,
-    sound_times,
+    read_plain_key_times,
 )
 from metagraph.formats.gltf.columns import WEIGHTS, ChannelTable
 from metagraph.formats.gltf.faces import join_faces
-from metagraph.formats.gltf.file import DRACO, Gltf, extras
-from metagraph.formats.gltf.morphs import morph_weights
+from metagraph.formats.gltf.file import DRACO, Gltf, get_extras
+from metagraph.formats.gltf.morphs import read_morph_weights
 from metagraph.formats.gltf.sampling import FrameGrid
 from metagraph.formats.gltf.skeleton import GltfRig
 from metagraph.formats.gltf.tracks import NotFiniteError, Still, TakeTracks, spend_keys
@@ -42,7 +42,7 @@ def read_animations(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> li
     table = gltf.channels
     channels = JointChannels.of(table, rig.places, len(gltf.json.nodes), len(gltf.json.accessors))
     weights = (table.paths == WEIGHTS) | np.isin(table.nodes, list(gltf.vrm_face.nodes))
-    keys = sound_times(gltf, np.concatenate([channels.sources, table.inputs[weights]]))
+    keys = read_plain_key_times(gltf, np.concatenate([channels.sources, table.inputs[weights]]))
     numbers = range(len(gltf.json.animations))
     planned = (_planned(gltf, rig, n, table, channels, keys) for n in numbers)
     plans = [plan for plan in planned if plan is not None]
@@ -88,7 +88,7 @@ def _planned(
     where = phrase("animation {a} '{name}'", a=number, name=animation.name)
     check_channels(gltf, table, number, where)
     first, after = channels.of_take(number)
-    morphs = morph_channels(table, number, gltf.vrm_face.expressions)
+    morphs = list_morph_channels(table, number, gltf.vrm_face.expressions)
     notes = note_unused_channels(gltf, table, number)
     if DRACO in gltf.json.extensions_required:
         notes.append(phrase("its mesh is packed with Draco and was left out; its motion was read"))
@@ -105,7 +105,7 @@ def _planned(
     start, end = min(float(k[0]) for k in own), max(float(k[-1]) for k in own)
     if not end - start <= CLIP_SECONDS:
         gltf.fail(phrase("it lasts {value:.3g} s", value=end - start), where)
-    wanted = extras(animation.extras).get("fps")
+    wanted = get_extras(animation.extras).get("fps")
     fps = guess_frame_rate(
         own, float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None
     )
@@ -193,7 +193,7 @@ def _clip(
         if len(bad):
             _not_finite(gltf, rig, plan, translated[int(bad[0])])
         gltf.fail(phrase("a translation is out of range"), plan.where)
-    morphs, weights = morph_weights(gltf, plan.morphs, keys, plan.grid, plan.where)
+    morphs, weights = read_morph_weights(gltf, plan.morphs, keys, plan.grid, plan.where)
     stem = gltf.path.stem
     name, renaming = take_repair(plan.name, take_name(plan.name, stem), stem, as_is)
     repairs = tuple(repair for repair in (*rig.repairs, renaming) if repair is not None)

@@ -33,7 +33,7 @@ def decode_columns(text: bytes | memoryview) -> Document:
     return _decoder.decode(text)
 
 
-def column(numbers: list[int]) -> Array:
+def make_column(numbers: list[int]) -> Array:
     """Return integers as an array; those that are too large become the largest possible."""
     try:
         return np.array(numbers, np.int64)
@@ -66,8 +66,8 @@ class PlainAccessors:
             for a in accessors
         ]
         lying = [(v.buffer, v.byte_offset, v.byte_length, v.byte_stride) for v in views]
-        view, offset, count, width = (column([*some]) for some in zip(*rows, strict=True))
-        buffer, view_begin, length, stride = (column([*some]) for some in zip(*lying, strict=True))
+        view, offset, count, width = (make_column([*some]) for some in zip(*rows, strict=True))
+        buffer, view_begin, length, stride = (make_column([*some]) for some in zip(*lying, strict=True))
         packed = np.array([v.packed is not None for v in views])
         offset, count, view_begin, length = (
             np.minimum(a, _MOST) for a in (offset, count, view_begin, length)
@@ -121,11 +121,11 @@ class ChannelTable:
         sampler_counts = np.array([len(animation.samplers) for animation in animations], int)
         every = [c for animation in animations for c in animation.channels]
         samplers = [s for animation in animations for s in animation.samplers]
-        which = column([c.sampler for c in every])
-        nodes = column([-1 if c.target.node is None else c.target.node for c in every])
-        paths = column([PATHS.get(c.target.path, UNKNOWN) for c in every])
-        inputs, outputs = column([s.input for s in samplers]), column([s.output for s in samplers])
-        modes = column([MODES.get(s.interpolation, NO_MODE) for s in samplers])
+        which = make_column([c.sampler for c in every])
+        nodes = make_column([-1 if c.target.node is None else c.target.node for c in every])
+        paths = make_column([PATHS.get(c.target.path, UNKNOWN) for c in every])
+        inputs, outputs = make_column([s.input for s in samplers]), make_column([s.output for s in samplers])
+        modes = make_column([MODES.get(s.interpolation, NO_MODE) for s in samplers])
         of = np.repeat(np.arange(len(animations)), counts)
         there = which < sampler_counts[of]
         place = np.where(there, (np.cumsum(sampler_counts) - sampler_counts)[of] + which, 0)

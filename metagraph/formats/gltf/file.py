@@ -255,7 +255,7 @@ class Gltf:
     @cached_property
     def vrm_face(self) -> VrmFace:
         """Return the nodes that are the face of a VRM animation."""
-        return find_vrm_face(extras(self.json.extensions))
+        return find_vrm_face(get_extras(self.json.extensions))
 
     @cached_property
     def channels(self) -> ChannelTable:
@@ -400,7 +400,7 @@ def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     return whole[20 : 20 + size], binary
 
 
-def extras(raw: msgspec.Raw) -> dict[str, Any]:
+def get_extras(raw: msgspec.Raw) -> dict[str, Any]:
     """Return `extras` or `extensions` as a dictionary; empty if there are none or they have another form."""
     if not bytes(raw):
         return {}

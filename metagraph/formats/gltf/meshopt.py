@@ -31,7 +31,7 @@ class MeshoptError(ValueError):
     """Raised if packed data is damaged; the message says how."""
 
 
-def block_elements(stride: int) -> int:
+def count_block_elements(stride: int) -> int:
     """Return the largest number of elements of `stride` bytes in a block."""
     return min(_BLOCK_BYTES // stride & ~(GROUP - 1), _BLOCK)
 
@@ -68,7 +68,7 @@ def _attributes(data: bytes, count: int, stride: int) -> Array:
     deltas = _deltas(np.frombuffer(data + bytes(GROUP), np.uint8), starts, modes)
     signed = np.where(deltas & 1, ~(deltas >> 1), deltas >> 1).astype(np.uint8)
     out = np.empty((count, stride), np.uint8)
-    size, at = block_elements(stride), 0
+    size, at = count_block_elements(stride), 0
     for first in range(0, count, size):
         some = min(size, count - first)
         groups = ceil(some / GROUP)
@@ -81,7 +81,7 @@ def _attributes(data: bytes, count: int, stride: int) -> Array:
 
 def _groups(data: bytes, count: int, stride: int) -> tuple[Array, Array]:
     """Return where each group's deltas begin, and their modes, in order: block by block, byte by byte."""
-    size = block_elements(stride)
+    size = count_block_elements(stride)
     starts: list[int] = []
     modes: list[int] = []
     at, end = 1, len(data)

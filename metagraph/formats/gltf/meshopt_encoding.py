@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.formats.gltf.meshopt import GROUP, block_elements
+from metagraph.formats.gltf.meshopt import GROUP, count_block_elements
 
 Array = NDArray[Any]
 
@@ -22,7 +22,7 @@ def pack_attributes(raw: bytes, stride: int) -> bytes:
     first = values[0] if len(values) else np.zeros(stride, np.uint8)
     deltas = np.diff(values, axis=0, prepend=first[None])
     coded = np.where(deltas & 0x80, ~(deltas << 1), deltas << 1).astype(np.uint8)
-    size = block_elements(stride)
+    size = count_block_elements(stride)
     whole = len(coded) // size * size
     parts = [_blocks(coded[:whole].reshape(-1, size, stride))] if whole else []
     if whole < len(coded):
@@ -88,7 +88,7 @@ def pack_indices(indices: Array) -> bytes:
     return bytes(out + bytes(4))
 
 
-def exponential(values: Array, exponent: int) -> bytes:
+def encode_exponential(values: Array, exponent: int) -> bytes:
     """Return floats `[..]` as integers times 2 ** exponent, -100..100. Floats too large for 24 bits get an
     exponent of their own.
     """
@@ -100,7 +100,7 @@ def exponential(values: Array, exponent: int) -> bytes:
     return both.astype("<u4").tobytes()
 
 
-def quaternions(values: Array, bits: int) -> bytes:
+def encode_quaternions(values: Array, bits: int) -> bytes:
     """Return unit quaternions `[N, 4]` as three components of `bits`, 4..16, without the largest."""
     q = np.asarray(values, np.float64)
     largest = np.abs(q).argmax(1)
@@ -113,7 +113,7 @@ def quaternions(values: Array, bits: int) -> bytes:
     return out.tobytes()
 
 
-def octahedral(vectors: Array, bits: int) -> bytes:
+def encode_octahedral(vectors: Array, bits: int) -> bytes:
     """Return unit vectors `[N, 3]` as two numbers of `bits`, 4..8, in 4 bytes each."""
     v = np.asarray(vectors, np.float64)
     v = v / np.maximum(np.abs(v).sum(1, keepdims=True), 1e-12)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
-from metagraph.formats.gltf.file import Gltf, extras
+from metagraph.formats.gltf.file import Gltf, get_extras
 from metagraph.formats.gltf.sampling import FrameGrid, sample_channels
 
 Array = NDArray[Any]
@@ -27,7 +27,7 @@ def read_morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
         return ()
     first = mesh.primitives[0]
     for raw in (mesh.extras, gltf.json.nodes[node].extras, first.extras):
-        names = extras(raw).get("targetNames")
+        names = get_extras(raw).get("targetNames")
         if (
             isinstance(names, list)
             and len(names) >= count
@@ -37,7 +37,7 @@ def read_morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
     return tuple(f"{mesh.name or 'mesh'}_morph_{k}" for k in range(count))
 
 
-def morph_weights(
+def read_morph_weights(
     gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: FrameGrid, where: str
 ) -> tuple[tuple[str, ...], Array | None]:
     """Return morph names and weights `[F, K]`. Meshes that share a target's name share its weight.

@@ -12,7 +12,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.gltf.character import read_character_mesh
 from metagraph.formats.gltf.clips import read_animations
-from metagraph.formats.gltf.file import extras, open_gltf
+from metagraph.formats.gltf.file import get_extras, open_gltf
 from metagraph.formats.gltf.morphs import read_morph_names
 from metagraph.formats.gltf.skeleton import build_rig
 from metagraph.formats.gltf.vrm_animation import find_humanoid_bones
@@ -74,7 +74,7 @@ def has_skinned_mesh(path: str | Path) -> bool:
 
 
 @guard_reader
-def morph_targets(path: str | Path) -> tuple[str, ...]:
+def read_morph_targets(path: str | Path) -> tuple[str, ...]:
     """Return the names of a character's morph targets, as in `read_character`. Raises FileError."""
     gltf = open_gltf(path)
     nodes = [n for n, node in enumerate(gltf.json.nodes) if node.mesh is not None]
@@ -88,7 +88,7 @@ def read_vrm_roles(path: str | Path) -> dict[str, str]:
     Raises FileError.
     """
     gltf = open_gltf(path)
-    bones = find_humanoid_bones(extras(gltf.json.extensions))
+    bones = find_humanoid_bones(get_extras(gltf.json.extensions))
     if not bones:
         return {}
     rig = build_rig(gltf)

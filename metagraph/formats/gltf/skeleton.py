@@ -19,7 +19,7 @@ from metagraph.formats.gltf.values import Node
 from metagraph.formats.takes import UNIT
 from metagraph.motion import rotation
 from metagraph.motion.clip import Repair
-from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.motion.skeleton import Skeleton, make_names_unique
 
 Array = NDArray[Any]
 
@@ -136,12 +136,12 @@ def _build(
     lift, shift, turn = (
         _lift(above, rest_s, base_s),
         np.zeros((len(joints), 3)),
-        rotation.identity_rotations((len(joints),)),
+        rotation.make_identity_rotations((len(joints),)),
     )
     lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
     rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift
     rest_rotations = rotation.normalize(rotation.multiply(turn, rest_r))
-    names = unique_names([nodes[n].name or f"node_{n}" for n in joints])
+    names = make_names_unique([nodes[n].name or f"node_{n}" for n in joints])
     if len(set(names) - {nodes[n].name.strip() for n in joints if nodes[n].name}):
         notes.append("joints without a name or with a repeated one were given names of their own")
 
@@ -511,7 +511,9 @@ def _rest_pose(
             world, j = worlds[skin.joints[k]], own[k]
             _, world_r, world_s = decompose(world)
             where, bind_r, bind_s = decompose(bind[k])
-            if rotation.angle_between(world_r, bind_r) > np.radians(60) or not _is_sound(base[j][None]):
+            if rotation.measure_angle_between(world_r, bind_r) > np.radians(60) or not _is_sound(
+                base[j][None]
+            ):
                 believable = False
                 break
             ratio = np.cbrt(abs(np.prod(world_s))) / np.cbrt(abs(np.prod(bind_s)))
@@ -527,7 +529,9 @@ def _rest_pose(
             continue
         differs |= bool(np.abs(t[use] - still[1][own[use]]).max() > 2e-6 * reach) if len(use) else False
         differs |= (
-            bool(rotation.angle_between(r[use], still[0][own[use]]).max() > 1e-4) if len(use) else False
+            bool(rotation.measure_angle_between(r[use], still[0][own[use]]).max() > 1e-4)
+            if len(use)
+            else False
         )
         translations[own[use]], rotations[own[use]], scales[own[use]] = t[use], r[use], size[use]
     if not differs:

@@ -41,7 +41,7 @@ class Still:
         self.lengths = diagonal if straight else None
         self.values = rig.still_translations  # in the file's terms
         self.apart = np.flatnonzero(np.abs(self.places - self.rest).max(-1) > STILL).tolist()
-        self.turned = np.flatnonzero(rotation.angle_between(rig.turn, rotation.IDENTITY) > 0)
+        self.turned = np.flatnonzero(rotation.measure_angle_between(rig.turn, rotation.IDENTITY) > 0)
         self.turns = rig.turn[self.turned].astype(np.float32)
         self._rig = rig
 
@@ -115,7 +115,7 @@ class TakeTracks:
             raise NotFiniteError(int(np.searchsorted(self.ends, frame, "right")), joint)
         rotations = rotation.normalize(rotations)
         for begin, end in zip(self.begins, self.ends, strict=True):
-            rotations[begin:end] = rotation.continuous(rotations[begin:end])
+            rotations[begin:end] = rotation.make_continuous(rotations[begin:end])
         return rotations
 
     def moved(self) -> list[dict[int, Array]]:

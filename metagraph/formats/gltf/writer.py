@@ -22,7 +22,7 @@ from metagraph.formats.gltf.binary import (
     USHORT,
     BinaryChunk,
     Packing,
-    glb_bytes,
+    make_glb_bytes,
 )
 from metagraph.formats.gltf.key_thinning import find_kept_frames
 from metagraph.motion import rotation
@@ -115,7 +115,7 @@ def write_glb(
     file.add_body(shown)
     file.add_clips(clips)
     file.add_extensions(packed_mesh=compress and shown is not None)
-    write_atomically(path, glb_bytes(file.document, file.body))
+    write_atomically(path, make_glb_bytes(file.document, file.body))
 
 
 class _File:

@@ -46,12 +46,13 @@ class KeypointFrame:
     space: list[SeenPerson] = field(default_factory=list)
 
 
-def spelt(key: str) -> str:
+def normalize_key(key: str) -> str:
+    """Return a key in small letters, without underscores and hyphens."""
     return key.replace("_", "").replace("-", "").lower()
 
 
 def has_people(item: Mapping[str, Any]) -> bool:
-    return any(spelt(k) in (*_SPACE, *_FLAT, *_PEOPLE) for k in item)
+    return any(normalize_key(k) in (*_SPACE, *_FLAT, *_PEOPLE) for k in item)
 
 
 def is_json_number(value: Any) -> bool:
@@ -81,7 +82,7 @@ def is_untimed_person(item: Any) -> bool:
     """
     if not isinstance(item, dict):
         return False
-    said = {spelt(str(k)) for k in item}
+    said = {normalize_key(str(k)) for k in item}
     timed = said & {*_SECONDS, *_MILLISECONDS, *_NUMBER}
     return "keypoints" in said and "bbox" in said and bool(said & set(_SCORES)) and not timed
 
@@ -96,7 +97,7 @@ def read_frame(path: Path, item: Any, where: str) -> KeypointFrame:
         return out
     if not isinstance(item, dict):
         raise FileError(path, "it is no frame: an object or a list is expected", where, REMEDY)
-    said = {spelt(k): v for k, v in item.items()}
+    said = {normalize_key(k): v for k, v in item.items()}
     _when(path, said, out)
     several = next((k for k in _PEOPLE if k in said), None)
     if several is not None:
@@ -105,7 +106,7 @@ def read_frame(path: Path, item: Any, where: str) -> KeypointFrame:
             raise FileError(path, f"'{several}' is not a list of people", where, REMEDY)
         out.kept = [sorted(map(str, p)) for p in people]
         for person in people[:MOST_PEOPLE]:
-            _take(path, _with_scores(path, {spelt(k): v for k, v in person.items()}, where), out)
+            _take(path, _with_scores(path, {normalize_key(k): v for k, v in person.items()}, where), out)
     elif any(k in said for k in (*_SPACE, *_FLAT)):
         _take(path, _with_scores(path, said, where), out)
     elif out.time is None and out.number is None:

@@ -32,8 +32,8 @@ from metagraph.formats.keypoints.frames import (
     is_json_number,
     is_person,
     is_untimed_person,
+    normalize_key,
     read_frame,
-    spelt,
 )
 from metagraph.mimicry.keypoint_layouts import (
     BY_COUNT,
@@ -222,13 +222,15 @@ def _is_json(line: bytes) -> bool:
 
 
 def _heading(path: Path, data: Mapping[str, Any], head: _Head) -> None:
-    said = {spelt(k): v for k, v in data.items()}
+    said = {normalize_key(k): v for k, v in data.items()}
     meta = said.get("metainfo")
     if isinstance(meta, dict):
-        named = {spelt(str(k)): v for k, v in meta.items()}
+        named = {normalize_key(str(k)): v for k, v in meta.items()}
         points = named.get("keypointid2name")
         first = points.get("0") if isinstance(points, dict) else None
-        head.h36m = spelt(str(named.get("datasetname", ""))) in ("h36m", "human36m") or first == "root"
+        head.h36m = (
+            normalize_key(str(named.get("datasetname", ""))) in ("h36m", "human36m") or first == "root"
+        )
     for name, keys in {
         "fps": ("fps", "framerate"),
         "width": ("width", "imagewidth"),

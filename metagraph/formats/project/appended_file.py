@@ -41,7 +41,7 @@ class AppendedFile:
         try:
             if not self._torn:
                 self._size = os.fstat(handle).st_size
-            self._folder = identity_of(self.path.parent)
+            self._folder = read_identity(self.path.parent)
         except OSError:
             os.close(handle)
             raise
@@ -82,12 +82,12 @@ class AppendedFile:
 
     def _moved_to(self) -> Path | None:
         """Return where it is by now, where its folder has another name."""
-        place = folder_now(self.path.parent, self._folder, path_of(self._handle))
+        place = find_moved_folder(self.path.parent, self._folder, find_open_path(self._handle))
         if place is None:
             return None
         path = place / self.path.name
         assert self._handle is not None
-        return path if identity_of(path) == identity_from(os.fstat(self._handle)) else None
+        return path if read_identity(path) == make_identity(os.fstat(self._handle)) else None
 
     def _write_again(self) -> None:
         """Write what was removed again; what stands in its place is put aside, if it says anything else."""
@@ -142,19 +142,20 @@ def _aside(path: Path) -> Path:
     return place
 
 
-def identity_from(found: os.stat_result) -> Identity:
+def make_identity(found: os.stat_result) -> Identity:
+    """Return the identity of a file or folder that was looked at: its device and its number there."""
     return found.st_dev, found.st_ino
 
 
-def identity_of(path: Path) -> Identity | None:
+def read_identity(path: Path) -> Identity | None:
     """Return what a file or folder is known by, whatever its name; None if there is none."""
     try:
-        return identity_from(path.stat())
+        return make_identity(path.stat())
     except (OSError, ValueError):
         return None
 
 
-def path_of(handle: int | None) -> Path | None:
+def find_open_path(handle: int | None) -> Path | None:
     """Return where an open file is by now; None if the system does not tell, or it was removed."""
     if handle is None:
         return None
@@ -166,23 +167,23 @@ def path_of(handle: int | None) -> Path | None:
         else:
             said = str(Path(f"/proc/self/fd/{handle}").readlink())
         path = Path(said)
-        return path if identity_of(path) == identity_from(os.fstat(handle)) else None
+        return path if read_identity(path) == make_identity(os.fstat(handle)) else None
     except (OSError, ValueError, ImportError):
         return None
 
 
-def folder_now(folder: Path, known: Identity | None, inside: Path | None = None) -> Path | None:
+def find_moved_folder(folder: Path, known: Identity | None, inside: Path | None = None) -> Path | None:
     """Return where a folder is by now that is not at its path any more; None if it is there still, or nobody
     knows.
 
     known: what it is known by. inside: where a file in it was found. Else it is looked for beside its path.
     """
-    if known is None or identity_of(folder) == known:
+    if known is None or read_identity(folder) == known:
         return None
-    if inside is not None and identity_of(inside.parent) == known:
+    if inside is not None and read_identity(inside.parent) == known:
         return inside.parent
     with suppress(OSError), os.scandir(folder.parent) as found:
         for entry in found:
-            if entry.is_dir(follow_symlinks=False) and identity_of(Path(entry.path)) == known:
+            if entry.is_dir(follow_symlinks=False) and read_identity(Path(entry.path)) == known:
                 return Path(entry.path)
     return None

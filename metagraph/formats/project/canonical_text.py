@@ -51,7 +51,7 @@ class _OtherTextError(Exception):
     """The text is not canonical."""
 
 
-def canonical(text: str) -> Data | None:
+def read_canonical(text: str) -> Data | None:
     """Return the data of a canonical text; None for any other, whatever it is."""
     if "\t" in text or ODD.search(text) or ("\\" in text and _STRANGE.search(text)):
         return None

@@ -9,8 +9,8 @@ from metagraph.formats.project.fields import (
     Data,
     DataError,
     as_plain,
-    floats,
     get,
+    read_floats,
     refuse_unknown_fields,
     require_one_of,
     round_number,
@@ -63,7 +63,7 @@ def _spans(items: Iterable[Data], where: str) -> Iterator[ContactSpan]:
 def _key(row: object, where: str) -> ContactKey:
     if not isinstance(row, list):
         raise DataError(where, "should be a list of eight numbers")
-    time, x, y, z, *turn = floats(row, 8, where, 1e6)
+    time, x, y, z, *turn = read_floats(row, 8, where, 1e6)
     size = sum(q * q for q in turn) ** 0.5
     if not 0.9 < size < 1.1:
         raise DataError(where, "should end with a quaternion of length 1")

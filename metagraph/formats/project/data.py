@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.common.network_paths import close_path, original_path
+from metagraph.common.network_paths import close_path, recover_original_path
 from metagraph.formats.clip_identity import remove_clip_identity
 from metagraph.formats.project.contact_data import decode_contacts, encode_contacts
 from metagraph.formats.project.fields import (
@@ -26,17 +26,17 @@ from metagraph.formats.project.fields import (
     decode_joint_weights,
     encode_joint_weights,
     fill_fields,
-    floats,
     get,
     is_too_large,
-    items,
+    list_changed_fields,
+    read_floats,
+    read_items,
     read_texts,
     refuse_unknown_fields,
     require_one_of,
     round_number,
-    sparse,
 )
-from metagraph.formats.project.manual_data import decode_manual, manual_data
+from metagraph.formats.project.manual_data import decode_manual, make_manual_data
 from metagraph.formats.project.text import as_text
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.clip_mark import ClipMark
@@ -76,7 +76,10 @@ FORMAT = 2  # of the project file; older ones are upgraded when read
 
 def encode_action(action: Action) -> Data:
     """Return an action; its timing's fields stand beside its own. The layer is said by where it is."""
-    out = {**sparse(action, ("timing", "layer", "joint_weights", "contacts")), **sparse(action.timing)}
+    out = {
+        **list_changed_fields(action, ("timing", "layer", "joint_weights", "contacts")),
+        **list_changed_fields(action.timing),
+    }
     out |= encode_joint_weights(action.joint_weights)
     if action.contacts:
         out["contacts"] = encode_contacts(action.contacts)
@@ -86,9 +89,10 @@ def encode_action(action: Action) -> Data:
 _CONTACT = ("upper", "lower", "hand", "to", "first", "last")
 
 
-def clip_data(entry: ClipEntry) -> Data:
-    out = sparse(entry, ("motion", "source", "digest", "retime"))
-    out["path"] = original_path(entry.path)
+def make_clip_data(entry: ClipEntry) -> Data:
+    """Return a clip as the project file has it, without its motion."""
+    out = list_changed_fields(entry, ("motion", "source", "digest", "retime"))
+    out["path"] = recover_original_path(entry.path)
     if entry.retime.speed != 1.0:
         out["speed"] = as_plain(entry.retime.speed)
     if entry.retime.contacts:
@@ -152,18 +156,18 @@ def to_data(project: Project) -> Data:
         "character": as_plain(project.character),
         **({"hidden": list(project.hidden)} if project.hidden else {}),
         **({"language": project.language} if project.language != AUTO else {}),
-        "base": sparse(project.base),
-        "settings": sparse(project.settings),
+        "base": list_changed_fields(project.base),
+        "settings": list_changed_fields(project.settings),
         "roles": dict(sorted(project.roles.items())),
         "parts": dict(sorted(project.parts.items())),
-        "clips": [clip_data(entry) for entry in project.clips.values()],
+        "clips": [make_clip_data(entry) for entry in project.clips.values()],
         "layers": layers,
         "markov": {
             layer: encode_markov(project.markov[layer]) for layer in LAYERS if layer in project.markov
         },
         **{key: data for key in STRUCTS if (data := encode_struct(getattr(project, key)))},
         **(
-            {"manual": {x: manual_data(project.manual[x]) for x in LAYERS if x in project.manual}}
+            {"manual": {x: make_manual_data(project.manual[x]) for x in LAYERS if x in project.manual}}
             if project.manual
             else {}
         ),
@@ -174,7 +178,7 @@ def to_data(project: Project) -> Data:
 def encode_markov(model: Markov) -> Data:
     """Return a model; a state's tags stand behind it: "both gesture positive"."""
     return {
-        **sparse(model, ("layer", "states", "matrix", "tags")),
+        **list_changed_fields(model, ("layer", "states", "matrix", "tags")),
         "states": [f"{limb} {kind} {model.tag(n)}".rstrip() for n, (limb, kind) in enumerate(model.states)],
         "matrix": [[_whole(p) for p in row] for row in model.matrix],
     }
@@ -356,8 +360,10 @@ def decode_skeleton(joints: list[Any], where: str = "skeleton") -> Skeleton | No
         places[name] = n
         names.append(name)
         parents.append(-1 if parent is None else places[parent])
-        at.append(floats(get(joint, "at", list, place), 3, f"{place}.at", 1e6))
-        turn.append(floats(get(joint, "turn", list, place, [0.0, 0.0, 0.0, 1.0]), 4, f"{place}.turn", 2.0))
+        at.append(read_floats(get(joint, "at", list, place), 3, f"{place}.at", 1e6))
+        turn.append(
+            read_floats(get(joint, "turn", list, place, [0.0, 0.0, 0.0, 1.0]), 4, f"{place}.turn", 2.0)
+        )
         if not 0.9 < math.hypot(*turn[-1]) < 1.1:
             raise DataError(f"{place}.turn", "should be a quaternion of length 1")
     try:
@@ -373,12 +379,12 @@ def _graph_from(
     start = get(data, "start", str, where, None)
     refuse_unknown_fields(data, ("start", "weights", "stances", "actions"), where)
     stances: dict[str, Stance] = {}
-    for place, item in items(data, "stances", where, stance_ids):
+    for place, item in read_items(data, "stances", where, stance_ids):
         refuse_unknown_fields(item, ("id", "name"), place)
         stances[item["id"]] = Stance(item["id"], layer, get(item, "name", str, place))
     actions = {
         item["id"]: decode_action(remove_clip_identity(item, clips), layer, place)
-        for place, item in items(data, "actions", where, action_ids)
+        for place, item in read_items(data, "actions", where, action_ids)
     }
     weights = get(data, "weights", dict, where, {})
     for part in weights:
@@ -397,7 +403,7 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         raise DataError("metagraph", "is missing: this is not a Metagraph project")
     data = dict(as_text(data))
     refuse_unknown_fields(data, _PROJECT_FIELDS, "")
-    clips = {item["id"]: _clip_from(item, where) for where, item in items(data, "clips", "", set())}
+    clips = {item["id"]: _clip_from(item, where) for where, item in read_items(data, "clips", "", set())}
     layers = get(data, "layers", dict, "", {})
     refuse_unknown_fields(layers, LAYERS, "layers")
     stance_ids: set[str] = set()
@@ -484,14 +490,14 @@ def decode_markov(layer: Layer, data: Any, where: str) -> Markov:
     if not rows or len(rows) != len(states):
         raise DataError(f"{where}.matrix", f"should have {max(1, len(states))} rows, one for each state")
     matrix = tuple(
-        tuple(floats(row if isinstance(row, list) else [], len(states), f"{where}.matrix[{n}]"))
+        tuple(read_floats(row if isinstance(row, list) else [], len(states), f"{where}.matrix[{n}]"))
         for n, row in enumerate(rows)
     )
     for n, row in enumerate(matrix):
         if min(row) < 0 or not 0.99 < sum(row) < 1.01:
             raise DataError(f"{where}.matrix[{n}]", "should be probabilities that sum to 1")
     lengths = [
-        floats(x if isinstance(x, list) else [], 2, f"{where}.lengths", 1e6)
+        read_floats(x if isinstance(x, list) else [], 2, f"{where}.lengths", 1e6)
         for x in get(data, "lengths", list, where, [])
     ]
     if lengths and len(lengths) != len(states):
@@ -499,7 +505,7 @@ def decode_markov(layer: Layer, data: Any, where: str) -> Markov:
     if any(mean < 1e-3 or deviation < 0 for mean, deviation in lengths):
         raise DataError(f"{where}.lengths", "should be means above 0 and deviations of 0 or more")
     modes = [
-        floats(x if isinstance(x, list) else [], 3, f"{where}.modes")
+        read_floats(x if isinstance(x, list) else [], 3, f"{where}.modes")
         for x in get(data, "modes", list, where, [])
     ]
     if modes and (

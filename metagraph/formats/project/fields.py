@@ -9,7 +9,7 @@ from dataclasses import MISSING, fields
 from functools import cache
 from typing import Any
 
-from metagraph.common.network_paths import original_path
+from metagraph.common.network_paths import recover_original_path
 
 Data = dict[str, Any]
 LARGEST = 1e15  # no number in a project is larger; up to here whole numbers are exact
@@ -39,7 +39,7 @@ def round_number(value: float) -> float | int:
 def as_plain(value: Any) -> Any:
     """Return a value as it can be written. Raises ValueError and TypeError."""
     if isinstance(value, str):
-        return original_path(value) if value.startswith(".") else value
+        return recover_original_path(value) if value.startswith(".") else value
     if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, int) and abs(value) <= LARGEST:
@@ -51,7 +51,7 @@ def as_plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no place in a project file")
 
 
-def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
+def list_changed_fields(value: Any, skip: tuple[str, ...] = ()) -> Data:
     """Return a dataclass's fields that differ from their defaults. Raises DataError."""
     out: Data = {}
     for name, default in _defaults(type(value), skip):  # type: ignore[arg-type]
@@ -172,7 +172,7 @@ _RANGES = {  # field -> least and greatest value of what no check of the graph l
 def fill_fields(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return a dataclass's simple fields read from data, those that are there."""
     out: dict[str, Any] = {}
-    every = kinds(cls)
+    every = list_field_types(cls)
     for name, value in data.items():
         kind = every.get(name)
         if kind is None or name in skip:
@@ -204,7 +204,7 @@ def _check_range(name: str, value: Any, where: str) -> None:
 
 
 @cache
-def kinds(cls: Any) -> dict[str, Any]:
+def list_field_types(cls: Any) -> dict[str, Any]:
     """Return field -> type; (type,) where None is a value, too; `tuple` for a list of texts."""
     out: dict[str, Any] = {}
     for f in fields(cls):
@@ -214,7 +214,7 @@ def kinds(cls: Any) -> dict[str, Any]:
     return out
 
 
-def items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, Data]]:
+def read_items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, Data]]:
     """Return a list of dicts with ids, each with words for where it stands; `seen` are ids already taken."""
     out: list[tuple[str, Data]] = []
     for n, item in enumerate(get(data, key, list, where, ())):
@@ -229,7 +229,9 @@ def items(data: Data, key: str, where: str, seen: set[str]) -> list[tuple[str, D
     return out
 
 
-def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) -> list[float]:
+def read_floats(values: list[Any], count: int, where: str, largest: float = LARGEST) -> list[float]:
+    """Return a list of exactly `count` numbers. Raises DataError for anything else, and for numbers beyond
+    `largest` either way."""
     numbers = [
         x for x in values if isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= largest
     ]

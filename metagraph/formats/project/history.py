@@ -27,7 +27,7 @@ class UndoStep:
     after: Project
 
 
-def history(left: Left) -> tuple[UndoStep, ...]:
+def list_undo_steps(left: Left) -> tuple[UndoStep, ...]:
     """Return the steps a journal leads through, the last to its project; without motion.
 
     What was undone and not done again is no step any more; if nobody knows what was undone, undoing is one

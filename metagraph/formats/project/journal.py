@@ -29,21 +29,25 @@ from metagraph.formats.new_file import Access, access_of
 from metagraph.formats.project.appended_file import AppendedFile
 from metagraph.formats.project.data import (
     STRUCTS,
-    clip_data,
     encode_action,
     encode_markov,
     encode_skeleton,
     encode_stance,
     encode_struct,
     encode_weights,
+    make_clip_data,
     to_data,
 )
 from metagraph.formats.project.fields import Data, DataError
-from metagraph.formats.project.journal_records import frame_record
+from metagraph.formats.project.journal_records import encode_record
 from metagraph.formats.project.journal_register import JournalRegister
-from metagraph.formats.project.journal_words import describe_displacement, unsayable, unwritten
-from metagraph.formats.project.manual_data import encode_alias, encode_link, encode_state, manual_data
-from metagraph.formats.store import content_digest, file_digest
+from metagraph.formats.project.journal_words import (
+    describe_displacement,
+    make_unstorable_error,
+    make_unwritten_error,
+)
+from metagraph.formats.project.manual_data import encode_alias, encode_link, encode_state, make_manual_data
+from metagraph.formats.store import compute_content_digest, compute_file_digest
 from metagraph.graph.manual.machine import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 
@@ -90,7 +94,7 @@ def _differing(before: Project, after: Project) -> Data:
         bones = [encode_skeleton(x) if x is not None else [] for x in (before.skeleton, after.skeleton)]
         if bones[0] != bones[1]:  # to the last digit; it may have been read twice
             out["skeleton"] = bones[1]
-    _keyed(out, "clips", before.clips, after.clips, clip_data)
+    _keyed(out, "clips", before.clips, after.clips, make_clip_data)
     layers = {layer: part for layer in LAYERS if (part := _layer(before.graphs[layer], after.graphs[layer]))}
     if layers:
         out["layers"] = layers
@@ -125,7 +129,7 @@ def _manual(before: Mapping[Layer, Manual], after: Mapping[Layer, Manual]) -> Da
     for layer, new in after.items():
         old = before.get(layer)
         if old is None:
-            out[layer] = manual_data(new)
+            out[layer] = make_manual_data(new)
         elif old is not new:
             part: Data = {
                 name: getattr(new, name)
@@ -214,7 +218,7 @@ class Journal:
         self._base: tuple[Project, int, Sequence[Done]] | None = None
         if digest is None:
             with suppress(FileError):
-                digest = file_digest(saved)
+                digest = compute_file_digest(saved)
         self._head: Data = {"saved": digest, "file": str(saved) if saved else None, "begun": int(time.time())}
         if owner is not None:
             self._head["owner"] = msgspec.to_builtins(owner)
@@ -247,8 +251,8 @@ class Journal:
             records = [{**self._head, **holds}, foundation]
             records += [record for edit in done if (record := _record(*edit, "done"))]
         except DataError as error:
-            raise unsayable(self.path, error) from None
-        content = b"".join(frame_record(record, number) for number, record in enumerate(records))
+            raise make_unstorable_error(self.path, error) from None
+        content = b"".join(encode_record(record, number) for number, record in enumerate(records))
         with self._turn:
             try:
                 # Until then the old one stands; where none does, and a file holds all but the first edit,
@@ -256,7 +260,7 @@ class Journal:
                 sync = self._base is not None or self.path.exists()
                 self._file.begin(content, self._like, sync)
             except OSError as error:
-                raise unwritten(self.path, error, phrase("while creating it")) from None
+                raise make_unwritten_error(self.path, error, phrase("while creating it")) from None
             self._begun, self._number = True, len(records)
         if self._register is not None:
             self._register.add(self.path, self._saved, self._head)
@@ -267,7 +271,7 @@ class Journal:
             return {"base": to_data(self._base[0]), "unsaved": self._base[1]}
         with suppress(OSError, UnicodeDecodeError):
             content = self._saved.read_bytes() if self._saved is not None else b""
-            if content_digest(content) == self._head["saved"]:
+            if compute_content_digest(content) == self._head["saved"]:
                 return {"text": content.decode("utf-8-sig")}
         return {}
 
@@ -283,7 +287,7 @@ class Journal:
         try:
             record = _record(before, after, step, how)
         except DataError as error:
-            raise unsayable(self.path, error) from None
+            raise make_unstorable_error(self.path, error) from None
         if record:
             if not self._begun:
                 self._begin_with(before)
@@ -337,18 +341,18 @@ class Journal:
             finally:
                 os.close(handle)
         except OSError as error:
-            self.error = unwritten(self.path, error, phrase("while checking it"))
+            self.error = make_unwritten_error(self.path, error, phrase("while checking it"))
             return False
         return whole
 
     def _write(self, record: Data) -> None:
         with self._turn:
             try:
-                self._file.add(frame_record(record, self._number))
+                self._file.add(encode_record(record, self._number))
                 self._number += 1
                 self._look()  # an edit in a file that was removed is no edit that was kept
             except OSError as error:
-                raise unwritten(self.path, error, phrase("while adding to it")) from None
+                raise make_unwritten_error(self.path, error, phrase("while adding to it")) from None
 
     def _look(self) -> None:
         """Look whether the file is in its place, and put it there again. Raises OSError."""
@@ -385,7 +389,7 @@ def _record(before: Project, after: Project, step: str, how: How) -> Data:
     return {**change, **about, "at": int(time.time())}
 
 
-def journal_path(saved: Path, sitting: str = "") -> Path:
+def make_journal_path(saved: Path, sitting: str = "") -> Path:
     """Return where the journal of a sitting at a project file lies: beside it, hidden. Without a sitting: as
     it was called at first.
     """

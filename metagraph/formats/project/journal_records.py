@@ -58,7 +58,7 @@ class Records:
         return tuple(entry for entry in self.entries if isinstance(entry, JournalRecord))
 
 
-def frame_record(record: Data, number: int) -> bytes:
+def encode_record(record: Data, number: int) -> bytes:
     """Return a record as it is written."""
     body = b"%s\t%d" % (_encoded(record), number)
     return b"%s\t%08x\n\n" % (body, crc32(body))

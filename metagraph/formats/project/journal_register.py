@@ -14,7 +14,7 @@ import msgspec
 
 from metagraph.errors import FileError
 from metagraph.formats.new_file import PRIVATE
-from metagraph.formats.project.appended_file import identity_of
+from metagraph.formats.project.appended_file import read_identity
 from metagraph.formats.project.fields import Data
 from metagraph.formats.replacing import replace_file
 
@@ -43,7 +43,7 @@ class JournalRegister:
             str(journal),
             str(project.resolve()) if project is not None else None,
             head.get("saved"),
-            identity_of(project) if project is not None else None,
+            read_identity(project) if project is not None else None,
             int(head.get("begun", 0)),
         )
         with suppress(OSError, FileError, UnicodeEncodeError):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
-from metagraph.formats.project.appended_file import identity_of
+from metagraph.formats.project.appended_file import read_identity
 from metagraph.formats.project.journal_register import JournalRegister, KnownJournal
 from metagraph.formats.recovery import (
     DAMAGED,
@@ -19,7 +19,7 @@ from metagraph.formats.recovery import (
     order_journals,
     read_journal_head,
 )
-from metagraph.formats.store import file_digest
+from metagraph.formats.store import compute_file_digest
 
 ANY = r"\..+\.(journal|old)"  # `.old`: as those were called at first that could not be read
 _BESIDE = re.compile(r"\.(?P<name>.+?)(\.[0-9a-f]+)?\.(journal|old)(\.damaged)?")
@@ -37,7 +37,7 @@ def find_journals_for(saved: Path, register: JournalRegister) -> list[Path]:
     others += [path for path in known if path not in others and is_file(path) and is_left(path)]
     digest: str | None = None
     with suppress(FileError):
-        digest = file_digest(real)
+        digest = compute_file_digest(real)
     for path in others:
         if _belongs(path, known.get(path), real, digest):
             found.append(path)
@@ -52,7 +52,7 @@ def find_journals_beside(saved: Path) -> list[Path]:
     own = re.compile(rf"{re.escape(f'.{real.name}')}(\.[0-9a-f]+)?\.(journal|old)({re.escape(DAMAGED)})?")
     digest: str | None = None
     with suppress(FileError):
-        digest = file_digest(real)
+        digest = compute_file_digest(real)
     beside: list[Path] = []
     with suppress(OSError):
         beside = [p for p in real.parent.iterdir() if re.fullmatch(f"{ANY}({re.escape(DAMAGED)})?", p.name)]
@@ -73,7 +73,7 @@ def _belongs(journal: Path, known: KnownJournal | None, saved: Path, digest: str
             return True
     if is_file(project):
         return False  # it is that one's
-    here = identity_of(saved)
+    here = read_identity(saved)
     if known is not None and known.identity is not None and here is not None:
         if known.identity == here:
             return True

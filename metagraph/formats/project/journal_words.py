@@ -9,7 +9,7 @@ from metagraph.errors import FileError
 from metagraph.formats.project.fields import DataError
 
 
-def unwritten(path: Path, error: OSError, where: str) -> FileError:
+def make_unwritten_error(path: Path, error: OSError, where: str) -> FileError:
     """Return the error of a journal that the system does not let be written."""
     return FileError(
         path,
@@ -19,7 +19,7 @@ def unwritten(path: Path, error: OSError, where: str) -> FileError:
     )
 
 
-def unsayable(path: Path, error: DataError) -> FileError:
+def make_unstorable_error(path: Path, error: DataError) -> FileError:
     """Return the error of an edit that no file can hold."""
     return FileError(
         path, phrase("cannot be written ({error})", error=error), error.where, phrase("Correct that value.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from metagraph.formats.project.data import FORMAT, from_data
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.formats.project.journal import KEYED, find_changes
-from metagraph.formats.project.manual_data import manual_data
+from metagraph.formats.project.manual_data import make_manual_data
 from metagraph.graph.model import Project
 
 
@@ -27,7 +27,7 @@ def _part(change: Data, after: Project) -> Data:
     part: Data = {"metagraph": FORMAT, **_listed(change)}
     part["layers"] = {layer: _listed(some) for layer, some in change.get("layers", {}).items()}
     if "manual" in change:
-        part["manual"] = {layer: manual_data(machine) for layer, machine in after.manual.items()}
+        part["manual"] = {layer: make_manual_data(machine) for layer, machine in after.manual.items()}
     return part
 
 

@@ -11,11 +11,11 @@ from metagraph.formats.project.fields import (
     decode_joint_weights,
     encode_joint_weights,
     fill_fields,
-    items,
+    list_changed_fields,
+    read_items,
     refuse_unknown_fields,
     require_one_of,
     round_number,
-    sparse,
 )
 from metagraph.graph.manual.machine import ANY, WHENS, Alias, Condition, Link, Manual, State
 from metagraph.graph.words import LIMBS, Layer
@@ -26,19 +26,22 @@ _LINK_FIELDS = ({f.name for f in fields(Link)} | {f.name for f in fields(Conditi
 
 
 def encode_state(state: State) -> Data:
-    return {**sparse(state, ("layer", "joint_weights")), **encode_joint_weights(state.joint_weights)}
+    return {
+        **list_changed_fields(state, ("layer", "joint_weights")),
+        **encode_joint_weights(state.joint_weights),
+    }
 
 
 def encode_alias(alias: Alias) -> Data:
-    return sparse(alias, ("layer",))
+    return list_changed_fields(alias, ("layer",))
 
 
 def encode_link(link: Link) -> Data:
     """Return a link; its condition's fields stand beside its own."""
-    return {**sparse(link, ("condition",)), **sparse(link.condition)}
+    return {**list_changed_fields(link, ("condition",)), **list_changed_fields(link.condition)}
 
 
-def manual_data(manual: Manual) -> Data:
+def make_manual_data(manual: Manual) -> Data:
     """Return a layer's manual state machine."""
     aliases = {"aliases": [encode_alias(a) for a in manual.aliases.values()]} if manual.aliases else {}
     return {
@@ -58,14 +61,14 @@ def decode_manual(layer: Layer, data: Any, ids: set[str]) -> Manual:
     where = f"manual.{layer}"
     refuse_unknown_fields(data, [f.name for f in fields(Manual) if f.name != "layer"], where)
     states: dict[str, State] = {}
-    for place, item in items(data, "states", where, ids):
+    for place, item in read_items(data, "states", where, ids):
         refuse_unknown_fields(item, _STATE_FIELDS, place)
         values = _with(State, item, place, ("id", "clip", "name"), ("layer", "joint_weights"))
         require_one_of(values.get("limb", "both"), LIMBS, f"{place}.limb")
         weights = decode_joint_weights(item, place)
         states[item["id"]] = State(layer=layer, joint_weights=weights, **values)
     aliases: dict[str, Alias] = {}
-    for place, item in items(data, "aliases", where, ids):
+    for place, item in read_items(data, "aliases", where, ids):
         refuse_unknown_fields(item, _ALIAS_FIELDS, place)
         values = _with(Alias, item, place, ("id", "name"), ("layer",))
         for n, state in enumerate(values.get("states", ())):
@@ -75,7 +78,7 @@ def decode_manual(layer: Layer, data: Any, ids: set[str]) -> Manual:
             raise DataError(f"{place}.entry", f"'{values['entry']}' is not a state of the {layer} layer")
         aliases[item["id"]] = Alias(layer=layer, **values)
     links: dict[str, Link] = {}
-    for place, item in items(data, "links", where, ids):
+    for place, item in read_items(data, "links", where, ids):
         refuse_unknown_fields(item, _LINK_FIELDS, place)
         values = _with(Link, item, place, ("id", "source", "target"), ("condition",))
         for end, allowed in (("source", values["source"] == ANY), ("target", False)):

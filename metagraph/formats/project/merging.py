@@ -15,7 +15,7 @@ from typing import Any
 from metagraph.common.wording import phrase
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
-from metagraph.graph.ids import derived_id
+from metagraph.graph.ids import derive_id
 from metagraph.graph.model import Project, Timing
 
 _GONE: Any = object()
@@ -78,7 +78,7 @@ def _apart(base: Data, mine: Data, theirs: Data) -> Data:
 
 def _other_id(ident: str, taken: Container[str]) -> str:
     letter = ident.rstrip("0123456789")
-    return next(i for n in count() if (i := derived_id(letter, ident, n)) not in taken)
+    return next(i for n in count() if (i := derive_id(letter, ident, n)) not in taken)
 
 
 def _made(data: Any, where: str = "") -> Iterator[tuple[str, tuple[str, Any]]]:

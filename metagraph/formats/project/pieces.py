@@ -13,8 +13,8 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import DataError
-from metagraph.formats.store import absolute, load_motions, move_project, open_project
-from metagraph.graph.editing.taking import Taking, piece_of, take
+from metagraph.formats.store import load_motions, make_paths_absolute, move_project, open_project
+from metagraph.graph.editing.taking import Taking, take, take_piece
 from metagraph.graph.model import Project
 
 CLIPBOARD = phrase("the clipboard")
@@ -54,7 +54,7 @@ def read_other_project(
 
 
 def _at(project: Project, path: Path, into: Path | None) -> Project:
-    return absolute(project, path.parent) if into is None else move_project(project, path, into)
+    return make_paths_absolute(project, path.parent) if into is None else move_project(project, path, into)
 
 
 def encode_piece(
@@ -63,9 +63,9 @@ def encode_piece(
     """Return actions and stances of a project as a text that any window pastes. folder: what its paths
     are relative to; None when they are absolute.
     """
-    piece = piece_of(project, actions, stances)
+    piece = take_piece(project, actions, stances)
     if folder is not None:
-        piece = absolute(piece, folder)
+        piece = make_paths_absolute(piece, folder)
     wanted = [a.id for a in piece.actions() if a.id in actions or a.stance in stances]
     return json.dumps({_MARK: 1, "actions": wanted, "project": to_data(piece)})
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.formats.project.canonical_text import DEPTH, ODD, WORDS, canonical
+from metagraph.formats.project.canonical_text import DEPTH, ODD, WORDS, read_canonical
 
 HEADER = "# A Metagraph project. One line a clip, stance or action; times in seconds.\n"
 Data = dict[str, Any]
@@ -149,7 +149,7 @@ _INFINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
 
 def read_text_data(text: str) -> tuple[Any, Callable[[], Lines]]:
     """Return the data of a text, and what tells the line of every field. Raises TextError."""
-    data = canonical(text)
+    data = read_canonical(text)
     if data is not None:
         return data, lambda: parse_yaml(text)[1]
     data, lines = parse_yaml(text)

@@ -39,7 +39,7 @@ class Verified:
         return tuple(fault for part in self.parts for fault in part.faults)
 
 
-def fault_of(error: FileError, name: str | None = None, remedy: str | None = None) -> VerificationFault:
+def make_fault(error: FileError, name: str | None = None, remedy: str | None = None) -> VerificationFault:
     """Return a file's error as a fault. name: what the file is called if that is more than its name; remedy:
     what to do if that is known better.
     """

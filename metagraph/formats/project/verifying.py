@@ -11,7 +11,7 @@ from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import is_file, read_file
 from metagraph.errors import FileError, clean_text
 from metagraph.formats.atomic import find_forsaken_files
-from metagraph.formats.locking import Owner, holder, is_gone, lock_path
+from metagraph.formats.locking import Owner, find_holder, is_gone, lock_path
 from metagraph.formats.project.data import FORMAT, to_data
 from metagraph.formats.project.journal_records import LostEdit
 from metagraph.formats.project.journal_search import find_journals_beside
@@ -22,10 +22,10 @@ from metagraph.formats.project.verified import (
     VerifiedPart,
     count_in_words,
     describe_whole,
-    fault_of,
+    make_fault,
 )
 from metagraph.formats.project.verifying_clips import verify_clips, verify_named_files
-from metagraph.formats.project.versions import earlier_versions
+from metagraph.formats.project.versions import list_earlier_versions
 from metagraph.formats.recovery import DAMAGED, Left, read_journal, read_journal_head, read_journal_owner
 from metagraph.formats.store import encode_project, parse_project, read_project
 from metagraph.graph.check import check_project
@@ -57,14 +57,14 @@ def _file(path: Path, content: bytes) -> tuple[Project | None, VerifiedPart]:
     try:
         project = read_project(path, notes)
     except FileError as error:
-        return None, VerifiedPart("file", "not whole", (fault_of(error),))
+        return None, VerifiedPart("file", "not whole", (make_fault(error),))
     faults = [VerificationFault(path.name, f"{note}.", restore) for note in notes]
     try:
         again = parse_project(encode_project(project, path).decode(), path)
         if to_data(again) != to_data(project):
             faults.append(VerificationFault(path.name, "would be saved otherwise than it was read.", restore))
     except FileError as error:
-        faults.append(fault_of(error))
+        faults.append(make_fault(error))
     words = f"format {_format(content)}, can be read and saved again without a change"
     return project, VerifiedPart("file", words if not faults else "not whole", tuple(faults))
 
@@ -121,7 +121,7 @@ def _left(journal: Path, path: Path) -> Iterator[VerificationFault]:
     try:
         left = read_journal(journal, path)
     except FileError as error:
-        yield fault_of(error, remedy="It is kept. Open the project in the window to see what can be done.")
+        yield make_fault(error, remedy="It is kept. Open the project in the window to see what can be done.")
         return
     if left is None:
         return
@@ -161,13 +161,13 @@ def _who(owner: Owner) -> str:
 
 
 def _versions(path: Path) -> VerifiedPart:
-    versions = earlier_versions(path)
+    versions = list_earlier_versions(path)
     faults = []
     for version in versions:
         try:
             read_project(version.path, [])
         except FileError as error:
-            faults.append(fault_of(error, remedy="Remove it; it cannot be gone back to."))
+            faults.append(make_fault(error, remedy="Remove it; it cannot be gone back to."))
     return VerifiedPart("versions", describe_whole(len(versions), faults, "can be opened"), tuple(faults))
 
 
@@ -177,7 +177,7 @@ def _leftovers(path: Path) -> VerifiedPart:
     words = "none"
     faults = find_unfinished_files(real.parent)
     lock = lock_path(real)
-    found = holder(lock, look_only=True) if is_file(lock) else None
+    found = find_holder(lock, look_only=True) if is_file(lock) else None
     if found is not None and found.gone:
         whose = _who(found.owner) if found.owner is not None else "somebody"
         faults.append(

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from metagraph.common.budgets import CONVERSATION_SECONDS, LINE_SECONDS
-from metagraph.common.files import unforeseen_error
-from metagraph.common.network_paths import explain_refusal, is_closed, original_path
+from metagraph.common.files import make_unforeseen_error
+from metagraph.common.network_paths import explain_refusal, is_closed, recover_original_path
 from metagraph.errors import clean_text
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.fbx.processes import batch
@@ -19,14 +19,14 @@ from metagraph.formats.project.verified import (
     VerifiedPart,
     count_in_words,
     describe_whole,
-    fault_of,
+    make_fault,
 )
 from metagraph.formats.store import (
     find_clip_place,
     find_moved_files,
     list_missing_clips,
+    make_path_relative,
     read_project,
-    relative,
 )
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.model import ClipEntry, Project
@@ -66,7 +66,7 @@ def verify_clips(project: Project, folder: Path) -> VerifiedPart:
 def _clip_faults(
     path: str, entries: Sequence[ClipEntry], folder: Path, now_at: Path | None
 ) -> Iterator[VerificationFault]:
-    name = clean_text(original_path(path))
+    name = clean_text(recover_original_path(path))
     place = find_clip_place(entries[0], folder)
     if is_closed(path):
         yield _closed(path)
@@ -74,7 +74,7 @@ def _clip_faults(
     if now_at is not None:
         yield VerificationFault(
             name,
-            f"is not there, but its content is at {relative(now_at, folder)}.",
+            f"is not there, but its content is at {make_path_relative(now_at, folder)}.",
             "Open the project and save it: it then names that place.",
         )
         place = now_at
@@ -94,7 +94,7 @@ def _clip_faults(
                 if entry.as_is == as_is:
                     yield from _take_faults(name, entry, takes, same)
     except Exception as error:  # one bad file never hides the others
-        yield fault_of(unforeseen_error(place, error), name)
+        yield make_fault(make_unforeseen_error(place, error), name)
 
 
 def _take_faults(
@@ -126,7 +126,7 @@ def _is_missing(place: Path) -> bool:
 
 
 def _closed(path: str) -> VerificationFault:
-    was = original_path(path)
+    was = recover_original_path(path)
     return VerificationFault(clean_text(was), f"was not looked at: {explain_refusal(was)}.", TRUST)
 
 
@@ -178,5 +178,5 @@ def _read_each(part: str, whole: str, readers: _Readers, folder: Path) -> Verifi
             for read in ways.values():
                 read(folder / name)
         except Exception as error:  # one bad file never hides the others
-            faults.append(fault_of(unforeseen_error(folder / name, error), clean_text(name)))
+            faults.append(make_fault(make_unforeseen_error(folder / name, error), clean_text(name)))
     return VerifiedPart(part, describe_whole(len(readers), faults, whole), tuple(faults))

@@ -16,7 +16,7 @@ from metagraph.common.wording import Phrase, phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.new_file import Access, access_of, open_new
-from metagraph.formats.replacing import sync_folder, unfinished_name, write_all
+from metagraph.formats.replacing import make_unfinished_name, sync_folder, write_all
 from metagraph.formats.store import SUFFIX
 
 KEPT = 3  # versions, unless the settings say otherwise
@@ -44,7 +44,7 @@ def is_version(path: Path) -> bool:
     return stem.endswith(SUFFIX) and number.isascii() and number.isdigit() and not number.startswith("0")
 
 
-def earlier_versions(path: Path) -> tuple[Version, ...]:
+def list_earlier_versions(path: Path) -> tuple[Version, ...]:
     """Return the earlier versions of a project file that there are, the most recent first."""
     whole = path.resolve()
     found = []
@@ -102,7 +102,7 @@ def _keep(path: Path, content: bytes, versions: int) -> None:
         copy.replace(first)
     finally:
         copy.unlink(missing_ok=True)
-    for version in earlier_versions(path):
+    for version in list_earlier_versions(path):
         if version.number > versions:
             version.path.unlink(missing_ok=True)
     sync_folder(path.parent)
@@ -111,7 +111,7 @@ def _keep(path: Path, content: bytes, versions: int) -> None:
 def _copied(path: Path, content: bytes) -> Path:
     """Return an unfinished copy of a file beside it, on the disk, with its rights and its time."""
     state = path.stat()
-    copy = path.with_name(unfinished_name())
+    copy = path.with_name(make_unfinished_name())
     handle = open_new(copy, access_of(path))
     try:
         try:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.ids import derived_id
+from metagraph.graph.ids import derive_id
 
 Array = NDArray[Any]
 
@@ -64,7 +64,7 @@ class Names:
         plain = plain if plain.strip("_") else otherwise
         plain = f"_{plain}" if plain[0].isdigit() else plain
         mark = re.sub(r"\W", "_", ident, flags=re.ASCII)
-        plain = plain if text.isascii() else f"{plain}_{mark or derived_id('', text)}"
+        plain = plain if text.isascii() else f"{plain}_{mark or derive_id('', text)}"
         name, count = plain, 1
         while name in self._taken:
             count += 1
@@ -98,19 +98,19 @@ def format_usda_numbers(values: Any) -> str:
     return f"[{', '.join([form] * len(flat)) % tuple(flat.tolist())}]"
 
 
-def tuples(values: Array) -> str:
+def write_tuples(values: Array) -> str:
     """Return an array of tuples, of `values [N, n]`; seven digits."""
-    return f"[{', '.join(each(values))}]"
+    return f"[{', '.join(write_each_tuple(values))}]"
 
 
-def each(values: Array) -> list[str]:
+def write_each_tuple(values: Array) -> list[str]:
     """Return the tuples of `values [N, n]` one by one."""
     count, size = values.shape
     form = f"({', '.join(['%.7g'] * size)})"
     return ("\n".join([form] * count) % tuple(values.reshape(-1).tolist())).split("\n") if count else []
 
 
-def matrices(values: Array) -> str:
+def write_matrices(values: Array) -> str:
     """Return an array of matrices, of `values [N, 4, 4]` for columns: USD's are for rows."""
     out = []
     for matrix in np.asarray(values, np.float64).transpose(0, 2, 1):
@@ -119,13 +119,13 @@ def matrices(values: Array) -> str:
     return f"[{', '.join(out)}]"
 
 
-def samples(times: Sequence[float], values: Iterable[str]) -> str:
+def write_time_samples(times: Sequence[float], values: Iterable[str]) -> str:
     """Return time samples, times in time codes."""
     inside = ", ".join(f"{format_usda_number(t)}: {v}" for t, v in zip(times, values, strict=True))
     return f"{{{inside}}}"
 
 
-def layer(metadata: Sequence[str], roots: Sequence[Prim]) -> bytes:
+def write_usd_layer(metadata: Sequence[str], roots: Sequence[Prim]) -> bytes:
     """Return a file's content."""
     out = ["#usda 1.0", "(", *(f"    {line}" for line in metadata), ")", ""]
     for root in roots:

@@ -19,15 +19,15 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.formats.usd.usda import (
     Names,
     Prim,
-    each,
     format_usda_number,
     format_usda_numbers,
     format_usda_string,
     format_usda_strings,
-    layer,
-    matrices,
-    samples,
-    tuples,
+    write_each_tuple,
+    write_matrices,
+    write_time_samples,
+    write_tuples,
+    write_usd_layer,
 )
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial
@@ -62,7 +62,7 @@ def write_usd(
         if other is not skeleton and other != skeleton:
             raise ValueError("a clip or the mesh is on another skeleton; retarget it first")
     rate = Counter(clip.fps for clip in clips).most_common(1)[0][0] if clips else FPS
-    joints = joint_paths(skeleton)
+    joints = list_joint_paths(skeleton)
     places = find_clip_paths([clip.name for clip in clips])
     root = Prim("SkelRoot", CHARACTER[1:], ['kind = "component"', *metadata])
     if clips:
@@ -83,11 +83,11 @@ def write_usd(
     for place, content in files:
         place.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(place, content)
-    write_atomically(path, layer(head, [root]))
+    write_atomically(path, write_usd_layer(head, [root]))
     return (path, *(place for place, _ in files))
 
 
-def joint_paths(skeleton: Skeleton) -> list[str]:
+def list_joint_paths(skeleton: Skeleton) -> list[str]:
     """Return the joints as UsdSkel names them: by their path from a root, of identifiers."""
     names, out = Names(), list[str]()
     for name, parent in zip(skeleton.names, skeleton.parents.tolist(), strict=True):
@@ -136,9 +136,9 @@ def _skeleton(skeleton: Skeleton, joints: list[str]) -> Prim:
         [
             f"uniform token[] joints = {format_usda_strings(joints)}",
             f"uniform token[] jointNames = {format_usda_strings(skeleton.names)}",
-            f"uniform matrix4d[] bindTransforms = {matrices(_matrices(turns, places))}",
+            f"uniform matrix4d[] bindTransforms = {write_matrices(_matrices(turns, places))}",
             "uniform matrix4d[] restTransforms = "
-            + matrices(_matrices(skeleton.rest_rotations, skeleton.rest_translations)),
+            + write_matrices(_matrices(skeleton.rest_rotations, skeleton.rest_translations)),
         ],
     )
 
@@ -158,26 +158,26 @@ def _animation(clip: Clip, place: str, joints: list[str], rate: float) -> Prim:
     properties = [
         f"custom double metagraph:fps = {format_usda_number(clip.fps)}",
         f"uniform token[] joints = {format_usda_strings(joints)}",
-        f"quatf[] rotations.timeSamples = {samples(times, _changing(turns))}",
+        f"quatf[] rotations.timeSamples = {write_time_samples(times, _changing(turns))}",
         f"half3[] scales = [{', '.join(['(1, 1, 1)'] * len(joints))}]",
     ]
     moving = clip.translations
     if (moving == moving[:1]).all():
         still = np.array(places, np.float64)
         still[list(clip.translated)] = moving[0]
-        properties.append(f"float3[] translations = {tuples(still)}")
+        properties.append(f"float3[] translations = {write_tuples(still)}")
     else:
-        fixed, rows = each(places), list[str]()
+        fixed, rows = write_each_tuple(places), list[str]()
         for frame in moving:
-            for joint, value in zip(clip.translated, each(frame), strict=True):
+            for joint, value in zip(clip.translated, write_each_tuple(frame), strict=True):
                 fixed[joint] = value
             rows.append(f"[{', '.join(fixed)}]")
-        properties.append(f"float3[] translations.timeSamples = {samples(times, rows)}")
+        properties.append(f"float3[] translations.timeSamples = {write_time_samples(times, rows)}")
     if clip.morphs and clip.weights is not None:
         properties += [
             f"uniform token[] blendShapes = {format_usda_strings(clip.morphs)}",
             "float[] blendShapeWeights.timeSamples = "
-            f"{samples(times, map(format_usda_numbers, clip.weights))}",
+            f"{write_time_samples(times, map(format_usda_numbers, clip.weights))}",
         ]
     return Prim("SkelAnimation", own, keep_name(clip.name, own), properties)
 
@@ -185,9 +185,9 @@ def _animation(clip: Clip, place: str, joints: list[str], rate: float) -> Prim:
 def _changing(values: Array) -> Iterator[str]:
     """Yield each frame's tuples of `values [F, J, n]`; what stands still is made into text once."""
     moving = np.flatnonzero((values != values[:1]).any((0, 2))).tolist()
-    row = each(values[0])
+    row = write_each_tuple(values[0])
     for frame in values:
-        for joint, value in zip(moving, each(frame[moving]), strict=True):
+        for joint, value in zip(moving, write_each_tuple(frame[moving]), strict=True):
             row[joint] = value
         yield f"[{', '.join(row)}]"
 
@@ -207,14 +207,14 @@ def _mesh(character: CharacterMesh, joints: list[str]) -> Prim:
         [
             'uniform token subdivisionScheme = "none"',
             f"uniform bool doubleSided = {int(both)}",
-            f"float3[] extent = {tuples(np.stack([points.min(0), points.max(0)]))}",
+            f"float3[] extent = {write_tuples(np.stack([points.min(0), points.max(0)]))}",
             f"int[] faceVertexCounts = {format_usda_numbers(np.full(len(character.triangles), 3))}",
             f"int[] faceVertexIndices = {format_usda_numbers(np.asarray(character.triangles, int))}",
-            f"point3f[] points = {tuples(points)}",
-            f"normal3f[] primvars:normals = {tuples(np.asarray(character.normals, np.float64))} (",
+            f"point3f[] points = {write_tuples(points)}",
+            f"normal3f[] primvars:normals = {write_tuples(np.asarray(character.normals, np.float64))} (",
             '    interpolation = "vertex"',
             ")",
-            f"texCoord2f[] primvars:st = {tuples(uvs)} (",
+            f"texCoord2f[] primvars:st = {write_tuples(uvs)} (",
             '    interpolation = "vertex"',
             ")",
             f"uniform token[] skel:joints = {format_usda_strings(joints)}",
@@ -273,7 +273,7 @@ def _blend_shapes(mesh: Prim, character: CharacterMesh) -> None:
                 name,
                 keep_name(shape, name),
                 [
-                    f"uniform vector3f[] offsets = {tuples(np.asarray(offsets, np.float64)[there])}",
+                    f"uniform vector3f[] offsets = {write_tuples(np.asarray(offsets, np.float64)[there])}",
                     f"uniform int[] pointIndices = {format_usda_numbers(there)}",
                 ],
             )

@@ -13,7 +13,7 @@ from metagraph.graph.checks import end_gaps
 from metagraph.graph.model import LAYERS, Action, ClipEntry, Layer, Project
 from metagraph.graph.problem import Problem
 from metagraph.motion import rotation
-from metagraph.motion.features import pose_distance
+from metagraph.motion.features import measure_pose_distance
 from metagraph.motion.skeleton import Skeleton
 
 FLOATS = 0.06  # of the height: how far the base pose's feet may be from the feet of the stances
@@ -63,7 +63,7 @@ def _rest_pose(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
     first = _first_pose(project, _start_loop(project, "body") or _start_loop(project, "arms"))
     if first is None:
         return
-    if float(pose_distance(skeleton, first, anatomy.base_pose(project))) > 0.25 * skeleton.height:
+    if float(measure_pose_distance(skeleton, first, anatomy.get_base_pose(project))) > 0.25 * skeleton.height:
         yield Problem(
             "warning",
             "base-rest",
@@ -86,8 +86,8 @@ def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
     stance = _first_pose(project, loop)
     if loop is None or stance is None:
         return
-    rests = stance_name(project, loop.stance)
-    base = anatomy.base_pose(project)
+    rests = get_stance_name(project, loop.stance)
+    base = anatomy.get_base_pose(project)
     height = skeleton.height
     base_r, base_p = skeleton.globals(base)
     stance_r, stance_p = skeleton.globals(stance)
@@ -110,7 +110,7 @@ def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
             clip=project.base.clip,
         )
     hips = roles.get("hips", 0)
-    turn = float(rotation.angle_between(base_r[hips], stance_r[hips]))
+    turn = float(rotation.measure_angle_between(base_r[hips], stance_r[hips]))
     if turn > TWISTED:
         yield Problem(
             "warning",
@@ -132,11 +132,11 @@ def _start_loop(project: Project, layer: Layer) -> Action | None:
 
 
 def _first_pose(project: Project, loop: Action | None) -> Any:
-    motion = end_gaps.motion_of(project, loop)
+    motion = end_gaps.get_action_motion(project, loop)
     return motion.pose_at(project.span(loop)[0]) if motion is not None and loop is not None else None
 
 
-def stance_name(project: Project, stance: str | None) -> str:
+def get_stance_name(project: Project, stance: str | None) -> str:
     """Return a stance's name, "?" if it does not exist."""
     found = project.stance(stance)
     return found.name if found is not None else "?"

@@ -18,8 +18,8 @@ from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import PARTS, Action, MetaGraph, Part, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.motion.clip import Clip
-from metagraph.motion.features import pose_distance
-from metagraph.motion.rig_controls import rig_controls
+from metagraph.motion.features import measure_pose_distance
+from metagraph.motion.rig_controls import find_rig_controls
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -65,7 +65,7 @@ def describe_gap(gap: EndGap, stance: str) -> str:
     return phrase("ends {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
 
 
-def hidden(height: float, blend: float) -> float:
+def measure_hidden_gap(height: float, blend: float) -> float:
     """Return how many metres a blend of `blend` seconds covers without a visible jump. `height` is the
     skeleton's.
     """
@@ -77,26 +77,26 @@ def blend_for(height: float, metres: float) -> float:
     return max(LONG, metres * TALL / height / UNHURRIED)
 
 
-def slow(metres: Array, height: float, blend: float) -> Array:
+def find_slow_distances(metres: Array, height: float, blend: float) -> Array:
     """Return where a long blend of `blend` seconds covers distances, in metres, at an unhurried pace."""
-    return np.asarray((blend >= LONG) & (metres <= hidden(height, blend)))
+    return np.asarray((blend >= LONG) & (metres <= measure_hidden_gap(height, blend)))
 
 
 def measure_distances_to_stance(project: Project, action: Action, times: Array) -> tuple[Array, Array]:
     """Return how far the pose at each of `times` `[F]`, seconds of an action's clip, is from the stance it
     leaves and from the one it enters, metres `[F]`; infinite if that cannot be measured.
     """
-    motion = motion_of(project, action)
+    motion = get_action_motion(project, action)
     graph, out = project.graphs[action.layer], []
     for stance in (action.stance, find_end_stance(action)):
         loop = next(iter(graph.of(stance, "stance")), None) if stance else None
-        target = motion_of(project, loop)
+        target = get_action_motion(project, loop)
         if motion is None or loop is None or target is None:
             out.append(np.full(len(times), np.inf))
             continue
         there = target.pose_at(np.full(len(times), project.span(loop)[0]))
-        joints = reached_joints(project, graph, action)
-        out.append(pose_distance(motion.skeleton, motion.pose_at(times), there, joints))
+        joints = find_reached_joints(project, graph, action)
+        out.append(measure_pose_distance(motion.skeleton, motion.pose_at(times), there, joints))
     return out[0], out[1]
 
 
@@ -104,10 +104,10 @@ def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[En
     """Return the gaps at both ends of an action that is not a loop, on the joints its layer moves. Gaps that
     cannot be measured are left out.
     """
-    motion = motion_of(project, action)
+    motion = get_action_motion(project, action)
     if motion is None or project.skeleton is None or action.kind == "stance":
         return []
-    joints, height = reached_joints(project, graph, action), project.skeleton.height
+    joints, height = find_reached_joints(project, graph, action), project.skeleton.height
     start, end = project.span(action)
     t, out = action.timing, []
     ends: tuple[tuple[Edge, str | None, float, float], ...] = (
@@ -116,10 +116,12 @@ def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[En
     )
     for edge, stance, moment, blend in ends:
         loop = next(iter(graph.of(stance, "stance")), None) if stance else None
-        target = motion_of(project, loop)
+        target = get_action_motion(project, loop)
         if stance is not None and loop is not None and target is not None:
             metres = _gap(motion, moment, target, project.span(loop)[0], joints)
-            most = hidden(height, blend) * (BRISK if cycle_of(action.kind, t, start, end) > 0 else 1.0)
+            most = measure_hidden_gap(height, blend) * (
+                BRISK if cycle_of(action.kind, t, start, end) > 0 else 1.0
+            )
             out.append(EndGap(edge, stance, metres, most, blend))
     return out
 
@@ -128,7 +130,7 @@ def measure_slides(project: Project, graph: MetaGraph, action: Action) -> dict[E
     """Return how many metres the hips have to go over the floor at each end of an action, from and to the
     loop of its stance; nothing on a layer that leaves the legs alone.
     """
-    motion = motion_of(project, action)
+    motion = get_action_motion(project, action)
     if motion is None or action.kind == "stance" or graph.weight("legs") <= 0:
         return {}
     hips, out = anatomy.project_roles(project).get("hips", 0), {}
@@ -139,7 +141,7 @@ def measure_slides(project: Project, graph: MetaGraph, action: Action) -> dict[E
     )
     for edge, stance, moment in ends:
         loop = next(iter(graph.of(stance, "stance")), None) if stance else None
-        target = motion_of(project, loop)
+        target = get_action_motion(project, loop)
         if loop is not None and target is not None:
             poses = (motion.pose_at(moment), target.pose_at(project.span(loop)[0]))
             here, there = (motion.skeleton.globals(pose)[1][hips] for pose in poses)
@@ -151,26 +153,26 @@ def measure_seam(project: Project, graph: MetaGraph, loop: Action) -> EndGap | N
     """Return the gap between a loop's ends, on the joints its layer moves, with the distance that shows if it
     is not blended; None if it cannot be measured.
     """
-    motion = motion_of(project, loop)
+    motion = get_action_motion(project, loop)
     if motion is None or project.skeleton is None:
         return None
     start, end = project.span(loop)
-    metres = _gap(motion, start, motion, end, reached_joints(project, graph, loop))
+    metres = _gap(motion, start, motion, end, find_reached_joints(project, graph, loop))
     return EndGap("ends", loop.stance, metres, OPEN_LOOP * project.skeleton.height / TALL, 0.0)
 
 
-def motion_of(project: Project, action: Action | None) -> Clip | None:
+def get_action_motion(project: Project, action: Action | None) -> Clip | None:
     """Return an action's clip if it is loaded and has the project's skeleton, else None."""
     entry = project.clips.get(action.clip) if action is not None else None
     motion = entry.motion if entry is not None else None
     return motion if motion is not None and motion.skeleton == project.skeleton else None
 
 
-def reached_joints(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
+def find_reached_joints(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
     """Return the joints that an action's layer moves and its mask leaves in, without those that only control
     others.
     """
-    moved = anatomy.action_mask(project, action)
+    moved = anatomy.make_action_mask(project, action)
     weighty = tuple(part for part in PARTS if part != "face" and graph.weight(part) > 0)
     reached = _reached_by(project.skeleton, anatomy.project_parts(project), weighty)
     if moved is None:
@@ -184,7 +186,7 @@ def _reached_by(
     skeleton: Skeleton | None, parts: tuple[Part, ...], weighty: tuple[Part, ...]
 ) -> tuple[int, ...]:
     """Return the joints of the body parts that a layer moves, without those that only control others."""
-    controls = rig_controls(skeleton) if skeleton is not None else ()
+    controls = find_rig_controls(skeleton) if skeleton is not None else ()
     return tuple(j for j, part in enumerate(parts) if part in weighty and j not in controls)
 
 
@@ -194,5 +196,7 @@ def _gap(one: Clip, seconds: float, other: Clip, there: float, joints: tuple[int
     """
     return one.measured(
         ("gap", seconds, ref(other), there, joints),
-        lambda: float(pose_distance(one.skeleton, one.pose_at(seconds), other.pose_at(there), joints)),
+        lambda: float(
+            measure_pose_distance(one.skeleton, one.pose_at(seconds), other.pose_at(there), joints)
+        ),
     )

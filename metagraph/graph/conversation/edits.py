@@ -27,13 +27,13 @@ from metagraph.graph.conversation.model import (
     Side,
     Sound,
     Word,
-    lists_of,
+    get_word_lists,
 )
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Project
 from metagraph.graph.timeline_edits import remove_timeline
-from metagraph.graph.vocabulary import join_tokens, kinds_of_words, split_tokens
+from metagraph.graph.vocabulary import join_tokens, make_word_vocabularies, split_tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
@@ -49,7 +49,7 @@ def add_conversation(project: Project, conversation: Conversation) -> tuple[Proj
     named = msgspec.structs.replace(
         conversation, name=find_free_name(_clean(conversation.name) or "Conversation", taken)
     )
-    ident = ids.new_id(project, "v", msgspec.json.encode(named))
+    ident = ids.make_id(project, "v", msgspec.json.encode(named))
     return replace(project, conversations={**project.conversations, ident: named}), ident
 
 
@@ -110,7 +110,7 @@ def set_word_lists(
     for n, one in enumerate(of.sides):
         if side not in (None, n):
             continue
-        before = lists_of(of, n)
+        before = get_word_lists(of, n)
         own = dict(zip(("responses", "hesitations"), (None, None) if side is None else lists, strict=True))
         segments = tuple(_labelled(s, before, lists) for s in one.segments)
         sides[n] = _valid(one, {**own, **changes}, segments=segments)
@@ -136,7 +136,7 @@ def classify_words(text: str, responses: Collection[str], hesitations: Collectio
     Said of both, it is a response: the partner is answered.
     """
     words = [split_tokens(text)]
-    answers, pauses, either, _ = kinds_of_words(tuple(responses), tuple(hesitations))
+    answers, pauses, either, _ = make_word_vocabularies(tuple(responses), tuple(hesitations))
     if not either.made_of(words):
         return "clause"
     return "hesitation" if pauses.made_of(words) and not answers.made_of(words) else "response"

@@ -2,8 +2,8 @@
 2020, section 4.2).
 
 A side keeps what its own speech is made of: phonemic clauses, listener responses and its own hesitation
-pauses, one after another. What a character moves with is another thing, `segments_heard_by`: its own clauses
-and responses, and the hesitations of those it talks with.
+pauses, one after another. What a character moves with is another thing, `list_segments_heard_by`: its own
+clauses and responses, and the hesitations of those it talks with.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid
         return range(len(self.sides), MOST_SPEAKERS)
 
 
-def others_of(conversation: Conversation, side: int) -> tuple[int, ...]:
+def list_other_sides(conversation: Conversation, side: int) -> tuple[int, ...]:
     """Return the numbers of those a side talks with."""
     return tuple(n for n in range(len(conversation.sides)) if n != side)
 
@@ -224,7 +224,7 @@ def with_sides(conversation: Conversation, order: Sequence[int]) -> Conversation
     return msgspec.structs.replace(conversation, sides=tuple(sides))
 
 
-def lists_of(conversation: Conversation, side: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def get_word_lists(conversation: Conversation, side: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return a side's responses and hesitations: its own, else the conversation's."""
     of = conversation.sides[side]
     return (
@@ -233,18 +233,18 @@ def lists_of(conversation: Conversation, side: int) -> tuple[tuple[str, ...], tu
     )
 
 
-def side_name(conversation: Conversation, side: int) -> str:
+def get_side_name(conversation: Conversation, side: int) -> str:
     """Return what a side is called: its own name, else its number."""
     return conversation.sides[side].name or f"Speaker {side + 1}"
 
 
-def segments_heard_by(conversation: Conversation, side: int) -> tuple[Segment, ...]:
+def list_segments_heard_by(conversation: Conversation, side: int) -> tuple[Segment, ...]:
     """Return what a side moves with, by start and never overlapping: its own clauses and responses, and what
     is left of the others' hesitations where it does not speak itself. Its own hesitations are idle. kind
     "hesitation" here is another's.
     """
     own = [s for s in conversation.sides[side].segments if s.kind != "hesitation"]
-    theirs = [s for n in others_of(conversation, side) for s in conversation.sides[n].segments]
+    theirs = [s for n in list_other_sides(conversation, side) for s in conversation.sides[n].segments]
     out, until = list(own), 0.0
     for s in sorted((s for s in theirs if s.kind == "hesitation"), key=lambda s: s.start):
         free = _free(max(s.start, until), s.end, own)

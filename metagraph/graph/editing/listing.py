@@ -21,7 +21,7 @@ def duplicate_clips(project: Project, clips: Collection[str]) -> Project:
         if ident in clips:
             name = _copy_name(entry.name, taken)
             taken.add(name)
-            new = ids.new_id(project, "c", entry.path, entry.take, name, more=out)
+            new = ids.make_id(project, "c", entry.path, entry.take, name, more=out)
             twin = replace(entry, id=new, name=name)
             out[twin.id] = twin
             if ident in marks:

@@ -16,8 +16,8 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Action, Limb, Project
 from metagraph.motion.clip import Clip
-from metagraph.motion.features import pose_distance
-from metagraph.motion.mirror import mirror, pairs_of, swap_sides
+from metagraph.motion.features import measure_pose_distance
+from metagraph.motion.mirror import find_joint_twins, mirror, swap_sides
 
 SAME = 0.01  # metres: a motion nowhere further from its mirror image than this has no side
 _OTHER: Mapping[Limb, Limb] = {"left": "right", "right": "left", "both": "both"}
@@ -63,7 +63,7 @@ def mirror_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
 def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]]) -> list[TwinClip]:
     """wanted: clip -> what it is for, in words, and the actions its mirror image is for."""
     skeleton = project.skeleton
-    pairs = pairs_of(skeleton, anatomy.project_roles(project)) if skeleton is not None else ()
+    pairs = find_joint_twins(skeleton, anatomy.project_roles(project)) if skeleton is not None else ()
     taken = {entry.name for entry in project.clips.values()}
     out = []
     for clip, (called, actions) in wanted.items():
@@ -76,7 +76,7 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
             twin = mirror(entry.motion, pairs)
         except ValueError as error:
             raise EditError(str(error)) from None
-        distance = float(pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
+        distance = float(measure_pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
         if distance < SAME and not _faces_differ(entry.motion, twin):
             raise EditError(
                 phrase(
@@ -126,7 +126,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
             )
         twin = replace(
             action,
-            id=ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip),
+            id=ids.make_id(project, "a", action.layer, action.kind, stance, end or "", clip),
             clip=clip,
             name=name_twin(action.name),
             stance=stance,
@@ -173,7 +173,7 @@ def _joint_twin(project: Project, name: str) -> str:
     skeleton = project.skeleton
     if skeleton is None or name not in skeleton:
         return name
-    twin = pairs_of(skeleton, anatomy.project_roles(project))[skeleton.index(name)]
+    twin = find_joint_twins(skeleton, anatomy.project_roles(project))[skeleton.index(name)]
     return skeleton.names[twin] if twin >= 0 else name
 
 

@@ -26,7 +26,7 @@ def add_performance(project: Project, performance: Performance) -> tuple[Project
         name=_own_name(performance.name or "Performance", {p.name for p in project.performances.values()}),
         asks=_numbered(performance.asks),
     )
-    ident = ids.new_id(project, "p", msgspec.json.encode(named))
+    ident = ids.make_id(project, "p", msgspec.json.encode(named))
     return replace(project, performances={**project.performances, ident: named}), ident
 
 
@@ -103,9 +103,9 @@ def change_request(project: Project, performance: str, ask: str, **changes: Any)
 
 
 def _changed(ask: AnyRequest, changes: Mapping[str, Any]) -> AnyRequest:
-    from metagraph.graph.requests import request_from
+    from metagraph.graph.requests import make_request
 
-    return request_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
+    return make_request(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
 
 
 def move_requests(project: Project, performance: str, asks: Collection[str], by: float) -> Project:
@@ -172,7 +172,7 @@ def close_up_after(
     return project
 
 
-def following(
+def find_following_asks(
     performance: Performance, asks: Collection[str], still: Collection[str] = ()
 ) -> tuple[str, ...]:
     """Return some asks and all that are wanted from the first of them on, except for those that stay

@@ -9,10 +9,10 @@ from functools import cached_property
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, propose_joint_map
+from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint, propose_joint_map
 from metagraph.motion.retarget import retarget
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import is_standing, standing_pose
+from metagraph.motion.standing import find_standing_pose, is_standing
 
 
 class Bringing:
@@ -32,11 +32,11 @@ class Bringing:
             return None
         own = (e.motion for e in self.project.clips.values() if e.motion is not None and not e.brought_from)
         clip = next((motion for motion in own if motion.skeleton == skeleton), None)
-        return None if clip is None else standing_pose(clip, self.roles)
+        return None if clip is None else find_standing_pose(clip, self.roles)
 
     def known(self, clip: Clip) -> JointMap | None:
         """Return the project's joint map for the clip's skeleton."""
-        return self.project.joint_maps.get(fingerprint(clip.skeleton))
+        return self.project.joint_maps.get(make_fingerprint(clip.skeleton))
 
     def propose(self, source: Skeleton) -> JointMap:
         """Raises RetargetError in a project without a skeleton."""

@@ -10,7 +10,7 @@ from typing import Any
 
 from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
-from metagraph.graph.clip_source import course_of, source_of, with_source
+from metagraph.graph.clip_source import get_clip_course, get_source_clip, with_source
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual.machine import Manual
 from metagraph.graph.model import Action, BasePose, ClipEntry, Project, Timing
@@ -40,7 +40,7 @@ def set_retime(project: Project, clip: str, retime: Retime) -> Project:
     entry = project.clips.get(clip)
     if entry is None:
         raise EditError(phrase("that clip is no longer in the project"))
-    source, before = source_of(entry), course_of(entry)
+    source, before = get_source_clip(entry), get_clip_course(entry)
     if source is None or before is None:
         raise EditError(
             phrase("the file of '{name}' is missing: find the file, then change the speed", name=entry.name)
@@ -50,7 +50,7 @@ def set_retime(project: Project, clip: str, retime: Retime) -> Project:
         return project
     if entry.timed_on:
         after = replace(after, timed_on=entry.timed_on * after.duration / entry.duration)
-    course = course_of(after)
+    course = get_clip_course(after)
     assert course is not None
 
     def moved(seconds: float | None, late: bool = False) -> float | None:
@@ -89,7 +89,7 @@ def keep_clips_in_place(project: Project, clips: Iterable[str], on: bool = True)
         entry = project.clips.get(clip)
         if entry is None:
             raise EditError(phrase("that clip is no longer in the project"))
-        source = source_of(entry)
+        source = get_source_clip(entry)
         if source is None:
             raise EditError(
                 phrase(
@@ -148,7 +148,7 @@ def keep_hand(project: Project, clip: str, side: str, first: float, last: float)
     until the second; seconds of the clip as it was read. side: "left" or "right". Raises EditError.
     """
     entry = project.clips.get(clip)
-    source = source_of(entry) if entry is not None else None
+    source = get_source_clip(entry) if entry is not None else None
     roles = anatomy.project_roles(project)
     limb = [roles.get(f"{side}_{part}") for part in ("upper_arm", "lower_arm", "hand")]
     if entry is None or source is None or source.skeleton != project.skeleton:
@@ -176,7 +176,7 @@ def set_kept(project: Project, clip: str, place: int, first: float, last: float)
     seconds let it go. place: of the contact among the clip's. Raises EditError.
     """
     entry = project.clips.get(clip)
-    source = source_of(entry) if entry is not None else None
+    source = get_source_clip(entry) if entry is not None else None
     if entry is None or source is None or place >= len(entry.retime.contacts):
         raise EditError(phrase("that hand is no longer pinned there"))
     contacts, old = list(entry.retime.contacts), entry.retime.contacts[place]

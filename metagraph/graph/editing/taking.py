@@ -14,14 +14,14 @@ from typing import Literal
 
 from metagraph.common.wording import join_phrases, phrase, plural_phrase
 from metagraph.graph import ids
-from metagraph.graph.clip_source import source_of, with_source
+from metagraph.graph.clip_source import get_source_clip, with_source
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import find_free_name
 from metagraph.graph.face.takes import is_face_take
 from metagraph.graph.model import LAYERS, Action, ClipEntry, Kind, Layer, MetaGraph, Project, Stance
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
+from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint
 
 Becomes = Literal["new", "joined", "there", "renamed", "left out"]
 _NEW: dict[Kind, str] = {
@@ -57,7 +57,7 @@ class Taking:
         return sum(x.kind == kind and x.becomes in becomes for x in self.things)
 
 
-def piece_of(project: Project, actions: Collection[str] = (), stances: Collection[str] = ()) -> Project:
+def take_piece(project: Project, actions: Collection[str] = (), stances: Collection[str] = ()) -> Project:
     """Return a project that holds some actions alone, with what they need: their stances, each with its
     loops, their clips, and the joint maps those were brought by.
 
@@ -139,7 +139,7 @@ def _take_layer(
     new: dict[str, Stance] = {}  # by their ids in the other project
     for ident, stance in source.stances.items():
         if stance.name not in known:
-            made = ids.new_id(project, "s", layer, stance.name, more=known.values())
+            made = ids.make_id(project, "s", layer, stance.name, more=known.values())
             new[ident] = Stance(made, layer, stance.name)
             known[stance.name] = made
         places[ident] = known[stance.name]
@@ -209,7 +209,7 @@ def _action(
     same = there.get(_same(made))
     if same is not None:
         return thing("there", phrase("is already here, as '{name}'", name=same.name)), None
-    ident = ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip, more=added)
+    ident = ids.make_id(project, "a", action.layer, action.kind, stance, end or "", clip, more=added)
     return thing("new", words or _NEW[action.kind]), replace(made, id=ident)
 
 
@@ -276,7 +276,7 @@ class _Clips:
             self.things.append(TakenItem("clip", None, entry.name, "left out", str(error)))
             return None
         name = find_free_name(entry.name, self.names)
-        made = ids.new_id(self.project, "c", entry.path, entry.take, name, more=self.entries)
+        made = ids.make_id(self.project, "c", entry.path, entry.take, name, more=self.entries)
         self.names.add(name)
         self.entries[made] = replace(entry, id=made, name=name)
         self.known[_content(entry)] = made
@@ -291,7 +291,7 @@ class _Clips:
 
     def _fitted(self, entry: ClipEntry) -> ClipEntry:
         """Return a clip on this skeleton. Raises RetargetError, ClipError, SkeletonMismatchError."""
-        source, skeleton = source_of(entry), self.project.skeleton
+        source, skeleton = get_source_clip(entry), self.project.skeleton
         if source is None or skeleton is None or is_face_take(source) or source.skeleton == skeleton:
             return entry  # a clip whose file is missing is taken as such, and `check` reports it
         try:
@@ -313,7 +313,7 @@ class _Clips:
         if joint_map.missing:
             raise RetargetError(joint_map.missing[0])
         motion = self.bringing.bring(source, joint_map)
-        self.joint_maps[fingerprint(source.skeleton)] = joint_map
+        self.joint_maps[make_fingerprint(source.skeleton)] = joint_map
         return with_source(replace(entry, brought_from=motion.brought_from), motion)
 
 

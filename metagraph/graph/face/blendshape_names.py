@@ -34,7 +34,7 @@ class CurveMeaning:
     channels: Mapping[str, float]
 
 
-def meanings(
+def find_curve_meanings(
     names: Iterable[str], own: Mapping[str, str] | None = None
 ) -> tuple[dict[str, CurveMeaning], tuple[str, ...]]:
     """Return what each of a clip's names means, and those that mean nothing to anybody.
@@ -64,7 +64,7 @@ def meanings(
 
 def match_arkit_shape(name: str) -> str | None:
     """Return the one of ARKit's shapes that a name stands for as a whole, None for none or several."""
-    meaning = meanings([name])[0].get(name)
+    meaning = find_curve_meanings([name])[0].get(name)
     if meaning is None or meaning.channels or len(meaning.shapes) != 1:
         return None
     shape, amount = next(iter(meaning.shapes.items()))

@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary, ref
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face.blendshape_names import CurveMeaning, match_arkit_shape, meanings
+from metagraph.graph.face.blendshape_names import CurveMeaning, find_curve_meanings, match_arkit_shape
 from metagraph.graph.face.rig import CHANNELS, FaceRig, find_face
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
@@ -68,7 +68,7 @@ class Wearing:
         understands; and those this face has nothing for.
         """
         morphs = tuple(morphs)
-        found, lost = meanings(morphs, self.names)
+        found, lost = find_curve_meanings(morphs, self.names)
         out: dict[str, Amounts] = {}
         idle: list[str] = []
         for name in morphs:
@@ -179,11 +179,11 @@ def _turned(clip: Clip, turns: Mapping[int, Array], shifts: Mapping[int, Array])
     for joint, away in shifts.items():
         translations[:, places.index(joint)] += away
     return replace(
-        clip, rotations=rotation.continuous(rotations), translations=translations, translated=places
+        clip, rotations=rotation.make_continuous(rotations), translations=translations, translated=places
     )
 
 
-def wearing(project: Project) -> Wearing:
+def find_wearing(project: Project) -> Wearing:
     """Return how clips' curves land on the project's face."""
     face = find_face(project)
     known = _wearings.get(id(face))
@@ -202,7 +202,7 @@ def fit_curves_to_face(project: Project, clip: Clip) -> Clip:
     """
     if not clip.morphs or project.character is None or clip.skeleton != project.skeleton:
         return clip
-    by = wearing(project)
+    by = find_wearing(project)
     known = _worn.get(clip)
     if known is not None and known[0] is by:
         return known[1] or clip
@@ -219,7 +219,7 @@ def describe_unused_curves(project: Project, clips: Iterable[Clip]) -> tuple[str
     """Return, for the user, which curves of clips the project's face leaves, in words."""
     lost: dict[str, None] = {}
     idle: dict[str, None] = {}
-    by = wearing(project)
+    by = find_wearing(project)
     for clip in clips:
         if clip.morphs:
             _, strange, nothing = by.understood(clip.morphs)

@@ -35,7 +35,7 @@ PRESETS: dict[str, tuple[tuple[str, float], ...]] = {
 }
 
 
-def presets_of(names: Iterable[str], bound: Mapping[str, str] | None = None) -> dict[str, dict[str, float]]:
+def make_presets(names: Iterable[str], bound: Mapping[str, str] | None = None) -> dict[str, dict[str, float]]:
     """Return preset -> morph target -> weight, 0..1, without presets that the face cannot make.
 
     A target that is called like a preset is that preset. bound: as for `find_morphs`.
@@ -65,7 +65,7 @@ def measure_presets(mixes: Mapping[str, Mapping[str, float]], weights: Mapping[s
     preset that explains most comes first, and the next explains what is left (matching pursuit). Of two that
     explain as much, it is the simpler one: an open jaw is "aa" rather than surprise.
 
-    mixes: as `presets_of` returns them. weights: numbers, or arrays of one shape, by morph target; values
+    mixes: as `make_presets` returns them. weights: numbers, or arrays of one shape, by morph target; values
     have the same shape.
     """
     targets = sorted({target for mix in mixes.values() for target in mix if target in weights})

@@ -99,7 +99,7 @@ class FaceRig:
         return np.flatnonzero(np.abs(self.shifts).max((0, 2), initial=0) > 0)
 
 
-def axes_of(skeleton: Skeleton, roles: Mapping[str, int], positions: Array) -> Array:
+def find_body_axes(skeleton: Skeleton, roles: Mapping[str, int], positions: Array) -> Array:
     """Return the directions to the left, up and ahead `[3, 3]` of a character whose joints are at `positions
     [J, 3]`.
 
@@ -124,12 +124,12 @@ def find_face(project: Project, morphs: Sequence[str] = ()) -> FaceRig:
     return _found.of(project, tuple(morphs), lambda: _find(project, morphs))
 
 
-def parts_for_face(project: Project) -> tuple[object, ...]:
+def gather_face_parts(project: Project) -> tuple[object, ...]:
     """Return the parts of a project that faces and bodies are found in."""
     return project.skeleton, project.roles, project.parts, project.face, project.clips
 
 
-_found: Remembered[FaceRig] = Remembered(parts_for_face)
+_found: Remembered[FaceRig] = Remembered(gather_face_parts)
 
 
 def list_morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]:
@@ -190,7 +190,7 @@ class _Reader:
         self.project, self.skeleton = project, skeleton
         self.roles = dict(anatomy.project_roles(project))
         self.turned, self.at = skeleton.globals(skeleton.rest)
-        self.axes = axes_of(skeleton, self.roles, self.at)
+        self.axes = find_body_axes(skeleton, self.roles, self.at)
         self.face = np.array([p == "face" for p in anatomy.project_parts(project)])
         self.bound = project.face.channels
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import RetargetError, fingerprint
+from metagraph.motion.joint_map import RetargetError, make_fingerprint
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -26,7 +26,7 @@ FACE_SKELETON = Skeleton(
     np.tile([0.0, 0.0, 0.0, 1.0], (3, 1)),
     np.array([[0.0, 0.0, 0.0], [0.032, 0.07, 0.08], [-0.032, 0.07, 0.08]]),
 )
-FACE_TAKE = fingerprint(FACE_SKELETON)
+FACE_TAKE = make_fingerprint(FACE_SKELETON)
 _LOOKS = ("eyeLookUp", "eyeLookDown", "eyeLookIn", "eyeLookOut")
 
 
@@ -44,9 +44,9 @@ def put_on_body(project: Project, clip: Clip) -> Clip:
     roles = anatomy.project_roles(project)
     if skeleton is None or "head" not in roles:
         raise RetargetError("a face alone needs a character with a head: import a clip of its body first")
-    base = anatomy.base_pose(project)
+    base = anatomy.get_base_pose(project)
     turned, at = skeleton.globals(base)
-    axes = axes_of(skeleton, roles, at)
+    axes = find_body_axes(skeleton, roles, at)
     frame = rotation.from_matrix(axes.T)  # from a character that looks along +Z to this one
     rotations = np.repeat(np.asarray(base.rotations, np.float64)[None], clip.frames, 0)
     morphs, weights = clip.morphs, clip.weights
@@ -70,7 +70,7 @@ def put_on_body(project: Project, clip: Clip) -> Clip:
     return replace(
         clip,
         skeleton=skeleton,
-        rotations=rotation.continuous(rotation.normalize(rotations)),
+        rotations=rotation.make_continuous(rotation.normalize(rotations)),
         translations=np.repeat(np.asarray(base.translations)[None, list(places)], clip.frames, 0),
         translated=places,
         morphs=morphs,

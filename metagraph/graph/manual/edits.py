@@ -61,7 +61,7 @@ def add_states(
     states = dict(found.states)
     for n, clip in enumerate(clips):
         name = find_free_name(project.clips[clip].name, taken)
-        ident = ids.new_id(project, "m", layer, clip, name, more=states)
+        ident = ids.make_id(project, "m", layer, clip, name, more=states)
         taken.add(name)
         states[ident] = State(
             ident,
@@ -82,7 +82,7 @@ def add_states(
     return project.with_manual(replace(found, states=states, start=start), base=base)
 
 
-def link_refusal(project: Project, layer: Layer, source: str, target: str) -> str | None:
+def explain_link_refusal(project: Project, layer: Layer, source: str, target: str) -> str | None:
     """Return in words why a link cannot be drawn, or None when it can."""
     found = get_machine(project, layer)
     if target == ANY:
@@ -100,9 +100,9 @@ def add_link(project: Project, layer: Layer, source: str, target: str) -> Projec
     """Draw a link, taken when its source has finished. One from any state waits for a request named after its
     target; so does one from an alias, and for the end of what plays.
 
-    Raises EditError with the words of `link_refusal`.
+    Raises EditError with the words of `explain_link_refusal`.
     """
-    why = link_refusal(project, layer, source, target)
+    why = explain_link_refusal(project, layer, source, target)
     if why is not None:
         raise EditError(why)
     found = get_machine(project, layer)
@@ -115,11 +115,11 @@ def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: S
     """Draw a link from each of several sources to each of several targets, as `add_link` does; none from a
     state to itself, and none where one is drawn already.
 
-    Raises EditError with the words of `link_refusal`, or when there is none to draw.
+    Raises EditError with the words of `explain_link_refusal`, or when there is none to draw.
     """
     for source in sources:
         for target in targets:
-            if (why := link_refusal(project, layer, source, target)) is not None:
+            if (why := explain_link_refusal(project, layer, source, target)) is not None:
                 raise EditError(why)
     found = get_machine(project, layer)
     there = {(x.source, x.target) for x in found.links.values()}
@@ -133,15 +133,15 @@ def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: S
 def _new(project: Project, found: Manual, pairs: Sequence[tuple[str, str]]) -> dict[str, Link]:
     out: dict[str, Link] = {}
     for source, target in pairs:
-        ident = ids.new_id(project, "l", found.layer, source, target, more=out)
+        ident = ids.make_id(project, "l", found.layer, source, target, more=out)
         waits = source == ANY or source in found.aliases
-        condition = Condition("request", manual_name(found, target)) if waits else Condition()
+        condition = Condition("request", get_manual_name(found, target)) if waits else Condition()
         part = 1.0 if source in found.aliases else None
         out[ident] = Link(ident, source, target, condition, exit_part=part)
     return out
 
 
-def manual_name(manual: Manual, ident: str) -> str:
+def get_manual_name(manual: Manual, ident: str) -> str:
     """Return how a state or alias is called, or its id where it is gone."""
     found = manual.states.get(ident) or manual.aliases.get(ident)
     return found.name if found is not None else ident
@@ -265,7 +265,7 @@ def paste_states(
     made: dict[str, str] = {}
     for state in piece.states:
         name = find_free_name(state.name, taken)
-        ident = made[state.id] = ids.new_id(project, "m", layer, state.clip, name, more=states)
+        ident = made[state.id] = ids.make_id(project, "m", layer, state.clip, name, more=states)
         taken.add(name)
         states[ident] = replace(
             state, id=ident, name=name, layer=layer, x=_whole(x + state.x - left), y=_whole(y + state.y - top)
@@ -274,7 +274,7 @@ def paste_states(
     called = {a.name for a in aliases.values()}
     for alias in piece.aliases:
         members = tuple(made.get(i, i) for i in alias.states if i in made or i in states)
-        ident = ids.new_id(project, "g", layer, *members, more=aliases)
+        ident = ids.make_id(project, "g", layer, *members, more=aliases)
         entry = made.get(alias.entry or "", alias.entry)
         aliases[ident] = replace(
             alias,
@@ -291,7 +291,7 @@ def paste_states(
     names = {s.id: s.name for s in nodes}
     new_names = {i: s.name for i, s in states.items()} | {i: a.name for i, a in aliases.items()}
     for link in piece.links:
-        ident = ids.new_id(project, "l", layer, made[link.source], made[link.target], more=links)
+        ident = ids.make_id(project, "l", layer, made[link.source], made[link.target], more=links)
         condition = link.condition
         if (
             condition.when == "request" and condition.trigger == names[link.target]

@@ -14,7 +14,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import find_free_name
-from metagraph.graph.manual.edits import HIGH, WIDE, get_machine, manual_name
+from metagraph.graph.manual.edits import HIGH, WIDE, get_machine, get_manual_name
 from metagraph.graph.manual.machine import Alias, Link, Manual
 from metagraph.graph.model import Layer, Project
 
@@ -31,7 +31,7 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     taken = {a.name for a in found.aliases.values()}
     name = "every state" if every else find_shared_words([s.name for s in mine]) or "alias"
     name = find_free_name(name, taken)
-    ident = ids.new_id(project, "g", layer, name, *chosen)
+    ident = ids.make_id(project, "g", layer, name, *chosen)
     alias = Alias(
         ident,
         name,
@@ -116,12 +116,12 @@ def paste_copied_links(
         for link in links:
             one = replace(link, source=node) if len(sources) == 1 else replace(link, target=node)
             if one.condition.when == "request" and len(sources) > 1:
-                one = replace(one, condition=replace(one.condition, trigger=manual_name(found, node)))
+                one = replace(one, condition=replace(one.condition, trigger=get_manual_name(found, node)))
             known = found.states.keys() | found.aliases.keys()
             joins = one.target in known and one.source != one.target and found.end(one) is not None
             if joins and (one.source, one.target) not in there:
                 there.add((one.source, one.target))
-                ident = ids.new_id(project, "l", layer, one.source, one.target, more=out)
+                ident = ids.make_id(project, "l", layer, one.source, one.target, more=out)
                 out[ident] = replace(one, id=ident)
     if not out:
         raise EditError(phrase("these links already exist"))

@@ -216,7 +216,7 @@ def _by(links: Mapping[str, Link], field_name: str) -> Mapping[str, tuple[Link, 
     return MappingProxyType({key: tuple(group) for key, group in out.items()})
 
 
-def links_expanded(manual: Manual) -> frozenset[tuple[str, str]]:
+def expand_links(manual: Manual) -> frozenset[tuple[str, str]]:
     """Return every connection as (source state, target state): a link from an alias or from any state stands
     for one from each of its states, or from every other.
     """

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 from metagraph.graph import ids
 from metagraph.graph.expand import list_connections
-from metagraph.graph.manual.machine import ANY, Link, Manual, State, links_expanded
-from metagraph.graph.manual.timing import exit_moment
+from metagraph.graph.manual.machine import ANY, Link, Manual, State, expand_links
+from metagraph.graph.manual.timing import find_exit_moment
 from metagraph.graph.model import Action, Kind, MetaGraph, Project, Stance, Timing
 
 Pairs = frozenset[tuple[str, str]]
@@ -36,7 +36,7 @@ def as_meta(project: Project) -> tuple[Project, Pairs, Pairs]:
         graph, names = _graph(out, manual)
         out = out.with_graph(graph)
         implied = {(names[c.source], names[c.target]) for c in list_connections(out, graph)}
-        drawn = links_expanded(manual)
+        drawn = expand_links(manual)
         missing |= implied - drawn
         extra |= drawn - implied
     return out, frozenset(missing), frozenset(extra)
@@ -71,7 +71,7 @@ def _many(count: int, noun: str) -> str:
 
 def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, str]]:
     """Return a machine's meta-graph, and its states by their actions' ids."""
-    pairs = links_expanded(manual)
+    pairs = expand_links(manual)
     loops = [s.id for s in manual.states.values() if s.loop]
     if not loops and manual.start in manual.states:
         loops = [manual.start or ""]
@@ -81,7 +81,7 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
     stances: list[Stance] = []
     for group in groups:
         name, taken = manual.states[group[0]].name, [s.id for s in stances]
-        stances.append(Stance(ids.new_id(project, "s", manual.layer, name, more=taken), manual.layer, name))
+        stances.append(Stance(ids.make_id(project, "s", manual.layer, name, more=taken), manual.layer, name))
     actions: dict[str, Action] = {}
     names: dict[str, str] = {}
     for state in manual.states.values():
@@ -89,7 +89,7 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
         if found is None:
             continue
         kind, start, end = found
-        ident = ids.new_id(project, "a", manual.layer, kind, state.id, more=actions)
+        ident = ids.make_id(project, "a", manual.layer, kind, state.id, more=actions)
         names[ident] = state.id
         actions[ident] = Action(
             ident,
@@ -233,7 +233,7 @@ def _exit(project: Project, state: State, link: Link) -> float | None:
     """Return the clip seconds at which a link may be taken, None for at the state's end or at once."""
     if link.exit_time is not None or link.exit_part is None or link.exit_part >= 1:
         return link.exit_time
-    at = exit_moment(project, state, link)
+    at = find_exit_moment(project, state, link)
     return round(at, 6) if at is not None else None
 
 
@@ -264,7 +264,7 @@ def is_only_manual(project: Project) -> bool:
     return any(m.states for m in project.manual.values()) and not any(True for _ in project.actions())
 
 
-def exportable(project: Project, manual: bool | None = None) -> tuple[Project, list[str]]:
+def make_exportable(project: Project, manual: bool | None = None) -> tuple[Project, list[str]]:
     """Return what is exported of a project, and in words how far it differs from what was drawn.
 
     manual: its manual machines, as what they amount to, rather than its meta-graph; None for if there is

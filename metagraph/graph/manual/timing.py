@@ -14,7 +14,7 @@ def find_state_span(project: Project, state: State) -> tuple[float, float]:
     return start, max(start, length if state.end is None else min(state.end, length))
 
 
-def exit_moment(project: Project, state: State, link: Link) -> float | None:
+def find_exit_moment(project: Project, state: State, link: Link) -> float | None:
     """Return the clip seconds at which a link leaves a state, None for as soon as it is asked for.
 
     An exit time holds before a share. The blend is over with the share; at the end it is over with the

@@ -53,7 +53,7 @@ class BlockTiming:
             raise a.RequestError(
                 f"{found.element.place}: there are two behaviours '{found.ident}'; give each an id of its own"
             )
-        start = reference(found.times.get("start", ""))
+        start = read_reference(found.times.get("start", ""))
         if start is not None and start[0] in ("this", found.ident) and start[1] != "start":
             found.prepare = False  # it begins where its preparation would have ended
             value = found.times.pop("start")
@@ -82,9 +82,9 @@ class BlockTiming:
             if kind not in ("synchronize", "after") or not anchor:
                 self.note(e, "is left out; of constraints <synchronize> and <after> are kept")
                 continue
-            base = reference(anchor)
+            base = read_reference(anchor)
             for x, ref in refs:
-                found = reference(ref)
+                found = read_reference(ref)
                 if ref == anchor or (found is not None and base is not None and found[:2] == base[:2]):
                     continue
                 behaviour = self.named.get(found[0]) if found else None
@@ -98,7 +98,7 @@ class BlockTiming:
                 behaviour.times.setdefault(found[1], anchor)
 
     def _is_speech(self, ref: str) -> bool:
-        found = reference(ref)
+        found = read_reference(ref)
         return (
             found is not None
             and found[0] in self.named
@@ -148,14 +148,14 @@ class BlockTiming:
 
     def _own(self, b: Behaviour, sync: str) -> bool:
         """Whether a sync point is timed by another of the same behaviour."""
-        found = reference(b.times.get(sync, ""))
+        found = read_reference(b.times.get(sync, ""))
         return found is not None and found[0] in ("this", b.ident)
 
     def _said(self, b: Behaviour, sync: str, text: str) -> float:
         value = parse_seconds(text)
         if value is not None:
             return self.at + value
-        found = reference(text)
+        found = read_reference(text)
         if found is None:
             raise a.RequestError(
                 f"{b.element.place}: {sync}=\"{text}\" is neither seconds nor 'behaviour:sync+seconds'"
@@ -188,11 +188,11 @@ class BlockTiming:
             if aimed or (b.pinned and "stroke" in has):
                 changes["stroke"] = self._time(b, "stroke")
             if "hold" in has and "relax" in b.times and ("strokeend" in b.times or self._own(b, "relax")):
-                own = reference(b.times["relax"]) if self._own(b, "relax") else None
+                own = read_reference(b.times["relax"]) if self._own(b, "relax") else None
                 length = own[2] if own is not None else self._time(b, "relax") - self._time(b, "strokeend")
                 changes["hold"] = max(0.0, length)
             if "duration" in has and "end" in b.times:
-                own = reference(b.times["end"]) if self._own(b, "end") else None
+                own = read_reference(b.times["end"]) if self._own(b, "end") else None
                 if own is not None and own[1] == "start":
                     changes["duration"] = max(0.0, own[2])
                 elif own is None and (isinstance(ask, a.Look | a.Say) or "start" in b.times):
@@ -203,7 +203,7 @@ class BlockTiming:
                 else:
                     self.note(b.element, "prepares as its clip does")
             try:
-                yield a.request_from(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
+                yield a.make_request(msgspec.to_builtins(msgspec.structs.replace(ask, **changes)))
             except a.RequestError as error:
                 raise a.RequestError(f"{b.element.place}: {error}") from None
 
@@ -222,7 +222,7 @@ def parse_seconds(text: str) -> float | None:
     return value if isfinite(value) else None
 
 
-def reference(text: str) -> tuple[str, str, float] | None:
+def read_reference(text: str) -> tuple[str, str, float] | None:
     """Return behaviour, sync point and seconds after it of a text like `s1:tm1+0.3` or `block:s1:tm1`; None
     of any other.
     """

@@ -167,9 +167,9 @@ class BmlWords:
     def _phases(self, fitting: Sequence[Action], guessed: dict[str, float]) -> dict[str, float]:
         if self.project is None or not fitting:
             return guessed
-        from metagraph.playback.timing.phases import phases
+        from metagraph.playback.timing.phases import find_phases
 
-        found = phases(self.project, max(fitting, key=lambda x: x.likelihood))
+        found = find_phases(self.project, max(fitting, key=lambda x: x.likelihood))
         points = (found.ready, found.ready, found.stroke, found.stroke_end, found.relax, found.end)
         return {sync: x - found.start for sync, x in zip(guessed, points, strict=True)}
 

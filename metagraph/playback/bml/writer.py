@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.xml_text import xml_text
+from metagraph.common.xml_text import clean_xml_text
 from metagraph.graph import requests as a
 
 NAMESPACES = 'xmlns="http://www.bml-initiative.org/bml/bml-1.0" xmlns:metagraph="urn:metagraph:bml"'
@@ -21,12 +21,12 @@ def write_bml(asks: Iterable[a.AnyRequest]) -> str:
     """Return asks as a block which reads back to the same asks; lines' numbers come back as texts, `told` is
     not kept.
 
-    Characters that XML cannot hold are replaced, see `xml_text`. Raises RequestError for what no block can
-    hold: ids that are not unique, a block within a block.
+    Characters that XML cannot hold are replaced, see `clean_xml_text`. Raises RequestError for what no block
+    can hold: ids that are not unique, a block within a block.
     """
     rows, seen = [], set[str]()
     for ask in asks:
-        ident = xml_text(ask.id)
+        ident = clean_xml_text(ask.id)
         if ident and ident in seen:
             raise a.RequestError(f"two asks are called '{ident}'; a block needs ids of their own")
         seen.add(ident)
@@ -159,7 +159,7 @@ def _tag(name: str, attributes: dict[str, Any], inner: str = "") -> str:
 
 
 def _escaped(text: str, attribute: bool) -> str:
-    text = xml_text(text)
+    text = clean_xml_text(text)
     out = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("\r", "&#13;")
     if attribute:
         out = out.replace('"', "&quot;").replace("\n", "&#10;").replace("\t", "&#9;")

@@ -313,7 +313,7 @@ class Label:
         return f"{self.layer}: {self.text}"
 
 
-def labels(
+def list_labels(
     annotation: Annotation, roles: Mapping[str, str], *remembered: Mapping[str, str]
 ) -> tuple[Label, ...]:
     """Return the labels of every layer that is read, the most frequent first, each as remembered (by `layer:

@@ -19,7 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Kind, Markov
-from metagraph.playback.learning.learn import Act, State, model_states, read_acts_of_metas, rests, state_of
+from metagraph.playback.learning.learn import (
+    Act,
+    State,
+    get_act_state,
+    list_model_states,
+    measure_rests,
+    read_acts_of_metas,
+)
 from metagraph.playback.planning.markov import write
 
 Array = NDArray[Any]
@@ -56,13 +63,13 @@ class Tally:
         return self.visits / max(1, self.count)
 
 
-def tally(observed: Sequence[Sequence[Act]], states: Sequence[State], tagged: bool) -> Tally:
+def count_act_sequences(observed: Sequence[Sequence[Act]], states: Sequence[State], tagged: bool) -> Tally:
     """Count sequences of acts. Acts in none of the states are passed over."""
     place = {state: n for n, state in enumerate(states)}
     visits, moves = np.zeros(len(states)), np.zeros((len(states), len(states)))
     lengths: list[list[float]] = [[] for _ in states]
     for sequence in observed:
-        found = [(place.get(state_of(act, tagged)), act) for act in sequence]
+        found = [(place.get(get_act_state(act, tagged)), act) for act in sequence]
         for n, act in found:
             if n is not None:
                 visits[n] += 1
@@ -72,7 +79,12 @@ def tally(observed: Sequence[Sequence[Act]], states: Sequence[State], tagged: bo
                 moves[a, b] += 1
     seconds = sum(max(a.end for a in s) - s[0].start for s in observed if s)
     return Tally(
-        tuple(states), visits, moves, tuple(np.sort(x) for x in lengths), np.sort(rests(observed)), seconds
+        tuple(states),
+        visits,
+        moves,
+        tuple(np.sort(x) for x in lengths),
+        np.sort(measure_rests(observed)),
+        seconds,
     )
 
 
@@ -104,7 +116,7 @@ class ModelComparison:
         if self.observed is None or not self.observed.count:
             return np.zeros(len(self.expected))
         off = self.observed.shares() - self.expected
-        chance = deviation(self.model.matrix, self.expected, self.observed.count)
+        chance = compute_share_deviation(self.model.matrix, self.expected, self.observed.count)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(np.abs(off) < 1e-9, 0.0, off / chance)
 
@@ -122,12 +134,16 @@ def compare_model(
     model: Markov, observed: Sequence[Sequence[Act]] | None, seconds: float = 3600.0, seed: int = 1
 ) -> ModelComparison:
     """Let a model write for some seconds, and put that beside what was observed."""
-    states, tagged = model_states(model), bool(model.tags)
-    generated = tally([generate(model, seconds, seed)], states, tagged)
-    expected = stationary(model.matrix)
-    seen = tally(observed, states, tagged) if observed is not None else None
+    states, tagged = list_model_states(model), bool(model.tags)
+    generated = count_act_sequences([generate(model, seconds, seed)], states, tagged)
+    expected = compute_stationary_shares(model.matrix)
+    seen = count_act_sequences(observed, states, tagged) if observed is not None else None
     return ModelComparison(
-        model, seen, generated, expected, deviation(model.matrix, expected, max(1, generated.count))
+        model,
+        seen,
+        generated,
+        expected,
+        compute_share_deviation(model.matrix, expected, max(1, generated.count)),
     )
 
 
@@ -138,12 +154,12 @@ def generate(
     return read_acts_of_metas(write(model, seed, seconds, kinds)[0])
 
 
-def quantiles(lengths: Array) -> Array:
+def compute_quantiles(lengths: Array) -> Array:
     """Return the `LEVELS` of lengths `[5]`, NaN if there are none."""
     return np.quantile(lengths, LEVELS) if len(lengths) else np.full(len(LEVELS), np.nan)
 
 
-def stationary(matrix: Sequence[Sequence[float]]) -> Array:
+def compute_stationary_shares(matrix: Sequence[Sequence[float]]) -> Array:
     """Return how large a part of its time a chain spends in each state in the long run, `[n]`, begun in any
     state alike.
 
@@ -159,7 +175,7 @@ def stationary(matrix: Sequence[Sequence[float]]) -> Array:
     return out
 
 
-def deviation(matrix: Sequence[Sequence[float]], expected: Array, count: int) -> Array:
+def compute_share_deviation(matrix: Sequence[Sequence[float]], expected: Array, count: int) -> Array:
     """Return the standard deviation of each state's share among `count` acts of a chain, `[n]`."""
     p = _filled(matrix)
     n = len(p)

@@ -159,7 +159,8 @@ def _together(a: Act, b: Act) -> Act:
 # --- sequences to models
 
 
-def state_of(act: Act, tagged: bool) -> State:
+def get_act_state(act: Act, tagged: bool) -> State:
+    """Return the state of a model that an act belongs to; with its tags where `tagged`."""
     return act.limb, act.kind, " ".join(act.tags) if tagged else ""
 
 
@@ -170,7 +171,8 @@ def describe_state(state: State, layer: Layer) -> str:
     return f"{words}, {tags.replace(' ', ', ')}" if tags else words
 
 
-def model_states(model: Markov) -> tuple[State, ...]:
+def list_model_states(model: Markov) -> tuple[State, ...]:
+    """Return the states of a model, in its order."""
     return tuple((limb, kind, model.tag(n)) for n, (limb, kind) in enumerate(model.states))
 
 
@@ -199,10 +201,10 @@ def learn_model(
         raise ValueError(f"nothing of the {layer} layer was annotated")
     if smoothing < 0:
         raise ValueError("smoothing is 0 or more")
-    seen = Counter(state_of(act, tagged) for act in acts)
+    seen = Counter(get_act_state(act, tagged) for act in acts)
     states = sorted(seen, key=_order)
     counts = Counter(
-        pair for sequence in observed for pair in pairwise(state_of(act, tagged) for act in sequence)
+        pair for sequence in observed for pair in pairwise(get_act_state(act, tagged) for act in sequence)
     )
     matrix = []
     for source in states:
@@ -219,7 +221,7 @@ def learn_model(
         layer,
         tuple((limb, kind) for limb, kind, _ in states),
         tuple(matrix),
-        round(max(LEAST_GAP, fmean(rests(observed) or [2.5])), 4),
+        round(max(LEAST_GAP, fmean(measure_rests(observed) or [2.5])), 4),
         0.0 if tagged else round(share["positive"], 6),
         0.0 if tagged else round(share["negative"], 6),
         tags if any(tags) else (),
@@ -227,13 +229,13 @@ def learn_model(
     )
 
 
-def rests(observed: Sequence[Sequence[Act]]) -> list[float]:
+def measure_rests(observed: Sequence[Sequence[Act]]) -> list[float]:
     """Return the seconds of rest between acts, 0 where the next begins before the last has ended."""
     return [max(0.0, b.start - a.end) for sequence in observed for a, b in pairwise(sequence)]
 
 
 def _lengths(acts: Sequence[Act], states: Sequence[State], tagged: bool) -> tuple[tuple[float, float], ...]:
-    lengths = {state: [a.length for a in acts if state_of(a, tagged) == state] for state in states}
+    lengths = {state: [a.length for a in acts if get_act_state(a, tagged) == state] for state in states}
     ratios = [stdev(some) / fmean(some) for some in lengths.values() if len(some) > 1]
     usual = fmean(ratios) if ratios else 0.0
     out = []
@@ -270,10 +272,10 @@ def with_state(model: Markov, state: State) -> Markov:
     """Return the model with another state, which nothing leads to yet and which leads to every state alike;
     as it is if it has it.
     """
-    if state in model_states(model):
+    if state in list_model_states(model):
         return model
     count = len(model.states) + 1
-    order = sorted(range(count), key=lambda n: _order((*model_states(model), state)[n]))
+    order = sorted(range(count), key=lambda n: _order((*list_model_states(model), state)[n]))
     rows = [(*row, 0.0) for row in model.matrix] + [(1 / count,) * count]
     tags = [*(model.tags or [""] * (count - 1)), state[2]]
     lengths = [*model.lengths, _typical(model)] if model.lengths else []

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face.rig import CHANNELS, SIDES, FaceRig, axes_of, find_face
+from metagraph.graph.face.rig import CHANNELS, SIDES, FaceRig, find_body_axes, find_face
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import NEEDED, find_known_roles
@@ -125,7 +125,7 @@ def _upright_pose(project: Project, roles: Mapping[str, int]) -> Pose:
     """Return the base pose; if nobody has chosen one and the rest pose is a heap on the floor, the first
     clip's first frame.
     """
-    skeleton, pose = project.skeleton, anatomy.base_pose(project)
+    skeleton, pose = project.skeleton, anatomy.get_base_pose(project)
     if project.base.clip or skeleton is None or any(role not in roles for role in NEEDED):
         return pose
     if is_standing(skeleton, roles):
@@ -141,7 +141,9 @@ def find_body(project: Project) -> Body:
     assert skeleton is not None
     roles = anatomy.project_roles(project)
     turned, at = (x.astype(float) for x in skeleton.globals(_upright_pose(project, roles)))
-    left, up, ahead = axes = axes_of(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
+    left, up, ahead = axes = find_body_axes(
+        skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at
+    )
     face = find_face(project)
 
     def local(joint: int, axis: Array) -> Array:

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.anatomy import base_pose
+from metagraph.graph.anatomy import get_base_pose
 from metagraph.graph.face.names import MOOD_FACE
 from metagraph.graph.face.rig import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
 from metagraph.graph.life import Life
@@ -37,7 +37,7 @@ from metagraph.playback.life.body import Body
 from metagraph.playback.life.expressions import FaceShown, answer, settle, shown_face
 from metagraph.playback.life.gaze import BodyGaze, Moves, ease_gaze
 from metagraph.playback.life.lane import Lane
-from metagraph.playback.life.lips import mouth
+from metagraph.playback.life.lips import compute_mouth_shapes
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow, solve_life
 from metagraph.playback.life.track import Track
@@ -60,7 +60,7 @@ _PRODUCT = np.array(
 _SIGNS = np.array([[1.0, -1, 1, 1], [1, 1, -1, 1], [-1, 1, 1, 1], [-1, -1, -1, 1]])
 
 
-def lids_of(face: FaceRig) -> FaceLids:
+def make_face_lids(face: FaceRig) -> FaceLids:
     """Return a face's lids as `solve_life` takes them; where none is a joint, how far morph targets
     follow.
     """
@@ -102,7 +102,7 @@ class LifeStage:
         self._gaze = None
         if body.lookers and schedule.targets:  # else it looks at nothing
             self._gaze = BodyGaze(schedule, life, body, project.points)
-        self._lids = lids_of(body.face)
+        self._lids = make_face_lids(body.face)
         self._dials = LifeDials(life.gaze, 1 - life.stillness, life.head_share, life.lids)
 
     def run(self, pose: Pose, times: Array) -> Pose:
@@ -131,7 +131,7 @@ class LifeStage:
         life, schedule = self._project.life, self._schedule
         if not life.on or not self.body.face.morphs:
             return {}
-        whole = base_pose(self._project) if pose is None else pose
+        whole = get_base_pose(self._project) if pose is None else pose
         one = Pose(whole.rotations[None], whole.translations[None])
         found = self._find(one, np.array([float(seconds)]))
         look, face = found.faces[0], FaceShown()
@@ -151,7 +151,7 @@ class LifeStage:
         turns: list[Any] = []
         faces: list[_Look] = []
         for n, time in enumerate(times.tolist()):
-            now, bears = happening(self._schedule, life, time)
+            now, bears = find_happening(self._schedule, life, time)
             moves = gaze.at(time) if gaze is not None else NO_MOVES
             chain, turn, eyes, shut, own = solve_life(
                 body, self._lids, self._dials, now, read[n], places[n], moves, gaze is not None
@@ -168,7 +168,7 @@ class LifeStage:
         project, out = self._project, np.zeros((len(times), len(CHANNELS)))
         life = project.life
         if life.lips > 0:
-            shown = mouth(self._track, project.voices, life.lip_smoothing, times)
+            shown = compute_mouth_shapes(self._track, project.voices, life.lip_smoothing, times)
             if shown is not None:
                 out[:, len(LIDS) + 2 :] = shown * life.lips
         return out
@@ -183,12 +183,12 @@ class LifeStage:
         return _times(local, _turn(turns))
 
 
-def happening(schedule: Schedule, life: Life, time: float) -> tuple[LifeNow, Bearing]:
+def find_happening(schedule: Schedule, life: Life, time: float) -> tuple[LifeNow, Bearing]:
     """Return what happens to a body at a time, and what the mood has in it."""
-    full = breath_at(schedule.breaths, life, time)
+    full = compute_breath(schedule.breaths, life, time)
     mood = mood_shown(schedule.moods.times, schedule.moods.rows, time)
     bears = UNMOVED if mood.neutral else bearing(mood)
-    blink = shut_in(blink_at(schedule.blinks, life, time), bears.lids)
+    blink = shut_in(compute_blink(schedule.blinks, life, time), bears.lids)
     now = LifeNow(full, bears.droop, bears.thrust, full + bears.lift, bears.tension, bears.closed, blink)
     return now, bears
 
@@ -196,7 +196,7 @@ def happening(schedule: Schedule, life: Life, time: float) -> tuple[LifeNow, Bea
 NO_MOVES = Moves((), (0.0, 0.0), (0.0, 0.0))
 
 
-def breath_at(lane: Lane, life: Life, time: float) -> float:
+def compute_breath(lane: Lane, life: Life, time: float) -> float:
     """Return how full the chest is, 0 at rest, about 1 at the top of a breath."""
     starts, values = lane.times, lane.rows
     n = bisect_right(starts, time) - 1
@@ -212,7 +212,7 @@ def breath_at(lane: Lane, life: Life, time: float) -> float:
     )
 
 
-def blink_at(lane: Lane, life: Life, time: float) -> float:
+def compute_blink(lane: Lane, life: Life, time: float) -> float:
     """Return how far a blink has shut the eyes, 0..1."""
     starts = lane.times
     whole, out = life.blink_close + life.blink_open, 0.0

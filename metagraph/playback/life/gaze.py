@@ -50,12 +50,12 @@ def settle_gaze(x: float) -> float:
     return 1.0 if x >= 1 else (1 - (1 + SPRING * x) * exp(-SPRING * x)) / _SETTLED
 
 
-def eye_time(angle: float) -> float:
+def compute_eye_time(angle: float) -> float:
     """Return seconds the eyes take for a turn, degrees."""
     return EYE_TIME + EYE_TIME_PER_DEGREE * angle
 
 
-def head_time(angle: float) -> float:
+def compute_head_time(angle: float) -> float:
     """Return seconds the head takes for a turn, degrees, from when it sets off."""
     return HEAD_TIME + HEAD_TIME_PER_DEGREE * angle
 
@@ -116,9 +116,9 @@ class BodyGaze:
             scale = self.averts.scale * (1 - strict)
             if last >= 0 and self.targets[last].since > start:  # a new look ends it
                 scale *= 1 - ease_gaze((time - self.targets[last].since) / ENDING)
-            went, gone, slow = time - start, time - end, head_time(size)
+            went, gone, slow = time - start, time - end, compute_head_time(size)
             if gone < HEAD_LAG + slow:
-                fast = eye_time(size)
+                fast = compute_eye_time(size)
                 now = scale * (ease_gaze(went / fast) - ease_gaze(gone / fast))
                 head = scale * (settle_gaze((went - HEAD_LAG) / slow) - settle_gaze((gone - HEAD_LAG) / slow))
                 eyes_x, eyes_y, head_x, head_y = x * now, y * now, x * head, y * head
@@ -126,7 +126,7 @@ class BodyGaze:
         if n >= 0 and self.darts.scale > 0:
             x, y = self.darts.values[n]
             from_x, from_y = self.darts.values[n - 1] if n else (0.0, 0.0)
-            way = ease_gaze((time - self.darts.starts[n]) / eye_time(hypot(x - from_x, y - from_y)))
+            way = ease_gaze((time - self.darts.starts[n]) / compute_eye_time(hypot(x - from_x, y - from_y)))
             eyes_x += self.darts.scale * (from_x + (x - from_x) * way)
             eyes_y += self.darts.scale * (from_y + (y - from_y) * way)
         return Moves(tuple(parts), (eyes_x, eyes_y), (head_x, head_y))
@@ -141,7 +141,7 @@ class BodyGaze:
         start = target.start if place else -inf  # the first has always been looked at
         amount = 0.0 if seen is self.body.ahead else target.amount
         found = self._aims[place] = Aim(
-            start, at, amount, target.asked, target.strict, eye_time(angle), head_time(angle)
+            start, at, amount, target.asked, target.strict, compute_eye_time(angle), compute_head_time(angle)
         )
         return found
 

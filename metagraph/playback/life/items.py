@@ -20,7 +20,7 @@ from metagraph.playback.life.line_timing import (
     timed_seconds,
     told_text,
 )
-from metagraph.playback.life.spots import Spot, same_spot
+from metagraph.playback.life.spots import Spot, is_same_spot
 from metagraph.playback.planning.mood import MoodFrom
 
 
@@ -168,7 +168,7 @@ def alike_looks(one: Sequence[LookAt], other: Sequence[LookAt]) -> bool:
 
 
 def _same_look(a: LookAt, b: LookAt) -> bool:
-    if not same_spot(a.to, b.to) or a.amount != b.amount or a.strict != b.strict:
+    if not is_same_spot(a.to, b.to) or a.amount != b.amount or a.strict != b.strict:
         return False
     return a.id == b.id and a.start == b.start and a.end == b.end and a.priority == b.priority
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.mouth import soften
 from metagraph.playback.life.track import Speech, Track
-from metagraph.playback.life.voice import Voice, voice_for_speech
+from metagraph.playback.life.voice import Voice, choose_voice
 
 Array = NDArray[Any]
 
@@ -20,7 +20,9 @@ CLOSING = 0.12  # seconds the mouth takes to close where speech was cut
 _TAPS = np.array([-1.0, 0.0, 1.0])
 
 
-def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Array) -> Array | None:
+def compute_mouth_shapes(
+    track: Track, voices: Mapping[str, Voice], smoothing: float, times: Array
+) -> Array | None:
     """Return how much of each shape but silence the mouth shows at `times [N]`: `[N, 14]`; None if nothing is
     said.
     """
@@ -34,7 +36,7 @@ def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Ar
         if len(here):
             if out is None:
                 out = np.zeros((len(times), len(VISEMES) - 1))
-            out[here] += _shown(speech, voice_for_speech(voices, speech), smoothing, times[here])
+            out[here] += _shown(speech, choose_voice(voices, speech), smoothing, times[here])
     if out is not None:  # two speeches may meet; together they are one mouth
         out /= np.maximum(out.sum(1, keepdims=True), 1.0)
     return out

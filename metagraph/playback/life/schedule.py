@@ -12,12 +12,12 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from metagraph.graph.life import Life, Manner, manner, same_life
+from metagraph.graph.life import Life, Manner, get_manner, is_same_life
 from metagraph.graph.words import MODES
 from metagraph.playback.life.expressions import emphases_on, swells_on
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Track
-from metagraph.playback.life.voice import Voice, same_voices, stressed
+from metagraph.playback.life.voice import Voice, are_same_voices, stressed
 from metagraph.playback.life.wanted import (
     GazeTarget,
     modes_between,
@@ -167,9 +167,9 @@ def _change(before: Schedule, life: Life, track: Track, voices: Mapping[str, Voi
     """Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else
     "all".
     """
-    if before.track is None or before.seed != seed or not same_life(before.life, life):
+    if before.track is None or before.seed != seed or not is_same_life(before.life, life):
         return "all"
-    if not same_voices(before.voices, voices):
+    if not are_same_voices(before.voices, voices):
         return "all"
     if before.track is track or before.track.like(track):
         return ""
@@ -216,7 +216,7 @@ class LifeDraw:
             look = max(0, bisect_right(begun, edge) - 1)
             self.edges.append(edge)
             felt = self.moods.rows[max(0, bisect_right(self.moods.times, edge) - 1)]
-            ways = manner(self.life, MODES[int(self.modes.rows[mode][0])])
+            ways = get_manner(self.life, MODES[int(self.modes.rows[mode][0])])
             self.manners.append(ways_in(ways, Mood(felt[0], felt[1], felt[2])))
             self.strict.append(1 if self.targets[look].strict else 0)
 

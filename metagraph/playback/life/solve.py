@@ -103,16 +103,16 @@ def solve_life(
     for side, eye in enumerate(body.eyes):
         if eye.joint:
             turn.append(_plus(_scaled(eye.turn_left, eyes[side][0]), _scaled(eye.turn_up, eyes[side][1])))
-            down[side] += part_along(read[place], eye.down)
+            down[side] += measure_part_along(read[place], eye.down)
             place += 1
     shut: list[float] = []
     own: list[float] = []
     for k in range(len(lids.joints)):
         already = 0.0
         if lids.joints[k]:
-            already = part_along(read[place], lids.shut_by[k])
+            already = measure_part_along(read[place], lids.shut_by[k])
             place += 1
-        shut.append(lid(down[k % 2], dials.lids * lids.follows[k], already, now.blink))
+        shut.append(compute_lid(down[k % 2], dials.lids * lids.follows[k], already, now.blink))
         own.append(shut[k] - already)
     return chain, turn, eyes, shut, own
 
@@ -143,7 +143,7 @@ def look(
     chain: the joints' composed rotations, in their parents' space, and places: their translations. amount: of
     all looking; calm: of what nobody asked for. share: the head's of a turn.
     """
-    turned, at = globals_of(chain, places)
+    turned, at = compute_globals(chain, places)
     head = turned[-1]
     left, right = body.eyes
     middle = _scaled(_plus(left.at, right.at), 0.5)
@@ -203,7 +203,7 @@ def _head(
     space, its size.
     """
     beyond = min(1.0, 2 * share)
-    x, y = head_part(left, share), TILT_SHARE * head_part(up, share)
+    x, y = compute_head_part(left, share), TILT_SHARE * compute_head_part(up, share)
     x, y = x + beyond * _excess(left - x, EYE_EASE), y + beyond * _excess(up - y, EYE_EASE)
     # A character that has turned away as a whole turns its head back; one whose head alone or body alone has,
     # means it.
@@ -236,7 +236,7 @@ def _turning(angle: float, most: float, behind: float) -> float:
     return _within(angle, most) * (1 - ease_gaze((abs(angle) - behind) / (pi - behind)))
 
 
-def head_part(angle: float, share: float) -> float:
+def compute_head_part(angle: float, share: float) -> float:
     """Return the head's part of a turn: `share` of a wide one, next to none of a small one."""
     size = abs(angle)
     return share * angle * size / (size + SMALL)
@@ -251,7 +251,7 @@ def limit_eye_turn(left: float, up: float) -> tuple[float, float]:
     return left * k, up * k
 
 
-def lid(down: float, follow: float, already: float, blink: float) -> float:
+def compute_lid(down: float, follow: float, already: float, blink: float) -> float:
     """Return how far a lid is shut: 0 open as at rest, 1 shut. down: the eye's pitch. follow: of the lid, a
     radian of it.
 
@@ -261,13 +261,13 @@ def lid(down: float, follow: float, already: float, blink: float) -> float:
     return shut + blink * (1 - shut)
 
 
-def part_along(q: Sequence[float], row: Sequence[float]) -> float:
+def measure_part_along(q: Sequence[float], row: Sequence[float]) -> float:
     """Return what a rotation near rest has in common with a row of `Eye.down` or `FaceRig.shut_by`."""
     along = q[0] * row[0] + q[1] * row[1] + q[2] * row[2] + q[3] * row[3]
     return along if q[3] >= 0 else -along
 
 
-def globals_of(
+def compute_globals(
     chain: Sequence[Quaternion], places: Sequence[Vector]
 ) -> tuple[list[Quaternion], list[Vector]]:
     """Return rotations and positions of a chain in the character's space, from those in the parents'."""

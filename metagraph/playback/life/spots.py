@@ -21,6 +21,6 @@ def placed(places: Mapping[str, Point], to: Spot) -> Spot:
     return places.get(to, to) if isinstance(to, str) else to
 
 
-def same_spot(one: Spot, other: Spot) -> bool:
-    """Whether two names or two points are the same."""
+def is_same_spot(one: Spot, other: Spot) -> bool:
+    """Return whether two names or two points are the same."""
     return one == other

@@ -19,7 +19,7 @@ from metagraph.playback.life.items import Speech
 from metagraph.playback.life.line_timing import LineTiming, timed_sounds
 from metagraph.playback.life.mouth import MouthPiece, accents_of, mouth_track
 
-__all__ = ["VISEMES", "Voice", "silent", "voice_for_speech", "voice_from_text"]
+__all__ = ["VISEMES", "Voice", "choose_voice", "guess_voice", "make_silent_voice"]
 
 Array = NDArray[Any]
 
@@ -49,7 +49,7 @@ class Voice:
         return np.array(accents_of(self.peaks.tolist(), loud))
 
 
-def silent(duration: float) -> Voice:
+def make_silent_voice(duration: float) -> Voice:
     """Return a voice that says nothing for `duration` seconds."""
     rest = np.zeros((2, len(VISEMES)), np.float32)
     rest[:, 0] = 1
@@ -57,12 +57,12 @@ def silent(duration: float) -> Voice:
 
 
 @lru_cache(maxsize=256)
-def voice_from_text(text: str, duration: float | None = None) -> Voice:
+def guess_voice(text: str, duration: float | None = None) -> Voice:
     """Return a voice guessed from letters alone. duration: seconds, None for about 14 characters a second."""
     length = read_aloud(ALPHABET, text) if duration is None else max(duration, 0.0)
     said = spelled(ALPHABET, text, length)
     if not said.pieces:
-        return silent(length)
+        return make_silent_voice(length)
     return make_voice(said.pieces, length, np.array(said.peaks), np.array(said.strengths))
 
 
@@ -73,7 +73,7 @@ def make_voice_from_timing(timing: LineTiming, duration: float) -> Voice:
     return make_voice(said.pieces, duration, np.array(said.peaks), np.array(said.strengths))
 
 
-def voice_for_speech(voices: Mapping[str, Voice], speech: Speech) -> Voice:
+def choose_voice(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     """Return the voice of something said: as its words and shapes were reported, as its line's was read from
     the sound, else one guessed from its text.
     """
@@ -84,19 +84,19 @@ def voice_for_speech(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     known = voices.get(speech.line) if speech.line is not None else None
     if isinstance(known, Voice):
         return known
-    return voice_from_text(
+    return guess_voice(
         speech.text, max(0.0, speech.length if speech.length is not None else speech.end - speech.start)
     )
 
 
 def stressed(voices: Mapping[str, Voice], speech: Speech) -> list[float]:
     """Return the times of the stressed syllables of something said, ascending, seconds from its start."""
-    found: list[float] = voice_for_speech(voices, speech).accents.tolist()
+    found: list[float] = choose_voice(voices, speech).accents.tolist()
     return found
 
 
-def same_voices(one: Mapping[str, Voice] | None, other: Mapping[str, Voice]) -> bool:
-    """Whether lines sound the same."""
+def are_same_voices(one: Mapping[str, Voice] | None, other: Mapping[str, Voice]) -> bool:
+    """Return whether lines sound the same."""
     return one is other or one == other
 
 

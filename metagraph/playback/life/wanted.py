@@ -11,7 +11,7 @@ from metagraph.graph.life import Life, Manner, scaled
 from metagraph.graph.requests import Point
 from metagraph.graph.words import MODES, Mode
 from metagraph.playback.life.items import LookAt
-from metagraph.playback.life.spots import Spot, named, placed, same_spot
+from metagraph.playback.life.spots import Spot, is_same_spot, named, placed
 from metagraph.playback.life.track import Track
 from metagraph.playback.planning.mood import Mood, Moods, life_of, mood_at, mood_edges
 
@@ -41,7 +41,7 @@ class GazeTarget:
         """Whether it is the same but for its times."""
         if self.amount != other.amount or self.strict != other.strict or self.asked != other.asked:
             return False
-        return same_spot(self.to, other.to)
+        return is_same_spot(self.to, other.to)
 
 
 def mode_at(track: Track, seconds: float) -> Mode:

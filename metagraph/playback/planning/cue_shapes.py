@@ -12,7 +12,7 @@ from metagraph.graph.model import Action, Project
 from metagraph.graph.repeating import LONGEST_REPEAT, cycle_of, times_played
 from metagraph.playback.plan import MetaAction, MetaRequest
 from metagraph.playback.planning.mood import drag
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 FITS = 1e-6  # seconds by which sums of times may be off
 HURRY = 2.0  # a hold is played at most this many times as fast as it was made
@@ -51,7 +51,7 @@ def shape_of(
         and action.kind == "gesture"
         and (request.hold is not None or request.stroke is not None or not request.prepare)
     ):
-        found = phases(project, action)
+        found = find_phases(project, action)
         latest = found.skip(action.timing.blend_in)
         entry = start if request.prepare else latest
         # Wait for the stroke, or catch up with it by cutting the preparation.
@@ -92,7 +92,7 @@ def lateness(project: Project, action: Action, request: MetaRequest, shape: CueS
     for; less than 0 before its time.
     """
     if request.stroke is not None and action.kind == "gesture":
-        found = phases(project, action)
+        found = find_phases(project, action)
         until = found.stroke - shape.entry
         return shape.start + found.stroke - shape.entry + drag(until, shape.tempo) - request.stroke
     return shape.start - request.start
@@ -111,7 +111,7 @@ def hurried(project: Project, action: Action, shape: CueShape) -> float:
     repeats = cycle_of(action.kind, action.timing, start, end) > 0
     if action.kind != "gesture" or action.timing.earliest_exit is not None or repeats:
         return shape.shortest
-    found = phases(project, action)
+    found = find_phases(project, action)
     left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
     moving = found.relax - shape.entry - (shape.hold_to - shape.hold_from)
     if shape.hold <= 0:

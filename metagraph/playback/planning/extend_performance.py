@@ -163,7 +163,7 @@ def name_item(item: object) -> str:
     }[name]
 
 
-def since(plan: Plan, seconds: float) -> Plan:
+def drop_ended(plan: Plan, seconds: float) -> Plan:
     """Return a running plan without what ended before `seconds`; what is planned on from it stays as it would
     have been.
 

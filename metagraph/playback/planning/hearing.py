@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.playback.life.items import Speech, behind, going_on
-from metagraph.playback.life.spots import named, same_spot
+from metagraph.playback.life.spots import is_same_spot, named
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planning.mood import MoodFrom
@@ -95,7 +95,7 @@ def heard(
     before = [r.id for r in requests]
     before += track.idents()
     # Who takes everything back still looks at whom it talks with.
-    user = {x.id for x in track.looks if x.start < now and same_spot(x.to, named("user"))}
+    user = {x.id for x in track.looks if x.start < now and is_same_spot(x.to, named("user"))}
     taken: set[str] = set()
     stopped: set[str] = set()
     for ident in before:

@@ -17,7 +17,7 @@ from metagraph.playback.life.track import Track
 from metagraph.playback.plan import ASKED, MetaRequest, Report
 from metagraph.playback.planning.finding import action_called, stance_called
 from metagraph.playback.planning.mood import MoodFrom
-from metagraph.playback.timing.phases import lead, longest_lead
+from metagraph.playback.timing.phases import find_longest_lead, lead
 
 FOREVER = 1e9  # seconds; a look that lasts until the next
 
@@ -148,7 +148,7 @@ class Meaning:
             kind: Kind = "gesture" if ask.do == "gesture" else "fidget"
             layer: Layer = "arms" if ask.layer is None else ask.layer
             if stroke is not None:
-                start = max(0.0, stroke - longest_lead(self.project, self.graph_of(layer), ask.tags))
+                start = max(0.0, stroke - find_longest_lead(self.project, self.graph_of(layer), ask.tags))
             request = MetaRequest(
                 ident, layer, kind, start, ask.duration, None, ask.tags, ask.limb, None, priority, ask.resume,
                 stroke, ask.hold, ask.prepare, (), ask.late, ask.valence, ask.arousal, ask.intensity,

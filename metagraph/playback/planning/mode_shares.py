@@ -21,7 +21,7 @@ QUIET = 2.0  # seconds after the other has spoken in which one still listens
 LEAST = 10.0  # seconds in a mode below which nothing is learned of it
 
 
-def mode_spans(own: Sequence[Span], partner: Sequence[Span], end: float) -> list[tuple[float, Mode]]:
+def find_mode_spans(own: Sequence[Span], partner: Sequence[Span], end: float) -> list[tuple[float, Mode]]:
     """Return from when on somebody idles, listens or talks, by when the two speak; from 0 to end seconds."""
     mine = [(a, b + PAUSE) for a, b in own]
     others = [(a, b + QUIET) for a, b in partner]
@@ -44,7 +44,7 @@ def with_modes(
     """
     if not own or not observed or end <= 0:
         return model
-    spans = mode_spans(own, partner, end)
+    spans = find_mode_spans(own, partner, end)
     ends = [at for at, _ in spans[1:]] + [end]
     seconds: Counter[Mode] = Counter()
     for (at, mode), until in zip(spans, ends, strict=True):

@@ -13,7 +13,7 @@ from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.vocabulary import split_tokens
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.playback.timing.phases import REMEMBERED, movers, track
+from metagraph.playback.timing.phases import REMEMBERED, find_movers, track
 
 TALL = 1.75  # metres: the figure that distances and speeds below are of
 FAR = {"body": 0.3, "arms": 0.6, "head": 0.8}  # metres, for the head radians, from where it began: at most 1
@@ -30,7 +30,7 @@ EMBLEMS = frozenset((  # words of its name or tags
 MODEST = frozenset(["beat", "blink", "breath", "breathe", "emphasis", "nod", "settle", "shift", "sway"])
 
 
-def prominence(project: Project, action: Action) -> float:
+def measure_prominence(project: Project, action: Action) -> float:
     """Return how much an action stands out, 0..1: as its user says, else by its motion and its name.
 
     Half of what its motion counts is how far its hands (arms), trunk and feet or head go, half how fast.
@@ -63,7 +63,7 @@ def _moved(project: Project, action: Action) -> float:
             return 0.0
         far, fast = _turned(ref(motion), roles["head"], trunk, start, end)
         return _share(action.layer, far, fast)
-    joints, seen_from = movers(project, motion, action.layer, action.limb)
+    joints, seen_from = find_movers(project, motion, action.layer, action.limb)
     size = project.skeleton.height / TALL
     far, fast = _gone(ref(motion), joints, seen_from, start, end)
     return _share(action.layer, far / size, fast / size)

@@ -20,7 +20,7 @@ from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.near_life import LANES
 from metagraph.playback.life.track import Item, track_of
 from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Plan, Report, Rest
-from metagraph.playback.planning.extend_performance import hear_asks, since
+from metagraph.playback.planning.extend_performance import drop_ended, hear_asks
 from metagraph.playback.planning.hearing import owners
 from metagraph.playback.planning.plan_head import RECENT
 
@@ -68,7 +68,7 @@ class RunningPlan:
 
     def forget(self, over: float) -> Plan:
         """Put aside what ended before `over`, and plan on without it; return the plan as it was."""
-        before, self.plan = self.plan, since(self.plan, over)
+        before, self.plan = self.plan, drop_ended(self.plan, over)
         return before
 
 

@@ -51,11 +51,11 @@ from metagraph.playback.planning.mood import (
     mood_at,
     tempo,
 )
-from metagraph.playback.planning.prominence import prominence
+from metagraph.playback.planning.prominence import measure_prominence
 from metagraph.playback.planning.remembering import node, remember, rested
-from metagraph.playback.planning.vigour import vigour
+from metagraph.playback.planning.vigour import measure_vigour
 from metagraph.playback.timing.phase_times import LEAST_BLEND
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
@@ -254,7 +254,7 @@ class Performer:
             if request.action is not None:
                 fits = action.id == request.action
             if fits and self._usable(action):
-                found = phases(self.project, action)
+                found = find_phases(self.project, action)
                 lead = found.stroke - found.skip(action.timing.blend_in)
                 speed = self._tempo(action, self._mood(request, request.stroke))
                 least = min(least, lead + drag(lead, speed))
@@ -514,7 +514,7 @@ class Performer:
         neutral = mood.neutral
         weights: dict[str, float] = {}
         for a in left:
-            favoured = 1.0 if neutral else favour(mood, a.tags, vigour(self.project, a))
+            favoured = 1.0 if neutral else favour(mood, a.tags, measure_vigour(self.project, a))
             weight = a.likelihood / max(self._count(a.id, now), 1.0) * favoured
             weights[a.id] = weight * self._variety(a, now)
         if not any(w > 0 for w in weights.values()):
@@ -527,7 +527,7 @@ class Performer:
         variety = self.project.settings.variety
         if variety <= 0 or action.kind == "transition" or action.id not in self.ended:
             return 1.0
-        needed = repeat_interval(action.kind, prominence(self.project, action)) * variety
+        needed = repeat_interval(action.kind, measure_prominence(self.project, action)) * variety
         return freshness(now - self.ended[action.id], needed)
 
     def _fresh(self, meta: MetaAction, candidates: Sequence[Action], now: float) -> list[Action]:
@@ -549,7 +549,7 @@ class Performer:
         reminded = self._shown(now - APART * variety)
         out: list[Action] = []
         for action in candidates:
-            shows = prominence(self.project, action)
+            shows = measure_prominence(self.project, action)
             if reminded and shows >= STANDS_OUT:
                 continue
             needed = repeat_interval(action.kind, shows) * share
@@ -572,7 +572,7 @@ class Performer:
             action = self.graph.actions.get(ident)
             if action is None or action.kind == "transition" or end < since:
                 continue
-            if prominence(self.project, action) >= STANDS_OUT:
+            if measure_prominence(self.project, action) >= STANDS_OUT:
                 return True
         return False
 

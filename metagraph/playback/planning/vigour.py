@@ -13,12 +13,12 @@ import numpy as np
 from metagraph.graph.model import Action, Kind, MetaGraph, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.posing.rigs import ResolvedProject
-from metagraph.playback.timing.phases import REMEMBERED, movers, track
+from metagraph.playback.timing.phases import REMEMBERED, find_movers, track
 
 STILL = 0.02  # metres a second: slower than this nothing is
 
 
-def vigour(project: Project, action: Action) -> float:
+def measure_vigour(project: Project, action: Action) -> float:
     """Return how fast an action's hands (arms), head or trunk and feet move on average, beside the median of
     its layer's actions of its kind: -1 for half as fast or less, 1 for twice as fast or more. 0 if nothing is
     known of its motion. An export says it.
@@ -34,7 +34,7 @@ def vigour(project: Project, action: Action) -> float:
     return _beside(_speed_of(project, action), medians[action.kind])
 
 
-def vigours(project: Project, graph: MetaGraph, speeds: Mapping[str, float]) -> dict[str, float]:
+def measure_vigours(project: Project, graph: MetaGraph, speeds: Mapping[str, float]) -> dict[str, float]:
     """Return the vigour of those actions of a layer whose speeds (`mean_speed_within`) are known, by their
     ids.
     """
@@ -83,7 +83,7 @@ def mean_speed_within(
     """
     if motion.frames < 2 or end <= start:
         return None
-    joints, seen_from = movers(project, motion, action.layer, action.limb)
+    joints, seen_from = find_movers(project, motion, action.layer, action.limb)
     return _mean_speed(ref(motion), joints, seen_from, start, end)
 
 

@@ -16,7 +16,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.overlay import Overlay, clip_overlay
+from metagraph.playback.posing.overlay import Overlay, make_clip_overlay
 
 Array = NDArray[Any]
 Faces = list[dict[str, float]]
@@ -91,7 +91,7 @@ class GeneratedEvaluator(Evaluator):
 
     def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
         times = np.asarray(seconds, np.float64).reshape(-1)
-        return super().at(seconds, alive, overlay or clip_overlay(self.project, self._clip, times))
+        return super().at(seconds, alive, overlay or make_clip_overlay(self.project, self._clip, times))
 
     def morphs_at(self, seconds: float, alive: bool = True, composed: Pose | None = None) -> dict[str, float]:
         return super().morphs_at(seconds, alive, composed or self.at(seconds, alive=False))

@@ -75,7 +75,9 @@ class Ground:
             dense = clip.dense
             away = dense.poses().translations[:, joints] - self.base.translations[joints]
             moved = np.flatnonzero(np.abs(away).max(axis=(0, 2), initial=0) > 1e-7)
-            turned = rotation.continuous(rotation.multiply(self._inverse[joints], dense.rotations[:, joints]))
+            turned = rotation.make_continuous(
+                rotation.multiply(self._inverse[joints], dense.rotations[:, joints])
+            )
             found = Offsets(turned, np.ascontiguousarray(away[:, moved]), moved)
             if keep:
                 known[reach.key] = found
@@ -148,7 +150,7 @@ def find_composer(project: Project) -> ComposerRig:
     return _rig(ground, anatomy.project_parts(project), weights, order)
 
 
-def playable(project: Project, action: Action) -> Clip | None:
+def find_playable_motion(project: Project, action: Action) -> Clip | None:
     """Return the motion of an action, its curves on the project's face; None if its clip is missing or has
     another skeleton.
     """

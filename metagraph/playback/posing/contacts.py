@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.checks.end_gaps import motion_of
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.checks.end_gaps import get_action_motion
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion import rotation
-from metagraph.motion.body_capsules import SIDES, BodyPart, body_capsules
+from metagraph.motion.body_capsules import SIDES, BodyPart, make_body_capsules
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.contact_solve import (
     FOREARM,
@@ -48,10 +48,10 @@ def find_body_parts(project: Project, character: CharacterMesh | None = None) ->
     """
     if project.touch.parts or project.skeleton is None:
         return project.touch.parts
-    roles, base = anatomy.project_roles(project), anatomy.base_pose(project)
+    roles, base = anatomy.project_roles(project), anatomy.get_base_pose(project)
     _, at = project.skeleton.globals(base)
-    axes = axes_of(project.skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
-    return body_capsules(project.skeleton, roles, base, axes, character)
+    axes = find_body_axes(project.skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
+    return make_body_capsules(project.skeleton, roles, base, axes, character)
 
 
 def find_contact_rig(project: Project) -> ContactRig | None:
@@ -60,7 +60,7 @@ def find_contact_rig(project: Project) -> ContactRig | None:
     arms = [[roles.get(f"{s}_{p}") for p in ("upper_arm", "lower_arm", "hand")] for s in SIDES]
     if skeleton is None or any(j is None for arm in arms for j in arm):
         return None
-    return rig_on(
+    return make_contact_rig(
         skeleton,
         [[j for j in arm if j is not None] for arm in arms],
         find_body_parts(project),
@@ -69,7 +69,7 @@ def find_contact_rig(project: Project) -> ContactRig | None:
     )
 
 
-def rig_on(
+def make_contact_rig(
     skeleton: Skeleton,
     arms: Sequence[Sequence[int]],
     parts: Sequence[BodyPart],
@@ -120,7 +120,7 @@ def _capsule(
     return BodyCapsule(place[joint], part.a, place[to], part.b, part.radius, side, kind)
 
 
-def goals_at(plan: Plan, project: Project, rig: ContactRig, time: float) -> list[HandGoal]:
+def find_hand_goals(plan: Plan, project: Project, rig: ContactRig, time: float) -> list[HandGoal]:
     """Return where the contacts of all layers want the hands at a time."""
     out: list[HandGoal] = []
     for layer in LAYERS:
@@ -128,7 +128,7 @@ def goals_at(plan: Plan, project: Project, rig: ContactRig, time: float) -> list
         if strength <= 0:
             continue
         cue = of.cue_at(time)
-        if cue is not None and motion_of(project, cue.action) is None:
+        if cue is not None and get_action_motion(project, cue.action) is None:
             cue = None
         place = max(int(of.fade_starts.searchsorted(time, "right")) - 1, 0) if of.rests else -1
         if not any(of.rests[n].action.contacts for n in (place, place - 1) if n >= 0) and not (
@@ -163,7 +163,7 @@ class ContactStage:
             return pose
         none: list[HandGoal] = []
         plan, project = self._plan, self._project
-        goals = [goals_at(plan, project, rig, t) if rig.contacts else none for t in times.tolist()]
+        goals = [find_hand_goals(plan, project, rig, t) if rig.contacts else none for t in times.tolist()]
         if shown is not None:
             goals = [
                 [replace(g, weight=g.weight * part) for g in some if g.weight * part > LEAST]
@@ -179,7 +179,7 @@ def solve_pose_with_contacts(pose: Pose, rig: ContactRig, goals: Sequence[Sequen
         idle = np.flatnonzero(~busy)
         # A few poses are solved one by one, because setting up arrays takes longer.
         few = len(idle) <= FEW
-        busy[idle] = few or inside(rig, Pose(pose.rotations[idle], pose.translations[idle]))
+        busy[idle] = few or find_inside(rig, Pose(pose.rotations[idle], pose.translations[idle]))
     if not busy.any():
         return pose
     rotations = pose.rotations
@@ -199,19 +199,19 @@ def solve_pose_with_contacts(pose: Pose, rig: ContactRig, goals: Sequence[Sequen
     return pose if rotations is pose.rotations else Pose(rotations, pose.translations)
 
 
-def inside(rig: ContactRig, pose: Pose) -> Array:
+def find_inside(rig: ContactRig, pose: Pose) -> Array:
     """Return `[N]` whether a forearm or hand is inside another part of the body in poses `[N, J]`."""
-    return np.asarray((contact_depths(rig, pose) > 0).any(-1))
+    return np.asarray((measure_contact_depths(rig, pose) > 0).any(-1))
 
 
-def contact_depths(rig: ContactRig, pose: Pose) -> Array:
+def measure_contact_depths(rig: ContactRig, pose: Pose) -> Array:
     """Return `[N, P]` how deep forearms and hands are inside other parts, in metres, negative outside, for
     every pair.
     """
     first, second, _ = list_capsule_pairs(rig)
-    a, b = ends(rig, pose)
+    a, b = find_capsule_ends(rig, pose)
     radii = np.array([c.radius for c in rig.capsules])
-    way, _ = nearest_between_lines(a[:, first], b[:, first], a[:, second], b[:, second])
+    way, _ = find_nearest_between_lines(a[:, first], b[:, first], a[:, second], b[:, second])
     return np.asarray(radii[first] + radii[second] - np.linalg.norm(way, axis=-1))
 
 
@@ -228,7 +228,7 @@ def list_capsule_pairs(rig: ContactRig) -> tuple[list[int], list[int], list[tupl
     return [i for i, _ in both], [k for _, k in both], both
 
 
-def ends(rig: ContactRig, pose: Pose) -> tuple[Array, Array]:
+def find_capsule_ends(rig: ContactRig, pose: Pose) -> tuple[Array, Array]:
     """Return where the capsules' lines begin and end in poses `[N, J]`: `[N, C, 3]` each."""
     joints = list(rig.joints)
     local, moved = (
@@ -249,7 +249,7 @@ def ends(rig: ContactRig, pose: Pose) -> tuple[Array, Array]:
     return out[0], out[1]
 
 
-def nearest_between_lines(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
+def find_nearest_between_lines(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
     """Return the shortest vectors `[..., 3]` from lines c-d to lines a-b, points `[..., 3]` each, and how far
     along a-b they end, 0..1: `contact_solve.apart` for arrays.
     """

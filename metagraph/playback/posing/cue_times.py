@@ -30,7 +30,7 @@ class LoopSpot:
 
 
 def loop_spot(project: Project, rest: Rest, time: float) -> LoopSpot:
-    """Return where a stance's loop is at a time, as `player.loop_seconds` does."""
+    """Return where a stance's loop is at a time, as `layers.compute_loop_seconds` does."""
     action = rest.action
     start, end = project.span(action)
     seam = min(max(0.0, action.timing.blend_in), (end - start) / 2.0)

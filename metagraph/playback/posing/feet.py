@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.checks.end_gaps import get_action_motion
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -55,7 +55,7 @@ def _leads(rig: WeightRig, place: int) -> bool:
     return False
 
 
-def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
+def make_foot_rows(project: Project, motion: Clip, rig: WeightRig) -> Rows:
     """Return the rows of a clip's `FootTrack`."""
     skeleton, roles = motion.skeleton, anatomy.project_roles(project)
     count = int(np.ceil(motion.duration * FOOT_RATE - 1e-6)) + 1
@@ -75,7 +75,7 @@ def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
         n = FOOT_NUMBERS * side
         out[:, n] = still
         out[:, n + 1 : n + 4] = at[:, foot]
-        out[:, n + 4 : n + 8] = rotation.continuous(turned[:, foot].astype(float))
+        out[:, n + 4 : n + 8] = rotation.make_continuous(turned[:, foot].astype(float))
     found = np.round(out / FOOT_UNIT)
     if (np.ptp(found, axis=0) <= SAME).all():
         found = found[:1]
@@ -95,7 +95,7 @@ class FeetOfPlan:
         if not layer.rests:
             return []
         cue = layer.cue_at(time)
-        if cue is not None and motion_of(project, cue.action) is None:
+        if cue is not None and get_action_motion(project, cue.action) is None:
             cue = None
         place = max(int(layer.fade_starts.searchsorted(time, "right")) - 1, 0)
         nearby = range(max(0, place - 4), min(len(layer.rests), place + 5))

@@ -19,11 +19,11 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.plan import Plan
-from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.composer import find_playable_motion
 from metagraph.playback.posing.feet import STANDS as HELD_BELOW
 from metagraph.playback.posing.feet import FeetOfPlan
-from metagraph.playback.posing.layers import loop_seconds, weight_of_cue
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.layers import compute_cue_weight, compute_loop_seconds
+from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import find_foot_rows, has_planted_feet
 
 Array = NDArray[Any]
@@ -82,19 +82,19 @@ def measure_slide_speeds(places: Array, rate: float) -> Array:
     return np.asarray(np.linalg.norm(places[window:] - places[:-window], axis=-1) / (window / rate))
 
 
-def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Array]:
+def measure_clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Array]:
     """Return what the layer that moves the legs plays at each time `[N]`, as words, and how fast its clips
     themselves move the joints of the feet `[N, F]` in the window that begins there, in metres a second. Of
     two that blend, the faster one counts. `times` ascend.
     """
     skeleton = project.skeleton
     assert skeleton is not None
-    layer = plan.layers[rigs_of(project).weight.feet_layer or "body"]
+    layer = plan.layers[get_rigs(project).weight.feet_layer or "body"]
     feet = [joint for side in find_feet_joints(project) for joint in side]
     own, kind = np.zeros((len(times), len(feet))), np.full(len(times), "loops", object)
 
     def speed(action: Action, seconds: Array) -> Array:
-        clip = playable(project, action)
+        clip = find_playable_motion(project, action)
         if clip is None or not len(seconds):
             return np.zeros((len(seconds), len(feet)))
         ends = [
@@ -106,13 +106,13 @@ def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Arra
     current = np.maximum(layer.fade_starts.searchsorted(times, "right") - 1, 0)
     for n in np.unique(current) if layer.rests else ():
         here, rest = np.flatnonzero(current == n), layer.rests[n]
-        seconds, _, old = loop_seconds(project, rest.action, times[here] - rest.start)
+        seconds, _, old = compute_loop_seconds(project, rest.action, times[here] - rest.start)
         own[here] = speed(rest.action, seconds)
         kind[here[old > 0]] = "loops' seams"
         fading = here[times[here] < rest.fade_start + rest.fade] if n else here[:0]
         if len(fading):
             before = layer.rests[n - 1]
-            seconds, _, _ = loop_seconds(project, before.action, times[fading] - before.start)
+            seconds, _, _ = compute_loop_seconds(project, before.action, times[fading] - before.start)
             own[fading] = np.maximum(own[fading], speed(before.action, seconds))
             kind[fading] = "loop to loop"
     first = max(0, int(layer.starts.searchsorted(times[0], "right")) - 1) if len(times) else 0
@@ -120,7 +120,7 @@ def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Arra
         if cue.start > times[-1]:
             break
         here = np.flatnonzero((times >= cue.start) & (times < cue.end))
-        weight = weight_of_cue(cue, times[here])
+        weight = compute_cue_weight(cue, times[here])
         shown = speed(cue.action, np.asarray(cue.clip_seconds(times[here])))
         own[here] = np.where((weight >= 1)[:, None], shown, np.maximum(own[here], shown))
         kind[here] = np.where(weight >= 1, f"{cue.action.kind}s", f"{cue.action.kind}s' blends")
@@ -146,7 +146,7 @@ class FeetWatch:
         self.feet = find_feet_joints(project) if project.skeleton is not None else []
         self._joints = [joint for side in self.feet for joint in side]
         self._places_at, self._clip = places_at, clip
-        weight = rigs_of(project).weight if self.feet else None
+        weight = get_rigs(project).weight if self.feet else None
         rig = weight.rig if weight is not None else None
         self._height = rig.height if rig is not None else project.skeleton.height if project.skeleton else 1.0
         layer = weight.feet_layer if weight is not None else None
@@ -171,7 +171,7 @@ class FeetWatch:
             at = np.asarray(self._places_at(np.clip(times, 0.0, self.length)), float)[:, self._joints]
             own = np.zeros(at.shape[:2])
             if self.plan is not None:
-                own = clip_speeds(self.plan, self.project, np.maximum(times, 0.0))[1]
+                own = measure_clip_speeds(self.plan, self.project, np.maximum(times, 0.0))[1]
             self._known.update(zip(some, zip(at, own, self._stepping(times), strict=True), strict=True))
         return len(some) == len(missing)
 
@@ -217,11 +217,11 @@ class FeetWatch:
             motion = self._clip
             rests = self.plan.layers[self._layer].rests if self.plan is not None else ()
             if motion is None and rests:
-                motion = playable(self.project, rests[0].action)
+                motion = find_playable_motion(self.project, rests[0].action)
             if motion is not None:
                 poses = motion.pose_at(np.linspace(0.0, motion.duration, STILL))
             else:
-                poses = anatomy.base_pose(self.project)
+                poses = anatomy.get_base_pose(self.project)
             heights = self.project.skeleton.globals(poses)[1][..., self._joints, 1]
             self._floor = np.asarray(np.percentile(heights.reshape(-1, len(self._joints)), 5, axis=0))
         return self._floor

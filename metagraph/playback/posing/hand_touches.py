@@ -13,8 +13,8 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.playback.plan import Cue, LayerPlan, Plan
-from metagraph.playback.posing.contacts import goals_at
-from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.contacts import find_hand_goals
+from metagraph.playback.posing.rigs import get_rigs
 
 Array = NDArray[Any]
 
@@ -48,7 +48,7 @@ class HandTouch:
         return self.held and self.away >= MISSED
 
 
-def hand_touches(
+def find_hand_touches(
     plan: Plan, project: Project, seconds: float, rotations: Array, positions: Array
 ) -> list[HandTouch]:
     """Return the contacts of a plan at a time, left hand first, one for each hand and joint it touches.
@@ -56,11 +56,11 @@ def hand_touches(
     `rotations` `[J, 4]` and `positions` `[J, 3]` are the visible pose in model space, in metres. The list is
     empty if the project has its contacts off, or does not have two arms.
     """
-    rig = rigs_of(project).contacts if project.skeleton is not None else None
+    rig = get_rigs(project).contacts if project.skeleton is not None else None
     if rig is None or not rig.contacts:
         return []
     found: dict[tuple[int, int], list[HandGoal]] = {}
-    for goal in goals_at(plan, project, rig, seconds):
+    for goal in find_hand_goals(plan, project, rig, seconds):
         found.setdefault((goal.arm, goal.to), []).append(goal)
     return [_touch(rig, goals, rotations, positions) for _, goals in sorted(found.items())]
 

@@ -17,7 +17,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
-from metagraph.playback.posing.composer import ComposerRig, Ground, Reach, playable
+from metagraph.playback.posing.composer import ComposerRig, Ground, Reach, find_playable_motion
 from metagraph.playback.posing.cue_times import seam_left
 
 Array = NDArray[Any]
@@ -53,7 +53,7 @@ class _LayerStage:
 
     def __init__(self, plan: LayerPlan, project: Project, ground: Ground, reach: Reach) -> None:
         self._plan, self._project, self._ground, self._reach = plan, project, ground, reach
-        self._scales = anatomy.scales(project)[:, reach.joints]
+        self._scales = anatomy.find_joint_scales(project)[:, reach.joints]
         self._lately: tuple[float, float, Met] = (
             inf,
             inf,
@@ -99,20 +99,20 @@ class _LayerStage:
         """Return offsets at `times [N]` that all have the same rest and the same phase of the same cue."""
         project, plan, reach = self._project, self._plan, self._reach
         cue = plan.cues[playing] if phase != _RESTING else None
-        motion = playable(project, cue.action) if cue is not None else None
+        motion = find_playable_motion(project, cue.action) if cue is not None else None
         if cue is None or motion is None:
             return self._stance(times, current, fading)
         shown = sample_cue(cue, times, lambda seconds: self._sample(motion, seconds))
-        mask = anatomy.action_mask(project, cue.action)
+        mask = anatomy.make_action_mask(project, cue.action)
         moved = None if mask is None or (mask[reach.joints] == 1).all() else mask[reach.joints]
         if phase == _FULL and moved is None and cue.extent == 1:
             return shown
         stance = self._stance(times, current, fading)
         if phase != _FULL and cue.repeats:
-            shown = crossfade(stance, shown, weight_of_cue(cue, times))  # at its ends it moves
+            shown = crossfade(stance, shown, compute_cue_weight(cue, times))  # at its ends it moves
         elif phase != _FULL:
             edge = self._sample(motion, np.array([cue.entry if phase == _ENTERING else cue.last]))
-            shown = _lead(shown, stance, edge, 1 - weight_of_cue(cue, times))
+            shown = _lead(shown, stance, edge, 1 - compute_cue_weight(cue, times))
         if cue.extent != 1:
             shown = _extended(shown, stance, cue.extent, self._scales)
         if moved is not None:
@@ -129,10 +129,10 @@ class _LayerStage:
         return crossfade(before, found, ease_blend((times - rest.fade_start) / rest.fade))
 
     def _rest(self, rest: Rest, times: Array) -> Sample:
-        motion = playable(self._project, rest.action)
+        motion = find_playable_motion(self._project, rest.action)
         if motion is None:
             return make_zero_offsets(len(times), len(self._reach.joints))
-        seconds, other, old = loop_seconds(self._project, rest.action, times - rest.start)
+        seconds, other, old = compute_loop_seconds(self._project, rest.action, times - rest.start)
         found = self._sample(motion, seconds)
         return crossfade(found, self._sample(motion, other), old) if old.any() else found
 
@@ -142,7 +142,9 @@ class _LayerStage:
 
 def make_zero_offsets(count: int, joints: int) -> Sample:
     """Return offsets that leave the base pose unchanged."""
-    return rotation.identity_rotations((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
+    return rotation.make_identity_rotations((count, joints), np.float32), np.zeros(
+        (count, joints, 3), np.float32
+    )
 
 
 def ease_blend(x: Array) -> Array:
@@ -164,7 +166,7 @@ def sample_cue(cue: Cue, times: Array, sample: Callable[[Array], Sample]) -> Sam
     return _lead(shown, sample(np.array([cue.cycle_to])), sample(np.array([cue.cycle_from])), left)
 
 
-def weight_of_cue(cue: Cue, times: Array) -> Array:
+def compute_cue_weight(cue: Cue, times: Array) -> Array:
     """Return how much of the cue shows at `times [N]`: 0 outside it, rising over its blend in, falling over
     its blend out.
     """
@@ -181,7 +183,7 @@ def weight_of_cue(cue: Cue, times: Array) -> Array:
     return np.asarray(rise * fall)
 
 
-def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Array, Array, Array]:
+def compute_loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Array, Array, Array]:
     """Return for seconds since a loop began: clip seconds, clip seconds of the seam's other side, and how
     much of that shows.
 
@@ -218,7 +220,9 @@ def keep_to(shown: Sample, rest: Sample, moved: Array) -> None:
 
 
 def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sample:
-    """Play a sample larger or smaller around its stance. `scales [2, n]` is as in `anatomy.scales`."""
+    """Play a sample larger or smaller around its stance. `scales [2, n]` is as in
+    `anatomy.find_joint_scales`.
+    """
     share = (extent - 1) * scales[0 if extent > 1 else 1]
     apart = rotation.multiply(rotation.conjugate(stance[0]), shown[0])
     factor = 1 + share * ease_blend((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent

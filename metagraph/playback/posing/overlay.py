@@ -59,7 +59,7 @@ def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample],
     share[:, over.joints] = over.weight[:, None] * (1 - np.where(heads, both[:, None], over.arms[:, None]))
     rotations, translations = pose.rotations, pose.translations
     turned, away = _whole(rig, layers, "arms", count)
-    turns = rotation.identity_rotations((count, size), np.float32)
+    turns = rotation.make_identity_rotations((count, size), np.float32)
     turns[:, over.joints] = over.turns
     rotations = rotation.multiply(rotations, rotation.nlerp(turned, turns, share))
     translations = translations + away * (1 - share[..., None])
@@ -67,7 +67,7 @@ def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample],
     share = np.zeros((count, size), np.float32)
     share[:, over.joints] = (over.weight * (1 - both))[:, None]
     turned, away = _whole(rig, layers, "head", count)
-    still = rotation.identity_rotations((count, size), np.float32)
+    still = rotation.make_identity_rotations((count, size), np.float32)
     rotations = rotation.multiply(rotations, rotation.nlerp(turned, still, share))
     return Pose(rotation.normalize(rotations), translations + away * (1 - share[..., None]))
 
@@ -94,7 +94,7 @@ def find_overlaid_joints(project: Project) -> Array:
     return _reach(anatomy.project_parts(project)).joints
 
 
-def clip_overlay(project: Project, clip: Clip, times: Array) -> Overlay:
+def make_clip_overlay(project: Project, clip: Clip, times: Array) -> Overlay:
     """Return a clip as an overlay from its beginning on, at `times [N]`. It fades in and out within BLEND
     seconds, or half the length of a short clip. Raises ValueError for a clip of another skeleton.
     """

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from metagraph.graph.face.rig import parts_for_face
+from metagraph.graph.face.rig import gather_face_parts
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.remembered import Remembered
 from metagraph.motion.contact_solve import ContactRig
@@ -43,10 +43,10 @@ class ResolvedProject(Project):
     vigours: Mapping[str, float] = field(default_factory=dict, compare=False, repr=False)
 
 
-_known: Remembered[Rigs] = Remembered(parts_for_face)
+_known: Remembered[Rigs] = Remembered(gather_face_parts)
 
 
-def rigs_of(project: Project) -> Rigs:
+def get_rigs(project: Project) -> Rigs:
     """Return the rigs of a project; the same object until something they depend on changes. Raises ValueError
     without a skeleton.
     """

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.checks.end_gaps import motion_of
-from metagraph.graph.face.rig import axes_of
+from metagraph.graph.checks.end_gaps import get_action_motion
+from metagraph.graph.face.rig import find_body_axes
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -27,7 +27,7 @@ from metagraph.motion.feet_solve import FootGoal, plant_feet
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig, answer_arms, moves_body
 from metagraph.playback.plan import LayerPlan, Plan
-from metagraph.playback.posing.feet import FeetOfPlan, Rows, find_feet_layer, rows_of_feet
+from metagraph.playback.posing.feet import FeetOfPlan, Rows, find_feet_layer, make_foot_rows
 from metagraph.playback.posing.follow_through import (
     KNOTS,
     NUMBERS,
@@ -95,12 +95,12 @@ def _rig(project: Project, strength: float) -> WeightRig | None:
         line = [hips, *(roles[f"{side}_{p}"] for p in ("upper_leg", "lower_leg", "foot"))]
         if any(a == b or b not in skeleton.descendants(a) for a, b in pairwise(line)):
             return None
-    return _found(skeleton, roles, anatomy.base_pose(project), strength)
+    return _found(skeleton, roles, anatomy.get_base_pose(project), strength)
 
 
 def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: float) -> WeightRig:
     turned, at = (x.astype(float) for x in skeleton.globals(base))
-    axes = axes_of(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
+    axes = find_body_axes(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
     hips = roles["hips"]
 
     def local(joint: int, axis: Array) -> Vector:
@@ -183,7 +183,7 @@ def find_foot_rows(weight: Weight, project: Project, clip: str) -> Rows:
         motion = entry.motion if entry is not None else None
         fits = motion is not None and motion.skeleton == project.skeleton
         if fits and motion is not None and weight.rig is not None and weight.feet_layer is not None:
-            found = rows_of_feet(project, motion, weight.rig)
+            found = make_foot_rows(project, motion, weight.rig)
         else:
             found = ()
         weight.feet[clip] = found
@@ -192,9 +192,9 @@ def find_foot_rows(weight: Weight, project: Project, clip: str) -> Rows:
 
 def _rows(project: Project, clip: Clip) -> tuple[tuple[float, ...], ...]:
     skeleton, roles = clip.skeleton, anatomy.project_roles(project)
-    base = anatomy.base_pose(project)
+    base = anatomy.get_base_pose(project)
     turned, at = (x.astype(float) for x in skeleton.globals(base))
-    axes = axes_of(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
+    axes = find_body_axes(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
     poses = clip.pose_at(np.arange(int(np.ceil(clip.duration * RATE - 1e-6)) + 1) / RATE)
     out = np.zeros((len(poses.rotations), NUMBERS))
     for n, side in enumerate(SIDES):
@@ -356,7 +356,7 @@ class WeightStage:
         with `whole`, these have rows.
         """
         cue = of.cue_at(time)
-        if cue is not None and motion_of(self._project, cue.action) is None:
+        if cue is not None and get_action_motion(self._project, cue.action) is None:
             cue = None
         place = max(int(of.fade_starts.searchsorted(time, "right")) - 1, 0) if of.rests else -1
         actions: list[Action] = [cue.action] if cue is not None else []

@@ -11,7 +11,7 @@ from typing import Any
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project
 from metagraph.graph.repeating import seconds_played
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "relax")
 PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
@@ -58,7 +58,7 @@ def handle_times(project: Project, action: Action) -> dict[str, float | None]:
 def _phases(project: Project, action: Action) -> dict[str, float | None]:
     if action.kind != "gesture":
         return dict.fromkeys(PHASES)
-    found = phases(project, action)
+    found = find_phases(project, action)
     return {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax}
 
 
@@ -149,7 +149,7 @@ def list_handles(project: Project, action: Action) -> tuple[Handle, ...]:
     t, at = action.timing, handle_times(project, action)
     own = {"ready": t.ready, "hold": t.stroke_end, "relax": t.relax, "stroke": t.stroke}
     if action.kind == "gesture" and at["stroke"] is None:
-        at["stroke"] = phases(project, action).stroke
+        at["stroke"] = find_phases(project, action).stroke
     loop = action.kind == "stance"
     numbers = {"in": t.blend_in, "out": t.blend_out}
     return tuple(
@@ -171,7 +171,7 @@ def find_blocks(project: Project, action: Action) -> tuple[PhaseBlock, ...]:
     )
 
 
-def block_moved(project: Project, action: Action, block: str, by: float) -> dict[str, Any]:
+def move_block(project: Project, action: Action, block: str, by: float) -> dict[str, Any]:
     """Return the Timing fields that dragging one of `BLOCKS` by seconds changes: it keeps its length as far
     as its neighbours let it, and what is beside it gives way. Nothing of what is no gesture.
     """

@@ -32,7 +32,7 @@ REMEMBERED = 32_768  # actions; were they fewer than a project has, an export wo
 SHORTEST = 0.08  # seconds of a bout or rest worth the name
 
 
-def phases(project: Project, action: Action) -> Phases:
+def find_phases(project: Project, action: Action) -> Phases:
     """Return an action's phases: what its timing says, and the rest as found; the middle of it where the clip
     is missing.
     """
@@ -54,7 +54,7 @@ def find_phases_within(
         if not own:
             return found
     else:
-        joints, seen_from = movers(project, motion, action.layer, action.limb)
+        joints, seen_from = find_movers(project, motion, action.layer, action.limb)
         found = _found(ref(motion), joints, seen_from, start, end)
     if not own and (
         start
@@ -83,11 +83,11 @@ def lead(project: Project, action: Action) -> float:
         start, end = project.span(action)
         stroke = action.timing.stroke
         return min(max((start + end) / 2 if stroke is None else stroke, start), end) - start
-    found = phases(project, action)
+    found = find_phases(project, action)
     return found.stroke - found.start
 
 
-def longest_lead(project: Project, graph: MetaGraph, tags: tuple[str, ...]) -> float:
+def find_longest_lead(project: Project, graph: MetaGraph, tags: tuple[str, ...]) -> float:
     """Return how long before its stroke any gesture with these tags begins; remembered as long as graph and
     clips stay as they are.
     """
@@ -104,7 +104,7 @@ def _within(own: float | None, found: float, start: float, end: float) -> float:
     return min(max(found if own is None else own, start), end)
 
 
-def movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tuple[int, ...], int]:
+def find_movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tuple[int, ...], int]:
     """Return the joints that make the gesture and the joint they are seen from."""
     if motion.skeleton != project.skeleton:
         return _movers({}, motion, layer, limb)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.checks.end_gaps import get_action_motion
 from metagraph.graph.model import Action, Project
 from metagraph.motion import features
 from metagraph.motion.clip import Clip
@@ -39,23 +39,23 @@ class SpeedCurve:
         return f"{self.name}, {UNIT}" + (f", seen from {self.seen_from}" if self.seen_from else "")
 
 
-def speed_of(project: Project, action: Action) -> tuple[Array, str]:
+def measure_action_speed(project: Project, action: Action) -> tuple[Array, str]:
     """Return the speed over an action's clip `[F]`, metres a second, of the fastest of what it moves, and in
     words what of; nothing and "" if there is no motion on the project's skeleton.
     """
-    motion = motion_of(project, action)
+    motion = get_action_motion(project, action)
     if motion is None:
         return np.zeros(0), ""
     joints, ground = _movers(project, motion, action.layer, action.limb)
     part = {"arms": "hand", "head": "head"}.get(action.layer, "body")
-    return features.speed(motion, joints, ground), f"{part} speed"
+    return features.measure_speed(motion, joints, ground), f"{part} speed"
 
 
 def find_curves(project: Project, action: Action, joint: str = "") -> tuple[SpeedCurve, ...]:
     """Return an action's curves; none if there is no motion on the project's skeleton. joint: of which, by
     name; "" for what its layer moves, a curve for each hand.
     """
-    motion = motion_of(project, action)
+    motion = get_action_motion(project, action)
     if motion is None:
         return ()
     roles = anatomy.project_roles(project)
@@ -89,7 +89,7 @@ def _curve(
     motion: Clip, name: str, joints: Sequence[int], ground: int | None, names: Sequence[str]
 ) -> SpeedCurve:
     return SpeedCurve(
-        name, names[ground] if ground is not None else "", features.speed(motion, joints, ground)
+        name, names[ground] if ground is not None else "", features.measure_speed(motion, joints, ground)
     )
 
 

@@ -26,7 +26,7 @@ def exhibit_growth(material: ExhibitMaterial) -> MadeExhibit:
         return MadeExhibit(_of(project), missing="the project has fewer than two actions: nothing grows")
     found = []
     for count in sorted({*(n for n in STEPS if n < len(whole)), len(whole)}):
-        counted = count_machine_size(smaller(project, count))
+        counted = count_machine_size(make_smaller_project(project, count))
         found.append((count, counted.connections))
     slope = _slope([(n, c) for n, c in found if c])
     imagined = count_machine_size(make_figure_1())
@@ -159,7 +159,7 @@ def _left(score: Score) -> str:
     return f"{wrong} wrong" + (f"; {settings} masks and times not set" if settings else "")
 
 
-def smaller(project: Project, count: int) -> Project:
+def make_smaller_project(project: Project, count: int) -> Project:
     """Return a project with so many of its actions: loops of stances first, then others in an order drawn by
     chance, the same each time.
     """

@@ -26,8 +26,8 @@ from metagraph.research.generation.evaluation import (
     HeldOut,
     JudgedModels,
     SamplingManner,
+    find_unseen_takes,
     judge_on_takes,
-    unseen,
 )
 
 NO_MODEL = (
@@ -180,7 +180,7 @@ def _judged(material: ExhibitMaterial) -> JudgedModels | str:
     if brought:
         material.notes.append(f"{brought} takes were retargeted onto the model's figure to be judged")
     try:
-        fresh, left = unseen(model, takes)
+        fresh, left = find_unseen_takes(model, takes)
     except SplitError as error:
         return str(error)
     if left:

@@ -19,7 +19,7 @@ from metagraph.research.exhibits.published import TABLE_2, TABLE_3
 from metagraph.research.motion_graph.search_evaluation import WINDOW, cut_segments
 from metagraph.suggest.jumps.johnson import JohnsonSB
 from metagraph.synthesis.constraints import find_change_states, find_heard_at, list_wanted
-from metagraph.synthesis.graph import build_graph, largest, threshold
+from metagraph.synthesis.graph import build_graph, find_largest_component, find_threshold
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.states import (
     KEYS,
@@ -27,7 +27,7 @@ from metagraph.synthesis.states import (
     STEP,
     States,
     SynthesisError,
-    costs_apart,
+    compute_costs_apart,
     key_states,
     read_states,
 )
@@ -50,8 +50,8 @@ def exhibit_costs(material: ExhibitMaterial) -> MadeExhibit:
     parts: list[ExhibitDrawing] = []
     rows, numbers = [], {}
     for k in APART:
-        limit = threshold(states, k)
-        values = costs_apart(states, k)
+        limit = find_threshold(states, k)
+        values = compute_costs_apart(states, k)
         top = float(np.quantile(values, 0.995))
         heights, edges = np.histogram(values, BINS, (0.0, max(top, 1e-6)))
         width = float(edges[1] - edges[0])
@@ -120,9 +120,9 @@ def exhibit_components(material: ExhibitMaterial) -> MadeExhibit:
         follows = int((~states.last).sum())
         points = []
         for k in TABLE_2:
-            whole = build_graph(states, threshold(states, k), keys, connected=False)
+            whole = build_graph(states, find_threshold(states, k), keys, connected=False)
             try:
-                kept = largest(whole)
+                kept = find_largest_component(whole)
                 left, edges = kept.size
                 stay = kept.kept
                 after = edges + int((stay[:-1] & stay[1:] & ~states.last[:-1]).sum())
@@ -184,7 +184,7 @@ def exhibit_times(material: ExhibitMaterial) -> MadeExhibit:
         began = perf_counter()
         states = read_states(clips)
         graph = build_graph(
-            states, threshold(states), key_states(states, KEYS, find_change_states(states, said))
+            states, find_threshold(states), key_states(states, KEYS, find_change_states(states, said))
         )
         building.append(perf_counter() - began)
         sizes.append(len(states))

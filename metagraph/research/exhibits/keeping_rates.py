@@ -15,7 +15,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.choice import key32
 from metagraph.research.exhibits.exhibit import ExhibitTable, MadeExhibit
-from metagraph.research.exhibits.material import ExhibitMaterial, actors_rates, with_rates
+from metagraph.research.exhibits.material import ExhibitMaterial, list_actors_rates, with_rates
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from metagraph.research.generation.planted_speech import make_planted_speech
 from metagraph.speech.delivered import NAMES, Delivered, count_delivered
@@ -130,7 +130,7 @@ def _near(chain: Markov, sequence: Sequence[int]) -> tuple[int, int]:
 def _spoken(project: Project, talks: int) -> list[tuple[str, Delivered]]:
     """Return what became of both sides' rates over several conversations."""
     sums: Counter[tuple[int, Spoken, str]] = Counter()
-    rates = actors_rates()
+    rates = list_actors_rates()
     for n in range(talks):
         said = make_planted_speech(
             TALK, key32(SEED, "speech", f"{n}"), key32(SEED, "moves", f"{n}"), f"talk {n + 1}"

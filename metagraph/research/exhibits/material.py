@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from metagraph.formats.corpora import Recorded
-from metagraph.graph.conversation.model import Conversation, Rates, Segment, segments_heard_by, side_name
+from metagraph.graph.conversation.model import (
+    Conversation,
+    Rates,
+    Segment,
+    get_side_name,
+    list_segments_heard_by,
+)
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
@@ -35,7 +41,7 @@ SEED = 20_200  # of what is said: no model was trained on it
 @dataclass(frozen=True, eq=False)
 class ExhibitActor:
     """One of two in all conversations. clips: its takes; speech: what it moves with in each,
-    `segments_heard_by`.
+    `list_segments_heard_by`.
     """
 
     name: str
@@ -90,11 +96,11 @@ class ExhibitMaterial:
                 self.notes.append(
                     f"{len(some) - len(kept)} takes of side {side + 1} have another skeleton: left out"
                 )
-            names = {side_name(t, side) for _, t in kept}
+            names = {get_side_name(t, side) for _, t in kept}
             name = names.pop() if len(names) == 1 else f"side {side + 1}"
             out.append(
                 ExhibitActor(
-                    name, tuple(c for c, _ in kept), tuple(segments_heard_by(t, side) for _, t in kept)
+                    name, tuple(c for c, _ in kept), tuple(list_segments_heard_by(t, side) for _, t in kept)
                 )
             )
         if not out:
@@ -135,7 +141,7 @@ def make_conversations(
     the project has no skeleton, or conversations would be too short.
     """
     out = []
-    both = actors_rates() if rates is None else tuple(rates)
+    both = list_actors_rates() if rates is None else tuple(rates)
     for n in range(count):
         name = f"made-up {n + 1}"
         spoken = make_planted_speech(
@@ -162,7 +168,7 @@ def with_rates(talk: Conversation, rates: Sequence[Rates]) -> Conversation:
     return msgspec.structs.replace(talk, sides=sides)
 
 
-def actors_rates() -> tuple[Rates, Rates]:
+def list_actors_rates() -> tuple[Rates, Rates]:
     """Return the rates of the paper's two actors (table 1)."""
     shares = {(r.actor, r.hypothesis): r.matched / r.total for r in TABLE_1}
     female, male = (

@@ -12,7 +12,7 @@ from math import sqrt
 
 from metagraph.graph.edits import set_settings
 from metagraph.graph.model import Layer, Project, Settings
-from metagraph.playback.learning.compare import stationary
+from metagraph.playback.learning.compare import compute_stationary_shares
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest
 from metagraph.playback.planner import extend_plan, make_plan
 from metagraph.playback.planning.choice import key32
@@ -287,8 +287,8 @@ def exhibit_matrix(material: ExhibitMaterial) -> MadeExhibit:
         ]
         rows.append((STATES[n], *cells))
     forbidden = sum(moves[i][j] for i in range(count) for j in range(count) if not FIGURE_11[i][j])
-    least = [fewest(row) for row in FIGURE_11]
-    long_run = stationary(ARMS.matrix)
+    least = [find_fewest_transitions(row) for row in FIGURE_11]
+    long_run = compute_stationary_shares(ARMS.matrix)
     says = [
         f"{len(sequence):,} actions written by the model that ships: no share is off the published one by "
         f"more than {worst:.1f} standard deviations (81 are looked at), and what has 0 % never came "
@@ -310,14 +310,16 @@ def exhibit_matrix(material: ExhibitMaterial) -> MadeExhibit:
         "the published matrix, which ships as the arms' default model",
         tuple(says),
         (
-            ExhibitDrawing("Rows: now; columns: next", drawings.heat(STATES, grids, "Figure 11 and ours")),
+            ExhibitDrawing(
+                "Rows: now; columns: next", drawings.draw_heat(STATES, grids, "Figure 11 and ours")
+            ),
             ExhibitTable("Percent there / here", ("", *STATES), tuple(rows)),
         ),
         {"moves": len(sequence) - 1, "worst": worst, "least": least},
     )
 
 
-def fewest(row: Sequence[float]) -> int:
+def find_fewest_transitions(row: Sequence[float]) -> int:
     """Return the fewest transitions that round to a row of percentages: to one place, or to whole numbers and
     halves where they are.
     """

@@ -12,8 +12,8 @@ from fractions import Fraction
 from math import comb, erfc, sqrt
 
 from metagraph.research.exhibits.published import FIGURE_6, PublishedRating
-from metagraph.research.study.statistics.small_samples import holm
-from metagraph.synthesis.cooccurrence import wilson
+from metagraph.research.study.statistics.small_samples import apply_holm
+from metagraph.synthesis.cooccurrence import compute_wilson_interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Preference:
         return self.rating.starred == (self.exact < 0.05)
 
 
-def two_samples(a: int, b: int, n: int) -> tuple[float, float]:
+def compare_two_samples(a: int, b: int, n: int) -> tuple[float, float]:
     """Return chi-square with Yates' correction, of one degree of freedom, and its p: a of n beside b of n, as
     though those were independent. Raises ValueError for counts outside 0..n, or no answers.
     """
@@ -53,7 +53,7 @@ def two_samples(a: int, b: int, n: int) -> tuple[float, float]:
     return chi, erfc(sqrt(chi / 2))
 
 
-def binomial(chosen: int, n: int) -> float:
+def compute_binomial_p(chosen: int, n: int) -> float:
     """Return the two-sided p of so many of n where either answer is as likely. Raises ValueError for counts
     outside 0..n, or no answers.
     """
@@ -64,13 +64,13 @@ def binomial(chosen: int, n: int) -> float:
     return min(1.0, float(Fraction(2 * tail, 1 << n)))
 
 
-def preferences() -> tuple[Preference, ...]:
+def list_preferences() -> tuple[Preference, ...]:
     """Return the study's four rows with both tests."""
-    exact = [binomial(r.chosen, r.answers) for r in FIGURE_6]
+    exact = [compute_binomial_p(r.chosen, r.answers) for r in FIGURE_6]
     out = []
-    for rating, one, several in zip(FIGURE_6, exact, holm(exact), strict=True):
+    for rating, one, several in zip(FIGURE_6, exact, apply_holm(exact), strict=True):
         n = rating.answers
-        chi, p = two_samples(rating.chosen, n - rating.chosen, n)
-        low, high = wilson(rating.chosen, n)
+        chi, p = compare_two_samples(rating.chosen, n - rating.chosen, n)
+        low, high = compute_wilson_interval(rating.chosen, n)
         out.append(Preference(rating, chi, p, one, several or one, rating.chosen / n, low, high))
     return tuple(out)

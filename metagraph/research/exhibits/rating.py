@@ -5,13 +5,13 @@ from __future__ import annotations
 from metagraph.research.exhibits import drawings
 from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
 from metagraph.research.exhibits.material import ExhibitMaterial
-from metagraph.research.exhibits.preferences import preferences
+from metagraph.research.exhibits.preferences import list_preferences
 
 
 def exhibit_ratings(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 6: what people preferred, by the published test and by an exact one."""
     rows, bars = [], []
-    found = preferences()
+    found = list_preferences()
     for r in found:
         g = r.rating
         rows.append(

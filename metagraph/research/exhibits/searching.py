@@ -9,7 +9,7 @@ from statistics import fmean, median
 
 import msgspec
 
-from metagraph.graph.conversation.model import Conversation, Segment, Side, segments_heard_by
+from metagraph.graph.conversation.model import Conversation, Segment, Side, list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.planning.choice import key32
 from metagraph.research.exhibits import drawings
@@ -18,8 +18,8 @@ from metagraph.research.exhibits.material import (
     SEED,
     ExhibitActor,
     ExhibitMaterial,
-    actors_rates,
     find_side_motion,
+    list_actors_rates,
     with_rates,
 )
 from metagraph.research.exhibits.published import CASES, FOUND, FOUND_WITHOUT_HESITATION, SAVED
@@ -32,9 +32,9 @@ from metagraph.research.motion_graph.search_evaluation import (
     evaluate_search,
 )
 from metagraph.synthesis.constraints import find_change_states, find_heard_at, list_wanted
-from metagraph.synthesis.cooccurrence import wilson
+from metagraph.synthesis.cooccurrence import compute_wilson_interval
 from metagraph.synthesis.graph import build_graph
-from metagraph.synthesis.search.path_quality import quality
+from metagraph.synthesis.search.path_quality import measure_quality
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, find_path
 from metagraph.synthesis.states import SynthesisError, key_states, read_states
 
@@ -69,7 +69,7 @@ def exhibit_search(material: ExhibitMaterial) -> MadeExhibit:
                 path = find_path(graph, sound, asked, "greedy", rules, seed)
             except SynthesisError:
                 continue
-            looks = quality(states, path)
+            looks = measure_quality(states, path)
             costs.append(path.price)
             jumps.append(looks.jumps)
             again.append(looks.repeated)
@@ -91,7 +91,7 @@ def exhibit_search(material: ExhibitMaterial) -> MadeExhibit:
             rows.append((words, "by chance", found, "-", "-", "-", "-"))
         try:
             path = find_path(graph, sound, asked, "exact", rules)
-            looks = quality(states, path)
+            looks = measure_quality(states, path)
             cells = (f"{path.price:.3g}", f"{path.price:.3g}", f"{looks.jumps:.2f}", f"{looks.repeated:.0%}")
             rows.append((words, "the best", "1 of 1", *cells))
             bars.append((f"{words}, best", [("ours", path.price, None, None)]))
@@ -173,7 +173,7 @@ def exhibit_success(material: ExhibitMaterial) -> MadeExhibit:
 
 
 def _published(words: str, found: int) -> tuple[str, ...]:
-    low, high = wilson(found, CASES)
+    low, high = compute_wilson_interval(found, CASES)
     return (
         words,
         "by chance",
@@ -187,7 +187,7 @@ def _published(words: str, found: int) -> tuple[str, ...]:
 
 
 def _bar(css: str, found: int) -> tuple[str, float, float | None, float | None]:
-    return css, found / CASES, *wilson(found, CASES)
+    return css, found / CASES, *compute_wilson_interval(found, CASES)
 
 
 def _row(words: str, r: EvaluationRow) -> tuple[str, ...]:
@@ -229,7 +229,7 @@ def exhibit_competing(material: ExhibitMaterial) -> MadeExhibit:
     names = COMPETE if material.full else (ALL, "without clause")
     settings = [s for s in SETTINGS if s.name in names]
     for scarcity in SCARCE:
-        actor = scarce(material.project, scarcity, 2 if material.full else 1)
+        actor = make_scarce_takes(material.project, scarcity, 2 if material.full else 1)
         done = evaluate_search(actor.clips, actor.speech, settings)
         by = {(c.take, c.start, c.setting, c.search): c for c in done.cases}
         odd += [k for k, c in by.items() if k[3] == "greedy" and c.found and not by[(*k[:3], "exact")].found]
@@ -275,12 +275,12 @@ def exhibit_competing(material: ExhibitMaterial) -> MadeExhibit:
     )
 
 
-def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEED) -> ExhibitActor:
+def make_scarce_takes(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEED) -> ExhibitActor:
     """Return takes of made-up conversations with less to choose from, of both sides or the first alone, as
     one actor's. Raises ValueError if the project cannot perform.
     """
     clips, speech = [], []
-    rates = actors_rates()
+    rates = list_actors_rates()
     for n in range(scarcity.count):
         name = f"{scarcity.name} {n + 1}"
         spoken = make_planted_speech(
@@ -289,7 +289,7 @@ def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEE
         talk = with_rates(_scarcer(spoken.conversation, scarcity), (rates[0], rates[0]))
         for side in range(sides):
             clips.append(find_side_motion(project, talk, side))
-            speech.append(segments_heard_by(talk, side))
+            speech.append(list_segments_heard_by(talk, side))
     return ExhibitActor(scarcity.name, tuple(clips), tuple(speech))
 
 

@@ -17,12 +17,12 @@ from metagraph.research.exhibits.published import TABLE_1, WORDS_A_CLAUSE, Publi
 from metagraph.synthesis.cooccurrence import (
     CooccurrenceRow,
     Part,
-    activation,
+    compute_wilson_interval,
     count_cooccurrence,
-    movement,
-    movement_windows,
-    speeds,
-    wilson,
+    find_activation_speed,
+    find_movement,
+    find_movement_windows,
+    measure_part_speeds,
 )
 
 ACTORS = ("female", "male")
@@ -36,7 +36,7 @@ def exhibit_rates(material: ExhibitMaterial) -> MadeExhibit:
     rows: list[tuple[str, ...]] = []
     bars: list[tuple[PublishedRate, drawings.Bar]] = []
     for row in TABLE_1:
-        low, high = wilson(row.matched, row.total)
+        low, high = compute_wilson_interval(row.matched, row.total)
         share = row.matched / row.total
         cells = (f"there: {row.actor}", row.hypothesis, f"{row.matched}", f"{row.total}", f"{row.printed} %")
         rows.append((*cells, f"{low:.0%} to {high:.0%}", "not told"))
@@ -120,9 +120,9 @@ def exhibit_window(material: ExhibitMaterial) -> MadeExhibit:
     if found is None:
         return MadeExhibit(material.about, missing="no clause with a movement and a neighbour near was found")
     clip, said, a, part, track = found
-    idle = activation(track)
-    low, high = movement_windows([a], clip.duration, said)[0]
-    moved = movement(track, clip.fps, (low, high), idle) or (low, low)
+    idle = find_activation_speed(track)
+    low, high = find_movement_windows([a], clip.duration, said)[0]
+    moved = find_movement(track, clip.fps, (low, high), idle) or (low, low)
     middle, half = (a.start + a.end) / 2, a.end - a.start
     begin, end = max(0.0, middle - 1.6 * half), min(clip.duration, middle + 1.6 * half)
 
@@ -172,7 +172,7 @@ def _clauses(material: ExhibitMaterial) -> Iterator[tuple[Clip, Sequence[Segment
     """
     for actor in material.actors:
         for clip, said in zip(actor.clips, actor.speech, strict=True):
-            speed = speeds(clip)
+            speed = measure_part_speeds(clip)
             hands: list[Part] = [p for p in ("left_hand", "right_hand") if p in speed]
             if not hands:
                 continue
@@ -180,6 +180,9 @@ def _clauses(material: ExhibitMaterial) -> Iterator[tuple[Clip, Sequence[Segment
             for a, b in pairwise(said):
                 if a.kind != "clause" or b.start - a.end > NEAR:
                     continue
-                around = movement_windows([a], clip.duration, said)[0]
-                if movement(speed[part], clip.fps, around, activation(speed[part])) is not None:
+                around = find_movement_windows([a], clip.duration, said)[0]
+                if (
+                    find_movement(speed[part], clip.fps, around, find_activation_speed(speed[part]))
+                    is not None
+                ):
                     yield clip, said, a, part, speed[part]

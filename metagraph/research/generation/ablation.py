@@ -31,7 +31,7 @@ from metagraph.generation.statistics import (
 from metagraph.generation.stored import SUFFIX, Model, read_model
 from metagraph.generation.take_files import TakeFiles, read_speech
 from metagraph.generation.takes import Take
-from metagraph.research.generation.evaluation import HeldOut, SamplingManner, generate_poses, truth
+from metagraph.research.generation.evaluation import HeldOut, SamplingManner, generate_poses, make_truth_row
 
 Array = NDArray[Any]
 
@@ -104,7 +104,7 @@ CHANGES = (
 NAMES = tuple(c.name for c in CHANGES)
 
 
-def sizes_for(change: AblationChange, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
+def choose_sizes(change: AblationChange, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
     """Return what is trained, None if the change says nothing about such a model."""
     name = change.name
     if name in ("paper's loss", "no third term"):
@@ -184,7 +184,7 @@ class Ablated:
     left: tuple[str, ...]
 
 
-def file_of(folder: Path, change: AblationChange, training: int) -> Path:
+def make_ablation_path(folder: Path, change: AblationChange, training: int) -> Path:
     """Return where a model of an ablation is kept."""
     return folder / f"{change.name.replace(' ', '-').replace(chr(39), '')}-{training}{SUFFIX}"
 
@@ -240,7 +240,7 @@ def ablate_model(
     systems: dict[str, list[tuple[MotionSample, ...]]] = {}
     ran, kept, left = [], [], []
     for change in changes:
-        wanted = sizes_for(change, training.kind, training.sizes)
+        wanted = choose_sizes(change, training.kind, training.sizes)
         if wanted is None:
             left.append(change.name)
             continue
@@ -248,7 +248,7 @@ def ablate_model(
         systems[change.name] = []
         for seed in range(1, trainings + 1):
             # What differs in how it is sampled alone is not trained again.
-            out = file_of(folder, change if change.guidance is None else CHANGES[0], seed)
+            out = make_ablation_path(folder, change if change.guidance is None else CHANGES[0], seed)
             name = f"{change.name}, seed {seed}"
             if progress is not None:
                 progress(name)
@@ -267,7 +267,7 @@ def ablate_model(
     other = (
         None if floor is None else [make_motion_sample(rig, p, t) for p, t in zip(floor, held, strict=True)]
     )
-    rows = [truth(true, other, draws), *tabulate_measures(systems, true, other, draws)]
+    rows = [make_truth_row(true, other, draws), *tabulate_measures(systems, true, other, draws)]
     return Ablated(tuple(rows), tuple(ran), tuple(kept), tuple(left))
 
 

@@ -80,7 +80,7 @@ def generate_poses(model: Model, heard: Array, seed: int, number: int, manner: S
     )
 
 
-def unseen(model: Model, takes: Sequence[Take]) -> tuple[tuple[Take, ...], tuple[str, ...]]:
+def find_unseen_takes(model: Model, takes: Sequence[Take]) -> tuple[tuple[Take, ...], tuple[str, ...]]:
     """Return the takes that a model may be judged on, and names of those left out, which it has learned from.
     Of one recording that was learned from except for a block, that block alone. Raises SplitError if none is
     left.
@@ -104,11 +104,13 @@ def unseen(model: Model, takes: Sequence[Take]) -> tuple[tuple[Take, ...], tuple
     )
 
 
-def for_all(models: Mapping[str, Model], takes: Sequence[Take]) -> tuple[tuple[Take, ...], tuple[str, ...]]:
+def find_takes_unseen_by_all(
+    models: Mapping[str, Model], takes: Sequence[Take]
+) -> tuple[tuple[Take, ...], tuple[str, ...]]:
     """Return the takes that none of the models has learned from, and the others' names. Raises SplitError."""
     chosen, out = tuple(takes), list[str]()
     for model in models.values():
-        chosen, left = unseen(model, chosen)
+        chosen, left = find_unseen_takes(model, chosen)
         out += left
     return chosen, tuple(dict.fromkeys(out))
 
@@ -153,11 +155,13 @@ def judge_on_takes(
     other = None
     if floor is not None:
         other = tuple(make_motion_sample(rig, p, t) for p, t in zip(floor, takes, strict=True))
-    own = truth(true, other, draws)
+    own = make_truth_row(true, other, draws)
     return JudgedModels(true, other, made, (own, *tabulate_measures(made, true, other, draws)))
 
 
-def truth(true: Sequence[MotionSample], other: Sequence[MotionSample] | None, draws: int) -> MeasureRow:
+def make_truth_row(
+    true: Sequence[MotionSample], other: Sequence[MotionSample] | None, draws: int
+) -> MeasureRow:
     """Return the row of recorded motion itself: what it has of its own, and how far two draws of it are
     apart.
     """

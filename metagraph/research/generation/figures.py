@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.svg import WIDTH, format_px, svg_drawing, svg_line, svg_text
+from metagraph.common.svg import WIDTH, draw_svg_line, draw_svg_text, format_px, make_svg_drawing
 from metagraph.generation.landmarks import LANDMARKS
 from metagraph.generation.networks import FPS
 from metagraph.generation.statistics import MotionSample
@@ -64,7 +64,7 @@ def draw_over_time(motion: MotionSample, mean: Array, most: float | None = None)
     parts = _across(0.0, most, top, bottom, "cm")
     for t in _ticks(0.0, seconds):
         x = _LEFT + (_RIGHT - _LEFT) * t / seconds
-        parts.append(svg_text(x, bottom + 16, f"{t:g} s", "dim", "middle"))
+        parts.append(draw_svg_text(x, bottom + 16, f"{t:g} s", "dim", "middle"))
     for n in reversed(range(len(LANDMARKS))):
         # The largest of each few frames: peaks stay, and the file is small.
         values = [far[k : k + _EVERY, n].max() for k in range(0, len(far), _EVERY)]
@@ -77,9 +77,9 @@ def draw_over_time(motion: MotionSample, mean: Array, most: float | None = None)
     at = float(_LEFT)
     for n, name in enumerate(_NAMES):
         parts.append(f"<rect class='fill{n}' x='{format_px(at)}' y='{height - 22}' width='12' height='12'/>")
-        parts.append(svg_text(at + 18, height - 12, name, "dim", "start"))
+        parts.append(draw_svg_text(at + 18, height - 12, name, "dim", "start"))
         at += 130
-    return svg_drawing(height, parts, "Distance of landmarks from the mean pose over time")
+    return make_svg_drawing(height, parts, "Distance of landmarks from the mean pose over time")
 
 
 def draw_boxes(systems: Mapping[str, Array], unit: str) -> str:
@@ -89,8 +89,8 @@ def draw_boxes(systems: Mapping[str, Array], unit: str) -> str:
     """
     shown = {name: v for name, v in list(systems.items())[:SYSTEMS] if len(v) > 1}
     if not shown:
-        return svg_drawing(
-            40, [svg_text(WIDTH / 2, 24, "nothing to draw", "dim", "middle")], "Nothing to draw"
+        return make_svg_drawing(
+            40, [draw_svg_text(WIDTH / 2, 24, "nothing to draw", "dim", "middle")], "Nothing to draw"
         )
     top, bottom, height = 12, 260, 330
     low = min(0.0, *(float(v.min()) for v in shown.values()))
@@ -101,20 +101,20 @@ def draw_boxes(systems: Mapping[str, Array], unit: str) -> str:
     for n, landmark in enumerate(LANDMARKS):
         middle = _LEFT + slot * (n + 0.5)
         side, _, part = landmark.rpartition("_")
-        parts.append(svg_text(middle, bottom + 16, part, "dim", "middle"))
-        parts.append(svg_text(middle, bottom + 30, side, "dim", "middle"))
+        parts.append(draw_svg_text(middle, bottom + 16, part, "dim", "middle"))
+        parts.append(draw_svg_text(middle, bottom + 30, side, "dim", "middle"))
         for k, values in enumerate(shown.values()):
             x = middle + (k - (len(shown) - 1) / 2) * wide * 1.15
             parts.append(f"<g class='box s{k}'>{_box(values[:, n], x, wide, low, high, top, bottom)}</g>")
     at = float(_LEFT)
     for k, name in enumerate(shown):
         parts.append(f"<rect class='s{k}' x='{format_px(at)}' y='{height - 18}' width='12' height='12'/>")
-        parts.append(svg_text(at + 18, height - 8, name[:16], "dim", "start"))
+        parts.append(draw_svg_text(at + 18, height - 8, name[:16], "dim", "start"))
         at += 116
-    return svg_drawing(height, parts, f"Notched boxes of each landmark, {unit}")
+    return make_svg_drawing(height, parts, f"Notched boxes of each landmark, {unit}")
 
 
-def tukey(values: Array) -> tuple[float, float, float, float, float, Array]:
+def compute_box_plot(values: Array) -> tuple[float, float, float, float, float, Array]:
     """Return lower whisker, first quartile, median, third quartile, upper whisker, and what lies beyond."""
     first, middle, third = (float(q) for q in np.percentile(values, (25, 50, 75)))
     reach = 1.5 * (third - first)
@@ -124,7 +124,7 @@ def tukey(values: Array) -> tuple[float, float, float, float, float, Array]:
 
 
 def _box(values: Array, x: float, wide: float, low: float, high: float, top: float, bottom: float) -> str:
-    least, first, middle, third, most, beyond = tukey(values)
+    least, first, middle, third, most, beyond = compute_box_plot(values)
     notch = 1.57 * (third - first) / np.sqrt(len(values))
 
     def y(value: float) -> float:
@@ -135,8 +135,11 @@ def _box(values: Array, x: float, wide: float, low: float, high: float, top: flo
     right = list(zip((half, half, waist, half, half), ends, strict=True))
     outline = [(x + w, v) for w, v in right] + [(x - w, v) for w, v in reversed(right)]
     points = " ".join(f"{format_px(a)},{format_px(b)}" for a, b in outline)
-    parts = [f"<polygon points='{points}'/>", svg_line(x - waist, y(middle), x + waist, y(middle), "median")]
-    parts += [svg_line(x, y(a), x, y(b), "whisker") for a, b in ((least, first), (third, most))]
+    parts = [
+        f"<polygon points='{points}'/>",
+        draw_svg_line(x - waist, y(middle), x + waist, y(middle), "median"),
+    ]
+    parts += [draw_svg_line(x, y(a), x, y(b), "whisker") for a, b in ((least, first), (third, most))]
     # What would be drawn at the same place is drawn once.
     for at in sorted({round(y(float(v))) for v in beyond}):
         parts.append(f"<circle class='beyond' cx='{format_px(x)}' cy='{at}' r='0.8'/>")
@@ -171,8 +174,8 @@ def draw_overlaid(motion: Mapping[str, MotionSample]) -> str:
                 )
             )
         parts.append(f"<g class='bones line{k}'>{''.join(f'<path d={d!r}/>' for d in lines)}</g>")
-        parts.append(svg_text(centre, height - 12, name, "label", "middle"))
-    return svg_drawing(height, parts, "Poses drawn over each other, one a second")
+        parts.append(draw_svg_text(centre, height - 12, name, "label", "middle"))
+    return make_svg_drawing(height, parts, "Poses drawn over each other, one a second")
 
 
 def _kind(landmark: str) -> int:
@@ -194,5 +197,8 @@ def _across(low: float, high: float, top: float, bottom: float, unit: str) -> li
     out = []
     for t in _ticks(low, high):
         y = _place(t, low, high, top, bottom)
-        out += [svg_line(_LEFT, y, _RIGHT, y, "grid"), svg_text(_LEFT - 6, y + 4, f"{t:g}", "dim", "end")]
-    return [*out, svg_text(_LEFT + 4, top + 2, unit, "dim", "start")]
+        out += [
+            draw_svg_line(_LEFT, y, _RIGHT, y, "grid"),
+            draw_svg_text(_LEFT - 6, y + 4, f"{t:g}", "dim", "end"),
+        ]
+    return [*out, draw_svg_text(_LEFT + 4, top + 2, unit, "dim", "start")]

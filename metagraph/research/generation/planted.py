@@ -103,7 +103,7 @@ def write_planted(
     return made
 
 
-def again(project: Project, planted: Planted, take: Take, rig: PoseRig) -> Take:
+def perform_again(project: Project, planted: Planted, take: Take, rig: PoseRig) -> Take:
     """Return a planted take performed again, by chance of its own: what a perfect model might do. Raises
     ValueError for a take that was not planted.
     """

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import astuple, fields
 from statistics import fmean
 
-from metagraph.common.csv_text import csv_text
+from metagraph.common.csv_text import format_csv
 from metagraph.research.motion_graph.search_evaluation import Evaluation, HeldOutCase
 
 
@@ -16,7 +16,7 @@ def format_cases_as_csv(cases: Sequence[HeldOutCase]) -> str:
         [round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v for v in astuple(case)]
         for case in cases
     )
-    return csv_text([[f.name for f in fields(HeldOutCase)], *rows])
+    return format_csv([[f.name for f in fields(HeldOutCase)], *rows])
 
 
 def format_cases_as_text(evaluation: Evaluation) -> str:

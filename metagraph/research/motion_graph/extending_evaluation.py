@@ -17,11 +17,11 @@ from metagraph.motion.clip import Clip
 from metagraph.research.motion_graph.search_evaluation import LEAST, WINDOW, cut_segments, hold_out_states
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import STRESS, TOLERANCE, HeardStates, find_change_states, find_heard_at
-from metagraph.synthesis.extending.path import DriverGraph, PathExtender, driver_graph
+from metagraph.synthesis.extending.path import DriverGraph, PathExtender, make_driver_graph
 from metagraph.synthesis.extending.speech_so_far import LATE, SpeechNews
-from metagraph.synthesis.graph import MotionGraph, build_graph, threshold
+from metagraph.synthesis.graph import MotionGraph, build_graph, find_threshold
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.search.path_quality import PathQuality, quality
+from metagraph.synthesis.search.path_quality import PathQuality, measure_quality
 from metagraph.synthesis.search.relaxing import answer_speech
 from metagraph.synthesis.states import KEYS, LEVEL, STEP, States, SynthesisError, key_states, read_states
 
@@ -68,7 +68,7 @@ LiveCase = tuple[States, HeardStates, Sequence[Segment], Path]  # of a graph; sp
 Driven = tuple[MotionGraph, HeardStates, Sequence[Segment], float]  # a graph; speech, and its seconds
 
 
-def news_of(segments: Iterable[Segment], ahead: float | None) -> list[tuple[float, SpeechNews]]:
+def list_speech_news(segments: Iterable[Segment], ahead: float | None) -> list[tuple[float, SpeechNews]]:
     """Return what becomes known of speech and when, seconds. ahead: seconds before a segment begins at which
     it is announced; None if it is only heard, as late as `live.heard_voice` hears it.
     """
@@ -90,7 +90,7 @@ def extend_by_windows(
     """Return the path that is extended while speech goes on, and of each search the frames it looked at and
     the seconds of the processor it took.
     """
-    extender, news, place = PathExtender(graph, seed), news_of(segments, ahead), 0
+    extender, news, place = PathExtender(graph, seed), list_speech_news(segments, ahead), 0
     way, searches = np.empty(max(1, round(seconds * RATE)), np.int64), []
     for frame in range(len(way)):
         first = place
@@ -124,7 +124,7 @@ def score_paths(how: str, cases: Sequence[LiveCase], searches: Sequence[tuple[in
             kinds[round(s.start * RATE) : round(s.end * RATE)] = 1 << SOUNDS.index(s.kind)
         alike += int((sound.kinds[path.states] == kinds).sum())
         frames += length
-        looks.append((length, quality(states, path)))
+        looks.append((length, measure_quality(states, path)))
     slack = TOLERANCE + 0.5 / RATE
     away = np.array(off)
     near = away[(away >= -slack) & (away <= LATE)]
@@ -185,7 +185,7 @@ def score_extending(
     """Yield how motion of these graphs goes with speech known in each of these ways, at last with all of it
     known.
     """
-    ready = [driver_graph(graph, sound) for graph, sound, _, _ in graphs]
+    ready = [make_driver_graph(graph, sound) for graph, sound, _, _ in graphs]
     for driver in ready[:1]:
         PathExtender(driver).step()  # compiles what is timed
     total, done = len(graphs) * (len(ahead) + 1), 0
@@ -235,7 +235,7 @@ def hold_out_takes(
         rest = hold_out_states(every, n)
         others = [s for m, (_, s) in enumerate(pairs) if m != n]
         places = key_states(rest, keys, find_change_states(rest, others))
-        graph = build_graph(rest, threshold(rest, k, level), places, most)
+        graph = build_graph(rest, find_threshold(rest, k, level), places, most)
         out.append(
             (graph, find_heard_at(rest, others), cut_segments(said, 0.0, take.duration), take.duration)
         )

@@ -23,10 +23,10 @@ from metagraph.synthesis.constraints import (
     find_heard_at,
     list_wanted,
 )
-from metagraph.synthesis.cooccurrence import wilson
-from metagraph.synthesis.graph import MotionGraph, build_graph, threshold
+from metagraph.synthesis.cooccurrence import compute_wilson_interval
+from metagraph.synthesis.graph import MotionGraph, build_graph, find_threshold
 from metagraph.synthesis.prosody_costs import SpokenTake
-from metagraph.synthesis.search.path_quality import quality
+from metagraph.synthesis.search.path_quality import measure_quality
 from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.soft_constraints import (
@@ -34,7 +34,7 @@ from metagraph.synthesis.soft_constraints import (
     SoftConstraints,
     SoftMaterial,
     SoftWish,
-    soft_report,
+    make_soft_report,
 )
 from metagraph.synthesis.states import (
     KEYS,
@@ -173,7 +173,7 @@ class Evaluation:
 
 def _row(setting: str, search: Search, cases: Sequence[HeldOutCase]) -> EvaluationRow:
     found = [c for c in cases if c.found]
-    low, high = wilson(len(found), len(cases))
+    low, high = compute_wilson_interval(len(found), len(cases))
     moved = sum(c.length for c in found)
     return EvaluationRow(
         setting,
@@ -221,8 +221,8 @@ def cut_segments(segments: Sequence[Segment], start: float, length: float) -> li
 
 @dataclass(frozen=True)
 class GraphMaking:
-    """How a graph is made of takes, as `build` and `threshold` take it. keys: share of states that are key
-    states.
+    """How a graph is made of takes, as `build` and `find_threshold` take it. keys: share of states that are
+    key states.
     """
 
     k: int = STEP
@@ -267,9 +267,9 @@ def evaluate_search(
     """Hold out one take after another, build the graph of the rest as `build` does, and search it for what
     was said in the one held out.
 
-    speech: what each take goes with, `segments_heard_by`. A take without which there is no graph makes cases
-    that find nothing. Cancelled, it returns what there is. Raises SynthesisError when there are fewer than
-    two takes, not as many speeches, or no case at all.
+    speech: what each take goes with, `list_segments_heard_by`. A take without which there is no graph makes
+    cases that find nothing. Cancelled, it returns what there is. Raises SynthesisError when there are fewer
+    than two takes, not as many speeches, or no case at all.
     """
     searches = trials.searches
     known = [SpokenTake(tuple(s)) for s in speech] if beside.spoken is None else beside.spoken
@@ -343,7 +343,7 @@ def _warm(searches: Collection[Search]) -> None:
         np.array([0, 4]),
         1.0,
     )
-    graph = build_graph(tiny, threshold(tiny, 2), np.arange(4))
+    graph = build_graph(tiny, find_threshold(tiny, 2), np.arange(4))
     for search in searches:
         find_path(
             graph, HeardStates(np.ones(4, np.uint8), np.zeros(4, bool)), list_wanted([], 0.1), search, FREE
@@ -365,7 +365,7 @@ def _graph(
     said = [s for n, s in enumerate(speech) if n != out]
     try:
         keys = key_states(rest, making.keys, find_change_states(rest, said))
-        limit = threshold(rest, making.k, making.level)
+        limit = find_threshold(rest, making.k, making.level)
         graph = build_graph(rest, limit, keys, making.most, cancelled=cancelled)
         return graph, find_heard_at(rest, said), perf_counter() - begun
     except SynthesisError as error:
@@ -397,7 +397,10 @@ def _tried(
     except SynthesisError as error:
         return replace(case, seconds=perf_counter() - begun, why=str(error))
     took, path = perf_counter() - begun, found.path
-    looks, told = quality(graph.states, path), soft_report(soft, graph.states, path, found.retiming)
+    looks, told = (
+        measure_quality(graph.states, path),
+        make_soft_report(soft, graph.states, path, found.retiming),
+    )
     off = {m.measure: m.off for m in told.matches}
     return replace(
         case,

@@ -129,7 +129,7 @@ TLX_WEIGHTED = Questionnaire(
 BUILT_IN: Mapping[str, Questionnaire] = {q.id: q for q in (SUS, TLX, TLX_WEIGHTED)}
 
 
-def sus_score(answers: Mapping[str, Any]) -> float:
+def compute_sus_score(answers: Mapping[str, Any]) -> float:
     """Return 0..100: odd items give their place on the scale less 1, even ones 5 less it; the sum times 2.5
     (Brooke 1996).
 
@@ -143,16 +143,18 @@ def sus_score(answers: Mapping[str, Any]) -> float:
 
 
 def compute_tlx_raw(answers: Mapping[str, Any]) -> float:
-    """Return 0..100: the mean of the six scales ("raw TLX"). Raises ValueError as `sus_score` does."""
+    """Return 0..100: the mean of the six scales ("raw TLX"). Raises ValueError as `compute_sus_score`
+    does.
+    """
     return sum(_value(answers, item) for item in TLX.items) / len(TLX.items)
 
 
-def tlx_weighted(answers: Mapping[str, Any]) -> float:
+def compute_weighted_tlx(answers: Mapping[str, Any]) -> float:
     """Return 0..100: the mean of the six scales, weighted by how often each was chosen in the 15 pairs (Hart
     and Staveland 1988).
 
     answers: the scales by name, and for each pair "mental-physical" the title that was chosen. Raises
-    ValueError as `sus_score` does.
+    ValueError as `compute_sus_score` does.
     """
     titles = {title: key for key, (title, _, _) in TLX_SCALES.items()}
     weights = dict.fromkeys(TLX_SCALES, 0)

@@ -20,17 +20,17 @@ from metagraph.research.study.analysis.results import (
 )
 from metagraph.research.study.reports import plots
 from metagraph.research.study.reports.cells import (
-    apa,
-    chance,
-    figure,
+    describe_who,
     format_cells,
+    format_interval,
+    format_p_value,
     format_ratio,
     format_spread,
     format_test,
     format_two_digits,
     gather_missing,
-    interval,
-    who,
+    make_figure,
+    write_apa_sentence,
 )
 from metagraph.research.study.reports.doubts import (
     describe_alternatives,
@@ -40,10 +40,10 @@ from metagraph.research.study.reports.doubts import (
     describe_other_conditions,
     describe_sites,
     draw_alternatives,
-    flow_figure,
+    draw_flow_figure,
 )
-from metagraph.research.study.reports.figure_files import standalone
-from metagraph.research.study.reports.plots import seconds
+from metagraph.research.study.reports.figure_files import make_standalone_svg
+from metagraph.research.study.reports.plots import format_duration
 from metagraph.research.study.reports.style import METHODS, STYLE
 from metagraph.research.study.reports.tables import study_tables
 from metagraph.research.study.statistics.small_samples import Estimate
@@ -51,8 +51,8 @@ from metagraph.research.study.statistics.small_samples import Estimate
 __all__ = [
     "NAME",
     "Paper",
-    "chance",
     "draw_study_figures",
+    "format_p_value",
     "format_study_page",
     "gather_missing",
     "summarise_study",
@@ -68,7 +68,7 @@ def write_study_report(results: Results, folder: Path, paper: Paper | None = Non
     """Write the page, the tables and the figures into a folder; return what was written, the page first.
     paper: makes a PDF of an SVG file's text, if that can be done. Raises FileError.
     """
-    drawn = {name: standalone(drawing) for name, (drawing, _) in draw_study_figures(results).items()}
+    drawn = {name: make_standalone_svg(drawing) for name, (drawing, _) in draw_study_figures(results).items()}
     papers = {name: paper(text) for name, text in drawn.items()} if paper is not None else {}
     content: dict[str, bytes] = {NAME: format_study_page(results, papers).encode()}
     content |= {name: text.encode() for name, text in study_tables(results).items()}
@@ -82,7 +82,7 @@ def write_study_report(results: Results, folder: Path, paper: Paper | None = Non
 def draw_study_figures(results: Results) -> dict[str, tuple[str, str]]:
     """Return name -> drawing (SVG, for the page's style) and caption."""
     out: dict[str, tuple[str, str]] = {}
-    drawing = flow_figure(results)
+    drawing = draw_flow_figure(results)
     if drawing is not None:
         out["participants"] = drawing, "From all who were planned to all who count."
     time = results.time
@@ -97,7 +97,10 @@ def draw_study_figures(results: Results) -> dict[str, tuple[str, str]]:
         rows: list[tuple[str, Estimate]] = [("all tasks", time.ratio)]
         rows += [(results.data.tasks[t], e) for t, e in results.by_task.items() if len(results.by_task) > 1]
         rows += [(TITLES[c.pair[0]], c.ratio) for c in results.others]
-        out["ratios"] = plots.ratios(rows), "How many times as long it took by hand, with 95 % intervals."
+        out["ratios"] = (
+            plots.plot_ratios(rows),
+            "How many times as long it took by hand, with 95 % intervals.",
+        )
     again = draw_alternatives(results)
     if again is not None:
         out["otherwise"] = again, "The ratio of all tasks, reckoned otherwise, with 95 % intervals."
@@ -122,7 +125,7 @@ def format_study_page(results: Results, papers: Files | None = None) -> str:
     """Return the page. papers: its figures as PDF, by name."""
     data = results.data
     drawn = {
-        n: figure(n, drawing, words, papers or {})
+        n: make_figure(n, drawing, words, papers or {})
         for n, (drawing, words) in draw_study_figures(results).items()
     }
     parts = [
@@ -168,7 +171,7 @@ def summarise_study(results: Results) -> list[str]:
     first = (
         f"Working on the {TITLES[ABOVE]} took {format_ratio(time.ratio)} as long as with the {TITLES[BELOW]}"
     )
-    out = [f"{first} ({who(time)})."]
+    out = [f"{first} ({describe_who(time)})."]
     f1 = next((m for m in results.mistakes if m.name.startswith("F1")), None)
     if f1 is not None and ABOVE in f1.means and BELOW in f1.means:
         below, above = (f1.means[c].value for c in (BELOW, ABOVE))
@@ -206,17 +209,17 @@ def _time(results: Results, drawn: Mapping[str, str]) -> str:
     if time is None:
         return ""
     body = [
-        [f"{TITLES[c]}, a {time.unit}", interval(time.means[c], seconds)]
+        [f"{TITLES[c]}, a {time.unit}", format_interval(time.means[c], format_duration)]
         for c in (BELOW, ABOVE)
     ]  # fmt: skip
-    body.append(["ratio", interval(time.ratio, format_two_digits)])
+    body.append(["ratio", format_interval(time.ratio, format_two_digits)])
     if time.effect is not None:
-        body.append(["effect size, d<sub>z</sub> (Hedges)", interval(time.effect, format_two_digits)])
+        body.append(["effect size, d<sub>z</sub> (Hedges)", format_interval(time.effect, format_two_digits)])
     for task, ratio in results.by_task.items() if len(results.by_task) > 1 else ():
-        body.append([f"ratio, {escape(results.data.tasks[task])}", interval(ratio, format_two_digits)])
+        body.append([f"ratio, {escape(results.data.tasks[task])}", format_interval(ratio, format_two_digits)])
     out = "<h2>Time</h2>" + drawn.get("times", "") + drawn.get("ratios", "")
     out += format_cells(("", "value, 95 % interval"), body)
-    out += f"<p class='dim'>For a paper: {apa(time)}</p>"
+    out += f"<p class='dim'>For a paper: {write_apa_sentence(time)}</p>"
     return (
         out
         + describe_equivalence(results)
@@ -259,9 +262,8 @@ def _learning(results: Results, drawn: Mapping[str, str]) -> str:
     for c, curve in results.curves.items():
         twice = 2**curve.slope.value
         words = f"With each doubling of the clips done, a clip took {twice:.2f} of the time"
-        said.append(
-            f"<li>{escape(TITLES[c])}: slope {interval(curve.slope, lambda v: f'{v:.3f}')}. {words}.</li>"
-        )
+        slope = format_interval(curve.slope, lambda v: f"{v:.3f}")
+        said.append(f"<li>{escape(TITLES[c])}: slope {slope}. {words}.</li>")
     return f"<h2>Practice</h2>{drawn.get('practice', '')}<ul>{''.join(said)}</ul>"
 
 
@@ -279,9 +281,9 @@ def _spent(results: Results, drawn: Mapping[str, str]) -> str:
         rows = [
             [
                 TITLES[c],
-                interval(p.observed, seconds),
-                interval(p.model, seconds),
-                interval(p.share, format_two_digits),
+                format_interval(p.observed, format_duration),
+                format_interval(p.model, format_duration),
+                format_interval(p.share, format_two_digits),
             ]
             for c, p in results.predicted.items()
         ]
@@ -301,8 +303,8 @@ def _measures(title: str, words: str, measures: Sequence[StudyMeasure]) -> str:
     rows = [
         [
             escape(m.name),
-            *(interval(m.means.get(c), format_two_digits) for c in columns),
-            interval(m.difference, format_two_digits),
+            *(format_interval(m.means.get(c), format_two_digits) for c in columns),
+            format_interval(m.difference, format_two_digits),
         ]
         for m in measures
         if m.name not in never
@@ -322,7 +324,7 @@ def _ratings(results: Results, drawn: Mapping[str, str]) -> str:
 def _together(results: Results) -> str:
     if not results.together:
         return ""
-    rows = [[escape(name), format_test(test), chance(p)] for name, test, p in results.together]
+    rows = [[escape(name), format_test(test), format_p_value(p)] for name, test, p in results.together]
     words = (
         "What was asked of these people, by paired t tests, which agree with the intervals above; the "
         "last column "

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from metagraph.errors import FileError
 from metagraph.research.study.logs.log import Event, StudyLog, Writer, read_log
-from metagraph.research.study.logs.lsl_markers import MarkersError, outlet
+from metagraph.research.study.logs.lsl_markers import MarkersError, open_marker_outlet
 from metagraph.research.study.plan.allocation import allocate
 from metagraph.research.study.questionnaires import Questionnaire
 from metagraph.research.study.scores.tasks import list_event_steps
@@ -216,7 +216,7 @@ class Sitting:
         send = None
         if study.plan.lsl:
             try:
-                send = outlet(participant)
+                send = open_marker_outlet(participant)
             except MarkersError as error:
                 raise SittingError(str(error)) from None
         self.writer = Writer(study.log(participant))

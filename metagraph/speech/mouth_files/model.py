@@ -18,7 +18,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.playback.life.line_timing import AZURE, OCULUS, POLLY, WEAK
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.speech.phones import is_arpabet, visemes_of
+from metagraph.speech.phones import find_visemes, is_arpabet
 
 Array = NDArray[Any]
 LONGEST = 3600.0  # seconds of a line
@@ -173,7 +173,7 @@ class MouthCues:
                 return lambda label: ([table.get(label, "sil")], WEAK.get(label, 1.0))
         bare = {label: re.sub(r"_[BIES]$", "", label) for label in given}
         arpabet = is_arpabet(bare.values())
-        silent = sum(not visemes_of(one, arpabet)[0] for one in bare.values())
+        silent = sum(not find_visemes(one, arpabet)[0] for one in bare.values())
         if 2 * silent > len(given) + 2 or any(len(one) > 12 or one.isdigit() for one in given):
             known = ", ".join(SHAPE_SETS)
             raise self.file.fail(
@@ -185,7 +185,7 @@ class MouthCues:
             )
         kind = phrase("ARPAbet") if arpabet else phrase("IPA or SAMPA")
         self.notes.append(phrase("its labels are read as phones ({kind})", kind=kind))
-        return lambda label: visemes_of(bare.get(label, label), arpabet)
+        return lambda label: find_visemes(bare.get(label, label), arpabet)
 
 
 def parse_mouth_number(value: Any) -> float | None:

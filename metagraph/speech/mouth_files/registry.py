@@ -14,7 +14,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.speech.mouth_files import cues, dumps
 from metagraph.speech.mouth_files.model import MouthFile, MouthShapes
-from metagraph.speech.phones import pieces_of
+from metagraph.speech.phones import list_mouth_pieces
 from metagraph.speech.textgrid import read_textgrid
 
 
@@ -41,7 +41,7 @@ def _is_grid(file: MouthFile) -> bool:
 
 def _read_grid(file: MouthFile) -> MouthShapes:
     grid = read_textgrid(file.path)
-    pieces = pieces_of(grid)
+    pieces = list_mouth_pieces(grid)
     return MouthShapes(tuple(pieces), end=max([grid.end, *(p.end for p in pieces)]))
 
 

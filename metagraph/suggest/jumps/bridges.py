@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import Phrase, phrase
 from metagraph.graph import anatomy, edits
-from metagraph.graph.checks.end_gaps import TALL, motion_of, reached_joints
-from metagraph.graph.expand import reachable
+from metagraph.graph.checks.end_gaps import TALL, find_reached_joints, get_action_motion
+from metagraph.graph.expand import find_reachable
 from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
-from metagraph.playback.posing.composer import find_composer, playable
+from metagraph.playback.posing.composer import find_composer, find_playable_motion
 from metagraph.playback.posing.layers import sample_offsets
 
 Array = NDArray[Any]
@@ -96,7 +96,7 @@ def bridge_stance(project: Project, stance: str) -> tuple[Project, tuple[Bridge,
             home, lost = _parted(graph, graph.start, poses, to)
             ends = [s for s in home if s != stance] if stance in lost else []
         else:  # the start itself, or none: a way that leads anywhere at all
-            ends = [] if to or len(reachable(graph, stance)) > 1 else others
+            ends = [] if to or len(find_reachable(graph, stance)) > 1 else others
         project, made = _nearest(project, poses, ends, [stance], to)
         out += [made] if made is not None else []
     return project, tuple(out)
@@ -118,7 +118,7 @@ def find_missing_bridges(project: Project) -> list[str]:
 def _joined(project: Project, layer: Layer, stance: str) -> bool:
     graph = project.graphs[layer]
     start = graph.start or ""
-    return stance in reachable(graph, start) and start in reachable(graph, stance)
+    return stance in find_reachable(graph, start) and start in find_reachable(graph, stance)
 
 
 def describe_bridges(project: Project, bridges: Iterable[Bridge]) -> list[str]:
@@ -168,7 +168,7 @@ def _without_far_rests(project: Project, layer: Layer, poses: Mapping[str, _Rest
     graph, most = project.graphs[layer], NOTICED * _size(project)
     groups = {s: {s} for s in poses}
     for one in poses:
-        for other in reachable(graph, one) & poses.keys():
+        for other in find_reachable(graph, one) & poses.keys():
             joined = groups[one] | groups[other]
             groups.update(dict.fromkeys(joined, joined))
     kept = {
@@ -189,9 +189,9 @@ def _without_far_rests(project: Project, layer: Layer, poses: Mapping[str, _Rest
 def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -> tuple[list[str], list[str]]:
     """Return the stances that the start leads to, or that lead to it, and those of which that is not so."""
     if there:
-        home = reachable(graph, start)
+        home = find_reachable(graph, start)
     else:
-        home = frozenset(s for s in poses if start in reachable(graph, s))
+        home = frozenset(s for s in poses if start in find_reachable(graph, s))
     return [s for s in poses if s in home], [s for s in poses if s not in home]
 
 
@@ -238,7 +238,7 @@ def _refusal(project: Project, one: _Rest, other: _Rest) -> Phrase | None:
 
 def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
     """Return the first loop of a stance whose motion is there."""
-    return next((a for a in graph.of(stance, "stance") if motion_of(project, a) is not None), None)
+    return next((a for a in graph.of(stance, "stance") if get_action_motion(project, a) is not None), None)
 
 
 class _Pace:
@@ -256,7 +256,7 @@ class _Pace:
         size, speeds = _size(self.project), []
         moves = False
         for action in self.project.actions():
-            clip = playable(self.project, action)
+            clip = find_playable_motion(self.project, action)
             start, end = self.project.span(action)
             if clip is None or end - start < 2 * MOMENT:
                 continue
@@ -299,7 +299,7 @@ def _poses(project: Project, graph: MetaGraph) -> dict[str, _Rest]:
     roles, pace, rig = anatomy.project_roles(project), _Pace(project), find_composer(project)
     for stance in graph.stances:
         loop = _loop(project, graph, stance)
-        motion = motion_of(project, loop)
+        motion = get_action_motion(project, loop)
         if loop is not None and motion is not None:
             span = project.span(loop)
             start = np.array([span[0]])
@@ -311,7 +311,7 @@ def _poses(project: Project, graph: MetaGraph) -> dict[str, _Rest]:
             out[stance] = _Rest(
                 loop,
                 shown[0],
-                reached_joints(project, graph, loop),
+                find_reached_joints(project, graph, loop),
                 places[roles.get("hips", 0)][[0, 2]],
                 degrees(atan2(-across[2], across[0])),
                 graph.weight("legs") > 0,

@@ -26,11 +26,11 @@ from metagraph.motion.clip import Clip
 from metagraph.suggest.jumps.johnson import JohnsonSB, fit_johnson
 from metagraph.suggest.tracks import (
     RATE,
-    joint_track,
+    make_joint_track,
+    measure_velocity,
     track_floor,
     track_rig,
     track_seconds,
-    velocity_of,
 )
 
 Array = NDArray[Any]
@@ -122,7 +122,7 @@ class Matrix:
         return np.asarray(self.leave_cost <= 1)
 
 
-def statistics(
+def compute_statistics(
     clips: Iterable[Clip],
     layer: Layer,
     roles: Mapping[str, int] | None = None,
@@ -146,10 +146,10 @@ def statistics(
             first = clip.skeleton
         if clip.skeleton is not first and clip.skeleton != first:
             continue
-        track = joint_track(rig, clip)
+        track = make_joint_track(rig, clip)
         if len(track) < STEP:
             continue
-        v = velocity_of(track)
+        v = measure_velocity(track)
         places.append(np.linalg.norm(track[STEP - 1 :] - track[: 1 - STEP], axis=-1) @ w)
         speeds.append(np.linalg.norm(v[STEP - 1 :] - v[: 1 - STEP], axis=-1) @ w)
     p = np.concatenate(places).astype(float) if places else np.zeros(0)
@@ -163,7 +163,7 @@ def statistics(
     return Statistics(layer, w, velocity, found, threshold, len(cost), float((cost <= threshold).mean()))
 
 
-def stance_frames(
+def find_stance_frames(
     stats: Statistics, loops: Sequence[tuple[Clip, float, float]], roles: Mapping[str, int] | None = None
 ) -> tuple[Array, Array]:
     """Return positions and velocities `[G, J, 3]` of frames of a stance's loops, each a clip from .. to a
@@ -172,14 +172,14 @@ def stance_frames(
     most = max(2, MOST_FRAMES // max(1, len(loops)))
     places, speeds = [], []
     for clip, start, end in loops:
-        track = joint_track(track_rig(clip, roles), clip)
+        track = make_joint_track(track_rig(clip, roles), clip)
         times = track_seconds(clip)
         inside = np.flatnonzero((times >= start - 0.5 / RATE) & (times <= end + 0.5 / RATE))
         if not len(inside):
             continue
         chosen = inside[np.unique(np.linspace(0, len(inside) - 1, min(most, len(inside))).astype(int))]
         places.append(track[chosen])
-        speeds.append(velocity_of(track)[chosen] if end > start else np.zeros_like(track[chosen]))
+        speeds.append(measure_velocity(track)[chosen] if end > start else np.zeros_like(track[chosen]))
     joints = len(stats.weights)
     if not places:
         return np.zeros((0, joints, 3), np.float32), np.zeros((0, joints, 3), np.float32)
@@ -193,7 +193,7 @@ def measure_transition_costs(
     nearest frame, beside the threshold: up to 1 is no jump. Infinite where the stance has no frames, or
     another skeleton.
     """
-    return _costs(stats, joint_track(track_rig(clip, roles), clip), [stance])[:, 0]
+    return _costs(stats, make_joint_track(track_rig(clip, roles), clip), [stance])[:, 0]
 
 
 def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array]]) -> Array:
@@ -204,7 +204,7 @@ def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array
         return out
     places, speeds = (np.concatenate([stances[k][i] for k in there]) for i in (0, 1))
     first = np.cumsum([0, *(len(stances[k][0]) for k in there[:-1])])
-    moving = velocity_of(track)
+    moving = measure_velocity(track)
     step = max(1, CHUNK // len(places))
     for a in range(0, len(track), step):
         rows = slice(a, a + step)
@@ -220,7 +220,7 @@ def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array
 def fit_clip(clip: Clip, cost: Array) -> StanceFit:
     """Return where a clip can be entered and left, given its `costs` beside a stance."""
     times = track_seconds(clip)
-    into = entering(cost)
+    into = compute_entry_costs(cost)
     a = int(
         np.argmax(into <= into.min() + ALIKE)
     )  # of moments that are as good, the first to enter at and the last to leave at
@@ -235,7 +235,7 @@ def fit_clip(clip: Clip, cost: Array) -> StanceFit:
     )
 
 
-def entering(cost: Array) -> Array:
+def compute_entry_costs(cost: Array) -> Array:
     """Return `[F]` what entering at each frame costs, given a clip's `costs`: c_ij compares with frame j - 1,
     so a clip entered at j follows a stance that looks like its frame before.
     """
@@ -267,8 +267,8 @@ def measure_seam_cost(
     """Return what the seam of a loop from `start` to `end` costs, beside the threshold: the most of what lies
     opposite in its overlap.
     """
-    track = joint_track(track_rig(clip, roles), clip)
-    v, last = velocity_of(track), len(track) - 1
+    track = make_joint_track(track_rig(clip, roles), clip)
+    v, last = measure_velocity(track), len(track) - 1
     if track.shape[1] != len(stats.weights):
         return float("inf")
     n = np.arange(round(overlap * RATE) + 1)
@@ -277,7 +277,7 @@ def measure_seam_cost(
     return float((far @ stats.weights).max()) / stats.threshold
 
 
-def visible_difference(cost: Any, seconds: float) -> Any:
+def measure_visible_difference(cost: Any, seconds: float) -> Any:
     """Return what of a difference, beside the threshold, still shows when it is blended over some seconds: up
     to 1 is no jump.
 
@@ -318,7 +318,10 @@ def propose_times(
     """
     left = entered if left is None else left
     into, out, at = fit_clip(clip, entered), fit_clip(clip, left), track_seconds(clip)
-    speed = np.linalg.norm(velocity_of(joint_track(track_rig(clip, roles), clip)), axis=-1) @ stats.weights
+    speed = (
+        np.linalg.norm(measure_velocity(make_joint_track(track_rig(clip, roles), clip)), axis=-1)
+        @ stats.weights
+    )
     moving = at[speed >= speed.min() + ACTIVE * (speed.max() - speed.min())]
     middle = float(at[int(np.argmax(speed))]) if stroke is None else stroke
     enter = [t for a, b in into.enter for t in at[(at >= a) & (at <= b)].tolist() if t <= middle]
@@ -328,12 +331,16 @@ def propose_times(
     blend_in, blend_out = blend(_at(entered, begin)), blend(_at(left, finish))
     start, end = max(0.0, begin - blend_in), min(clip.duration, finish + blend_out)
     if (
-        visible_difference(_at(entered, start), blend_in)
+        measure_visible_difference(_at(entered, start), blend_in)
         > 1
-        >= visible_difference(_at(entered, begin), blend_in)
+        >= measure_visible_difference(_at(entered, begin), blend_in)
     ):
         start = begin  # before, it is on its way from elsewhere
-    if visible_difference(_at(left, end), blend_out) > 1 >= visible_difference(_at(left, finish), blend_out):
+    if (
+        measure_visible_difference(_at(left, end), blend_out)
+        > 1
+        >= measure_visible_difference(_at(left, finish), blend_out)
+    ):
         end = finish
     most = max(0.0, end - start)
     room_in, room_out = (
@@ -381,8 +388,8 @@ def _settled(clip: Clip, roles: Mapping[str, int] | None) -> float:
 
 def find_loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> ProposedTimes:
     """Return a timing for a clip that loops: all of it, with an overlap as long as its seam needs."""
-    track = joint_track(track_rig(clip, roles), clip)
-    v = velocity_of(track)
+    track = make_joint_track(track_rig(clip, roles), clip)
+    v = measure_velocity(track)
     seam = float(np.linalg.norm(track[-1] - track[0], axis=-1) @ stats.weights)
     seam = (
         seam + stats.velocity * float(np.linalg.norm(v[-1] - v[0], axis=-1) @ stats.weights)
@@ -416,7 +423,7 @@ def _at(cost: Array, seconds: float) -> float:
     return value if np.isfinite(value) else 1e9
 
 
-def compatibility_matrix(
+def make_compatibility_matrix(
     project: Project,
     layer: Layer,
     stances: Mapping[str, Sequence[tuple[Clip, float, float]]] | None = None,
@@ -435,15 +442,15 @@ def compatibility_matrix(
         if e.motion is not None and e.motion.skeleton == project.skeleton
     }
     chosen = tuple(project.clips) if clips is None else tuple(clips)
-    loops = loops_of(project, layer) if stances is None else stances
+    loops = list_stance_loops(project, layer) if stances is None else stances
     graph = project.graphs[layer]
     labelled = [own[c] for c in graph.uses if c in own]
-    stats = statistics(
+    stats = compute_statistics(
         labelled or own.values(), layer, roles, {part: graph.weight(part) for part in REACH[layer]}
     )
     shape = (len(chosen), len(loops))
     out = Matrix(layer, chosen, tuple(loops), *(np.full(shape, v) for v in (np.inf, np.inf, 0.0, 0.0)))
-    frames = [stance_frames(stats, some, roles) for some in loops.values()]
+    frames = [find_stance_frames(stats, some, roles) for some in loops.values()]
     for row, ident in enumerate(chosen):
         if cancelled is not None and cancelled():
             break
@@ -451,7 +458,7 @@ def compatibility_matrix(
             progress(row, len(chosen))
         if (clip := own.get(ident)) is None:
             continue
-        cost = _costs(stats, joint_track(track_rig(clip, roles), clip), frames)
+        cost = _costs(stats, make_joint_track(track_rig(clip, roles), clip), frames)
         for column in range(len(frames)):
             f = fit_clip(clip, cost[:, column])
             out.enter_cost[row, column], out.leave_cost[row, column] = f.enter_cost, f.leave_cost
@@ -459,7 +466,7 @@ def compatibility_matrix(
     return out
 
 
-def loops_of(project: Project, layer: Layer) -> dict[str, list[tuple[Clip, float, float]]]:
+def list_stance_loops(project: Project, layer: Layer) -> dict[str, list[tuple[Clip, float, float]]]:
     """Return stance id -> its loops, each a clip and the seconds that play, of a project's stances; those
     whose clips are there.
     """

@@ -18,7 +18,7 @@ from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import REACH, Action, Layer, Project
 from metagraph.graph.repeating import cycle_of
 from metagraph.motion.clip import Clip
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.jumps import compatibility as c
 from metagraph.suggest.tracks import RATE
 
@@ -86,16 +86,18 @@ class Measured:
         self.motions = tuple(used or own.values())
         self.labelled = len(used)
         self.weights: dict[str, float] = {part: graph.weight(part) for part in REACH[layer]}
-        self.loops = c.loops_of(project, layer)
+        self.loops = c.list_stance_loops(project, layer)
         old = before if before is not None and before.rests_on(self) else None
         self.stats: c.Statistics = (
-            old.stats if old is not None else c.statistics(self.motions, layer, self.roles, self.weights)
+            old.stats
+            if old is not None
+            else c.compute_statistics(self.motions, layer, self.roles, self.weights)
         )
         same: Mapping[str, tuple[Array, Array]] = old.frames if old is not None else {}
         self.frames: dict[str, tuple[Array, Array]] = {
             stance: same[stance]
             if old is not None and old.loops.get(stance) == loops
-            else c.stance_frames(self.stats, loops, self.roles)
+            else c.find_stance_frames(self.stats, loops, self.roles)
             for stance, loops in self.loops.items()
         }
         kept = old._costs if old is not None else {}
@@ -131,7 +133,7 @@ class Measured:
         frames = self.frames.get(stance or "")
         if motion is None or frames is None or not len(frames[0]) or motion.skeleton != project.skeleton:
             return None
-        moved = anatomy.action_mask(project, action)
+        moved = anatomy.make_action_mask(project, action)
         key = id(motion), stance, None if moved is None else moved.tobytes()
         if key not in self._costs:
             self._costs[key] = c.measure_transition_costs(
@@ -140,7 +142,7 @@ class Measured:
         return self._costs[key]
 
 
-def jumps(
+def find_jumps(
     project: Project,
     measured: Measured,
     known: dict[Any, tuple[Jump, ...]] | None = None,
@@ -177,13 +179,13 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
     middle = (
         t.stroke
         if t.stroke is not None
-        else phases(project, action).stroke
+        else find_phases(project, action).stroke
         if action.kind == "gesture"
         else None
     )
     if into is not None:
-        cost = c.entering(into)
-        now = float(c.visible_difference(_at(cost, start), t.blend_in))
+        cost = c.compute_entry_costs(into)
+        now = float(c.measure_visible_difference(_at(cost, start), t.blend_in))
         latest = (
             end - t.blend_in - t.blend_out if middle is None else min(middle, end - t.blend_in - t.blend_out)
         )
@@ -192,11 +194,11 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
             better, mend = _mend(
                 "start", start, better, _blended("blend_in", _at(cost, start), end - start - t.blend_out)
             )
-            fits = _fits(project, measured, action, start, action.stance, c.entering)
+            fits = _fits(project, measured, action, start, action.stance, c.compute_entry_costs)
             found.append(Jump(action.id, "begins", start, now, action.stance, mend, better, fits))
     target = find_end_stance(action)
     if left is not None and target is not None:
-        now = float(c.visible_difference(_at(left, end), t.blend_out))
+        now = float(c.measure_visible_difference(_at(left, end), t.blend_out))
         if now > 1 and "ends" not in slow:
             length = project.clips[action.clip].duration
             soonest = (
@@ -233,7 +235,7 @@ def _loop(project: Project, measured: Measured, action: Action) -> list[Jump]:
     if motion is None or motion.skeleton != project.skeleton or motion.frames < 2 or end <= start:
         return []
     raw = c.measure_seam_cost(measured.stats, motion, start, end, overlap, measured.roles)
-    now = float(c.visible_difference(raw, overlap))
+    now = float(c.measure_visible_difference(raw, overlap))
     if now <= 1:
         return []
     return [Jump(action.id, "loops", end, now, action.stance, _blended("blend_in", raw, (end - start) / 2))]
@@ -248,7 +250,7 @@ def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -
     times = np.arange(len(cost)) / RATE
     inside = (times >= first - 1e-6) & (times <= last + 1e-6)
     for most in (ROOM, 1.0):
-        good = np.flatnonzero(inside & (c.visible_difference(cost, blend) <= most))
+        good = np.flatnonzero(inside & (c.measure_visible_difference(cost, blend) <= most))
         if len(good):
             return round(float(times[good[int(np.argmin(np.abs(times[good] - now)))]]), 3)
     return None
@@ -287,7 +289,7 @@ def _fits(
     return best[1] if best is not None and best[0] <= 1 else None
 
 
-def stance_curves(project: Project, measured: Measured, action: Action) -> Curves | None:
+def compute_stance_curves(project: Project, measured: Measured, action: Action) -> Curves | None:
     """Return an action's clip beside its stances; None if nothing can be compared."""
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
@@ -296,7 +298,7 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     roles = measured.roles
     if action.kind == "stance":
         start = project.span(action)[0]
-        first = c.stance_frames(measured.stats, [(motion, start, start + 1e-6)], roles)
+        first = c.find_stance_frames(measured.stats, [(motion, start, start + 1e-6)], roles)
         cost = c.measure_transition_costs(measured.stats, motion, first, roles)
         return Curves(_times(motion, cost), cost, cost, c.find_loop_times(measured.stats, motion, roles))
     into, left = (
@@ -305,8 +307,8 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     )
     if into is None or left is None:
         return None
-    stats = c.mask_statistics(measured.stats, motion, anatomy.action_mask(project, action), roles)
-    stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
+    stats = c.mask_statistics(measured.stats, motion, anatomy.make_action_mask(project, action), roles)
+    stroke = find_phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
     times = _times(motion, into)
     gaps = end_gaps.measure_distances_to_stance(project, action, times)
     if cycle_of(action.kind, action.timing, *project.span(action)) > 0:
@@ -314,7 +316,7 @@ def stance_curves(project: Project, measured: Measured, action: Action) -> Curve
     else:
         proposed = c.propose_times(stats, motion, into, left, stroke, roles)
         proposed = _hidden(project, action, proposed, times, gaps)
-    return Curves(times, c.entering(into), left, proposed, gaps, motion.skeleton.height)
+    return Curves(times, c.compute_entry_costs(into), left, proposed, gaps, motion.skeleton.height)
 
 
 def _cycle_times(project: Project, action: Action) -> c.ProposedTimes:
@@ -333,20 +335,22 @@ def _hidden(
     An end that is goes to the nearest moment that is near the stance, else its blend becomes as long as it
     takes. Where neither will do, and those the action has do, these stay.
     """
-    motion = end_gaps.motion_of(project, action)
+    motion = end_gaps.get_action_motion(project, action)
     if motion is None:
         return proposed
     height, t = motion.skeleton.height, action.timing
 
     def shows(edge: int, at: float, blend: float) -> bool:
         metres = float(np.interp(at, times, gaps[edge]))
-        return np.isfinite(metres) and metres > end_gaps.hidden(height, blend) + 1e-4
+        return np.isfinite(metres) and metres > end_gaps.measure_hidden_gap(height, blend) + 1e-4
 
     room = max(0.0, proposed.end - proposed.start) / 2
     ends = []
     for edge, at, blend in (0, proposed.start, proposed.blend_in), (1, proposed.end, proposed.blend_out):
         if shows(edge, at, blend):
-            near = times[(gaps[edge] <= end_gaps.hidden(height, blend)) & (np.abs(times - at) <= room / 2)]
+            near = times[
+                (gaps[edge] <= end_gaps.measure_hidden_gap(height, blend)) & (np.abs(times - at) <= room / 2)
+            ]
             if len(near):
                 at = float(near[np.argmin(np.abs(near - at))])
             else:

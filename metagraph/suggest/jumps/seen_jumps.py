@@ -23,20 +23,24 @@ class SeenJumps:
     """
 
     def __init__(self, action: Action, curves: Curves) -> None:
-        from metagraph.suggest.jumps.compatibility import visible_difference
+        from metagraph.suggest.jumps.compatibility import measure_visible_difference
 
         t = action.timing
         self.loops, self.times, self.proposed = action.kind == "stance", curves.times, curves.proposed
-        self.enter = np.array(visible_difference(curves.enter, t.blend_in))
-        self.leave = np.array(visible_difference(curves.leave, t.blend_in if self.loops else t.blend_out))
+        self.enter = np.array(measure_visible_difference(curves.enter, t.blend_in))
+        self.leave = np.array(
+            measure_visible_difference(curves.leave, t.blend_in if self.loops else t.blend_out)
+        )
         if curves.gaps is not None:  # a long blend covers an unhurried pace, none covers what is far
             for cost, gap, blend in zip(
                 (self.enter, self.leave), curves.gaps, (t.blend_in, t.blend_out), strict=True
             ):
-                covered = end_gaps.slow(gap, curves.height, blend)
+                covered = end_gaps.find_slow_distances(gap, curves.height, blend)
                 cost[covered] = np.minimum(cost[covered], 1.0)
-                far = np.isfinite(gap) & (gap > end_gaps.hidden(curves.height, blend))
-                cost[far] = np.maximum(cost[far], gap[far] / end_gaps.hidden(curves.height, blend))
+                far = np.isfinite(gap) & (gap > end_gaps.measure_hidden_gap(curves.height, blend))
+                cost[far] = np.maximum(
+                    cost[far], gap[far] / end_gaps.measure_hidden_gap(curves.height, blend)
+                )
         if self.loops:
             self.pivot = 0
         elif action.kind == "transition":

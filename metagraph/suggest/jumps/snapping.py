@@ -13,7 +13,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.model import Action, Project
 from metagraph.playback.timing.handles import EDGES, handle_times
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.jumps.seen_jumps import SeenJumps
 
 Array = NDArray[Any]
@@ -30,7 +30,7 @@ class Snap:
     why: str
 
 
-def snaps_of(
+def list_snaps(
     project: Project,
     action: Action,
     handle: str,
@@ -93,10 +93,14 @@ def _edge(seen: SeenJumps | None, handle: str) -> Iterator[Snap]:
 def _blend(project: Project, action: Action, handle: str) -> Iterator[Snap]:
     """The shortest blend that covers the way from or to the stance, and the phases it may reach to."""
     start, end = project.span(action)
-    graph, motion = project.graphs[action.layer], end_gaps.motion_of(project, action)
+    graph, motion = project.graphs[action.layer], end_gaps.get_action_motion(project, action)
     edge = "begins" if handle == "in" else "ends"
     for gap in end_gaps.find_end_gaps(project, graph, action):
-        if gap.edge != edge or motion is None or gap.metres <= end_gaps.hidden(motion.skeleton.height, 0.0):
+        if (
+            gap.edge != edge
+            or motion is None
+            or gap.metres <= end_gaps.measure_hidden_gap(motion.skeleton.height, 0.0)
+        ):
             continue
         needed = end_gaps.blend_for(motion.skeleton.height, gap.metres) + SLACK
         if needed <= end - start:
@@ -115,14 +119,14 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
     start, end = project.span(action)
     if action.kind == "gesture" and (handle in EDGES or handle == "stroke"):
         bare = replace(action.timing, ready=None, stroke_end=None, relax=None, stroke=None)
-        found = phases(project, replace(action, timing=bare))
+        found = find_phases(project, replace(action, timing=bare))
         by = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
         yield Snap(round(by[handle], 3), phrase("as detected from the motion"))
     if handle == "exit":
         relax = handle_times(project, action)["relax"]
         if relax is not None:
             yield Snap(relax, phrase("its hold ends"))
-    for frame in turning(speeds, most=handle == "stroke"):
+    for frame in find_turning_frames(speeds, most=handle == "stroke"):
         at = frame / fps
         if start <= at <= end:
             words = (
@@ -133,7 +137,7 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
             yield Snap(round(at, 3), words)
 
 
-def turning(speeds: Array, most: bool) -> list[int]:
+def find_turning_frames(speeds: Array, most: bool) -> list[int]:
     """Return the frames at which speeds `[F]` are greater (else smaller) than all about them, and that stand
     out.
     """

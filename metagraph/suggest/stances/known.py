@@ -16,7 +16,15 @@ from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
 from metagraph.graph.words import KINDS, LAYERS, Layer
-from metagraph.suggest.clip_measures import HELD, SUREST, energy, is_walk, layer_of, no_measures, resting
+from metagraph.suggest.clip_measures import (
+    HELD,
+    SUREST,
+    compute_energy,
+    compute_resting_logit,
+    guess_layer,
+    has_no_measures,
+    is_walk,
+)
 from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
@@ -65,7 +73,7 @@ class Shape:
     spread: Array = field(default_factory=lambda: np.zeros(0))
 
     def scale(self) -> float:
-        """Return how far an end that belongs to it usually is, heights: see `likely`."""
+        """Return how far an end that belongs to it usually is, heights: see `rank_likely_stances`."""
         widest = float(self.spread.max(initial=0.0))
         return min(max(NEAR[self.layer], 2.0 * widest), 3.0 * NEAR[self.layer])
 
@@ -120,7 +128,7 @@ def _shape(
     )
 
 
-def distance_from_stance(shape: Shape, names: tuple[str, ...], pose: Array) -> float:
+def measure_distance_from_stance(shape: Shape, names: tuple[str, ...], pose: Array) -> float:
     """Return how far a pose `[n, 3]` is from a stance: of the farthest point, heights; infinite where they
     share none.
     """
@@ -140,11 +148,13 @@ def distance_from_stance(shape: Shape, names: tuple[str, ...], pose: Array) -> f
 
 def rank_stances(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> list[tuple[float, Shape]]:
     """Return the stances with how far a pose is from them, heights, the nearest first."""
-    found = [(distance_from_stance(shape, names, pose), shape) for shape in shapes]
+    found = [(measure_distance_from_stance(shape, names, pose), shape) for shape in shapes]
     return sorted((x for x in found if x[0] < float("inf")), key=lambda x: x[0])
 
 
-def likely(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> list[tuple[float, Shape]]:
+def rank_likely_stances(
+    shapes: Sequence[Shape], names: tuple[str, ...], pose: Array
+) -> list[tuple[float, Shape]]:
     """Return the stances a pose `[n, 3]` may be of with how likely each is, the likeliest first; what is left
     to 1 is that it is of none.
 
@@ -174,17 +184,17 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
     moving = {
         clip: t
         for clip, t in sorted(traits.items())
-        if not (0 < t.duration < HELD and no_measures(t)) and not is_walk(t)
+        if not (0 < t.duration < HELD and has_no_measures(t)) and not is_walk(t)
     }
     mine = {
         clip: t
         for clip, t in moving.items()
-        if t.layers[layer].names and (t.face == 0 if together else layer_of(t).value == layer)
+        if t.layers[layer].names and (t.face == 0 if together else guess_layer(t).value == layer)
     }
     if not mine:
         return ()
     others = {clip: t for clip, t in moving.items() if clip not in mine and t.face == 0}
-    still = {clip: t for clip, t in others.items() if resting(t) > 0}
+    still = {clip: t for clip, t in others.items() if compute_resting_logit(t) > 0}
     several = [t.layers[layer].names for t in mine.values()]
     names = max(set(several), key=lambda n: (several.count(n), n))
     found: list[tuple[str, float, Array, bool]] = []
@@ -192,7 +202,7 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
         x = t.layers[layer]
         if x.names != names:
             continue
-        rests = resting(t) > 0
+        rests = compute_resting_logit(t) > 0
         # Where a loop begins is where transitions end; its middle is away by as much as it breathes.
         found.append((clip, 0.0, x.first, rests))
         if not rests:
@@ -216,14 +226,19 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
         elif (
             not loops and len(closed) >= FEW
         ):  # the quietest of what begins and ends there is its loop, if much quieter than the others
-            quiet = {i: energy(mine[found[i][0]]) for i in closed}
+            quiet = {i: compute_energy(mine[found[i][0]]) for i in closed}
             first = min(closed, key=lambda i: (quiet[i], i))
             if quiet[first] < QUIET * float(np.median([*quiet.values()])):
                 best, calm = first, quiet[first]
-        elif not loops and len(closed) == 1 and len(members) > 1 and energy(mine[found[closed[0]][0]]) < CALM:
+        elif (
+            not loops
+            and len(closed) == 1
+            and len(members) > 1
+            and compute_energy(mine[found[closed[0]][0]]) < CALM
+        ):
             best, calm = (
                 closed[0],
-                energy(mine[found[closed[0]][0]]),
+                compute_energy(mine[found[closed[0]][0]]),
             )  # others only come there or leave: what stays is its loop
         poses_of = np.array([middle, *(mine[found[i][0]].layers[layer].typical for i in loops)])
         clip, at = found[best][0], found[best][1]
@@ -235,7 +250,9 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
                 for c, t in others.items()
             }
             staying = {
-                c: energy(t) for c, t in others.items() if away[c] <= SAME[layer][1] and energy(t) < CALM
+                c: compute_energy(t)
+                for c, t in others.items()
+                if away[c] <= SAME[layer][1] and compute_energy(t) < CALM
             }
             if staying:
                 clip, at = min(staying, key=lambda c: (staying[c], c)), 0.0
@@ -276,7 +293,9 @@ def split_stances(shapes: Sequence[Shape], ends: Ends) -> tuple[Shape, ...]:
     out: list[Shape] = []
     mine: dict[int, dict[str, list[tuple[str, float, Array]]]] = {id(shape): {} for shape in shapes}
     for clip, at, pose, word in ends:
-        found = likely(shapes, shapes[0].names, pose) if len(pose) == len(shapes[0].names) else []
+        found = (
+            rank_likely_stances(shapes, shapes[0].names, pose) if len(pose) == len(shapes[0].names) else []
+        )
         if found and found[0][0] > 0.5:
             mine[id(found[0][1])].setdefault(word, []).append((clip, at, pose))
     for shape in shapes:

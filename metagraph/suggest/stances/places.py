@@ -20,8 +20,8 @@ from metagraph.common.wording import change_quoted
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import Likely, MotionGuess
-from metagraph.suggest.proposal import StancePlace, plain_stance_name
-from metagraph.suggest.stances.known import SAME, Shape, distance_from_stance
+from metagraph.suggest.proposal import StancePlace, simplify_stance_name
+from metagraph.suggest.stances.known import SAME, Shape, measure_distance_from_stance
 from metagraph.suggest.stances.pose_words import describe_pose
 from metagraph.suggest.traits import LayerTraits, Traits
 from metagraph.suggest.vote_fusion import Agreed, combine
@@ -110,7 +110,7 @@ class StancePlaces:
         for layer in LAYERS:
             for stance in project.graphs[layer].stances.values():
                 self.by_key[stance.id] = StancePlace(stance.id, layer, stance.name, True)
-                self._of_word[(layer, plain_stance_name(stance.name))] = stance.id
+                self._of_word[(layer, simplify_stance_name(stance.name))] = stance.id
         for layer in LAYERS:
             self._joined(layer, shapes.get(layer, ()), [each for each in heard if each.layer == layer])
         rests: list[
@@ -118,7 +118,7 @@ class StancePlaces:
         ] = []  # stances that only names tell, with a clip that rests there
         for each in heard:
             for word, *_ in each.called():
-                told = (each.layer, plain_stance_name(word))
+                told = (each.layer, simplify_stance_name(word))
                 if told in self._of_word:
                     continue
                 key = self._same_rest(each, rests) or f"new {each.layer} {told[1]}"
@@ -162,7 +162,7 @@ class StancePlaces:
         )
         taken: dict[str, str] = {}
         for _, word, n in pairs:
-            told = (layer, plain_stance_name(word))
+            told = (layer, simplify_stance_name(word))
             if n in free and word not in taken and not self._placed(told):
                 key = self._of_word.get(told, f"new {layer} {n + 1}")
                 name, there = (self.by_key[key].name, True) if key in self.by_key else (word, False)
@@ -177,7 +177,7 @@ class StancePlaces:
             self.by_key[key] = StancePlace(key, layer, self._named(layer, shape, shapes), False, shape)
             self._of_shape[id(shape)] = key
         for word, mine in votes.items():
-            told, best = (layer, plain_stance_name(word)), max(mine, key=lambda s: mine[s], default=None)
+            told, best = (layer, simplify_stance_name(word)), max(mine, key=lambda s: mine[s], default=None)
             if told not in self._of_word and best is not None and mine[best] >= MEANS * spoken[word]:
                 self._of_word[told] = self._of_shape[best]
             if told in self._of_word:
@@ -198,7 +198,7 @@ class StancePlaces:
         for n, shape in free.items():
             mine = {word: some[id(shape)] for word, some in votes.items() if id(shape) in some}
             word = max(mine, key=lambda w: mine[w], default="")
-            told = (layer, plain_stance_name(word))
+            told = (layer, simplify_stance_name(word))
             if (
                 not word
                 or mine[word] < max(ALIKE_VOTES, ALIKE * sum(mine.values()))
@@ -208,7 +208,7 @@ class StancePlaces:
             key = self._of_word[told]
             other = self.by_key[key].shape
             assert other is not None
-            if distance_from_stance(other, shape.names, shape.poses[0]) <= ONE_STANCE:
+            if measure_distance_from_stance(other, shape.names, shape.poses[0]) <= ONE_STANCE:
                 out[n] = key
         return out
 
@@ -227,7 +227,7 @@ class StancePlaces:
         """Return beliefs about a stance as keys."""
         out: list[Belief[str]] = []
         said: Belief[str] | None = getattr(each.said, what)
-        told = (layer, plain_stance_name(said.value)) if said is not None else None
+        told = (layer, simplify_stance_name(said.value)) if said is not None else None
         if said is not None and told is not None and (key := self._of_word.get(told)) is not None:
             out.append(Belief(key, said.confidence * self._trusted.get(told, 1.0), said.reason))
         seen: Belief[Shape] | None = getattr(each.beside, what, None)

@@ -57,10 +57,13 @@ def measure_stance_distances(
     `measured` returned for the same action, if that is known.
     """
     times, into, left = measure_stance_distance(project, action) if both is None else both
-    motion = end_gaps.motion_of(project, action)
+    motion = end_gaps.get_action_motion(project, action)
     height = motion.skeleton.height if motion is not None else end_gaps.TALL
     t = action.timing
-    limits = (end_gaps.hidden(height, t.blend_in), end_gaps.hidden(height, t.blend_out))
+    limits = (
+        end_gaps.measure_hidden_gap(height, t.blend_in),
+        end_gaps.measure_hidden_gap(height, t.blend_out),
+    )
     pivot = _pivot(action, times, into, left, seen)
     first = np.arange(len(times)) < pivot
     metres = np.where(first, into, left)
@@ -75,7 +78,7 @@ def measure_stance_distances(
 
 def measure_stance_distance(project: Project, action: Action) -> tuple[Array, Array, Array]:
     """Return moments of an action's clip `[F]` and how far it is at each from both stances, metres."""
-    motion = end_gaps.motion_of(project, action)
+    motion = end_gaps.get_action_motion(project, action)
     if motion is None:
         return np.zeros(0), np.zeros(0), np.zeros(0)
     times = np.linspace(0, motion.duration, max(2, round(motion.duration * RATE) + 1))

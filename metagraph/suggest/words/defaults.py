@@ -12,7 +12,7 @@ from typing import Final, Literal, get_args
 from msgspec.structs import asdict
 
 from metagraph.suggest.words.files import list_english_meanings, list_phrases
-from metagraph.suggest.words.languages import synonyms
+from metagraph.suggest.words.languages import list_synonyms
 
 Field = Literal["kinds", "layers", "limbs", "tags", "postures", "joins", "junk", "synonyms"]
 Meanings = Mapping[str, str]  # phrase -> meaning
@@ -32,7 +32,7 @@ class _Defaults(Mapping[Field, Meanings]):
     """What is built in, read when it is first asked for."""
 
     def __getitem__(self, name: Field) -> Meanings:
-        return synonyms() if name == "synonyms" else _english()[name]
+        return list_synonyms() if name == "synonyms" else _english()[name]
 
     def __iter__(self) -> Iterator[Field]:
         return iter(get_args(Field))

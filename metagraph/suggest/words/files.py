@@ -83,7 +83,7 @@ def list_english_meanings() -> EnglishFile:
 
 
 @cache
-def sources() -> Mapping[str, LanguageFile]:
+def load_language_files() -> Mapping[str, LanguageFile]:
     """Return the words of every language other than English, by its name."""
     paths = [path for path in FOLDER.glob("*.json") if path.stem != ENGLISH]
     paths.sort(key=lambda p: (_ORDER.index(p.stem) if p.stem in _ORDER else len(_ORDER), p.stem))

@@ -64,7 +64,7 @@ def _bases(cluster: str) -> str:
     return "".join(out)
 
 
-def plain_letters(text: str) -> str:
+def strip_to_letters(text: str) -> str:
     """Return a phrase's letters alone: folded, small, without blanks, hyphens or apostrophes."""
     if text.isascii() and text.isalnum():
         return text.lower()
@@ -72,20 +72,20 @@ def plain_letters(text: str) -> str:
 
 
 @lru_cache(maxsize=4096)  # the words of a language's phrases come in every order
-def spellings(phrase: str) -> frozenset[str]:
+def list_spellings(phrase: str) -> frozenset[str]:
     """Return the ways in which a phrase may stand in a name, each as `plain` has it."""
-    kana = plain_letters(phrase)
+    kana = strip_to_letters(phrase)
     out = {kana}
     if phrase.isascii():
         return frozenset(out) if kana else frozenset()
     if any(ord(c) in _UMLAUTS for c in phrase):
-        out.add(plain_letters(phrase.translate(_UMLAUTS)))
+        out.add(strip_to_letters(phrase.translate(_UMLAUTS)))
     if kana and all("ぁ" <= c <= "ゖ" or c == "ー" for c in kana):
-        out |= romaji(kana)
+        out |= list_romaji(kana)
     return frozenset(s for s in out if s)
 
 
-def romaji(kana: str) -> set[str]:
+def list_romaji(kana: str) -> set[str]:
     """Return how hiragana is written in Latin letters, by Hepburn and otherwise."""
     table = _kana()
     text, at, doubled = "", 0, False

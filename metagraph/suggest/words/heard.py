@@ -7,14 +7,14 @@ from functools import lru_cache
 from typing import Any
 
 from metagraph.suggest.words.cut import Token
-from metagraph.suggest.words.folded import spellings
+from metagraph.suggest.words.folded import list_spellings
 from metagraph.suggest.words.languages import MARKS, WordLanguage, list_word_languages
 from metagraph.suggest.words.spoken import (
     PARTS,
     SpokenLanguages,
     cut_run,
+    has_english_meaning,
     is_english,
-    means_something_in_english,
     split_compound,
 )
 
@@ -28,7 +28,7 @@ def list_own_words(changes: Mapping[Any, Mapping[str, str | None]]) -> dict[str,
     own: dict[str, str | None] = {}
     for name, mine in changes.items():
         for phrase, meaning in mine.items():
-            for key in spellings(phrase):
+            for key in list_spellings(phrase):
                 own[key] = meaning if name == "synonyms" else own.get(key, phrase)
     return own
 
@@ -112,13 +112,9 @@ def _phrases(
             key = "".join(t.text for t in some)
             if key not in known or key in own or any(t.run or t.alone for t in some):
                 continue
-            if n == 1 and means_something_in_english(key, meanings):
+            if n == 1 and has_english_meaning(key, meanings):
                 continue
-            if (
-                n > 1
-                and len(key) < 2 * _ALONE
-                and any(means_something_in_english(t.text, meanings) for t in some)
-            ):
+            if n > 1 and len(key) < 2 * _ALONE and any(has_english_meaning(t.text, meanings) for t in some):
                 continue  # "sit a" is no word of Japanese
             out.setdefault(at, []).append((n, key))
     return out
@@ -154,7 +150,7 @@ def _told(
                 break
         else:
             word = token.text
-            passed = len(word) <= 5 or at in out or word in own or means_something_in_english(word, meanings)
+            passed = len(word) <= 5 or at in out or word in own or has_english_meaning(word, meanings)
             if not passed and (size := _resembles(word, tongue)):
                 out[at] = size
     return out

@@ -11,8 +11,8 @@ from itertools import permutations
 from types import MappingProxyType
 from typing import Final
 
-from metagraph.suggest.words.files import LanguageFile, list_phrases, sources
-from metagraph.suggest.words.folded import is_run_together, plain_letters, spellings
+from metagraph.suggest.words.files import LanguageFile, list_phrases, load_language_files
+from metagraph.suggest.words.folded import is_run_together, list_spellings, strip_to_letters
 
 # What stands for no word of English: nothing; what joins two stances only beside one ("a" of Spanish); and
 # what follows the stance it is about (Japanese, Korean).
@@ -65,31 +65,33 @@ class WordLanguage:
 
 
 def _language(name: str, source: LanguageFile) -> WordLanguage:
-    endings = tuple(sorted(set(map(plain_letters, source.endings.split())), key=lambda e: (-len(e), e)))
+    endings = tuple(sorted(set(map(strip_to_letters, source.endings.split())), key=lambda e: (-len(e), e)))
     bare = WordLanguage(name, {}, {}, frozenset(), endings, tuple(source.links.split()))
     exact: dict[str, str] = {}
     turned: dict[str, str] = {}
     stemmed: dict[str, str] = {}
-    marks = {s for p, m in source.phrases.items() if m in MARKS for s in spellings(p)}
+    marks = {s for p, m in source.phrases.items() if m in MARKS for s in list_spellings(p)}
     for phrase, meaning in source.phrases.items():
-        for key in spellings(phrase) | (spellings(phrase.replace("を", "")) if "を" in phrase[1:] else set()):
+        for key in list_spellings(phrase) | (
+            list_spellings(phrase.replace("を", "")) if "を" in phrase[1:] else set()
+        ):
             exact.setdefault(key, meaning)
             if (other := "".join(source.swaps.get(c, c) for c in key)) != key:
                 exact.setdefault(other, meaning)
         parts = phrase.split()
         if (not phrase[0].isascii() and is_run_together(phrase[0])) or len(parts) > 4:
             continue
-        fixed = len(parts) > 3 or meaning in MARKS or any(spellings(p) & marks for p in parts)
+        fixed = len(parts) > 3 or meaning in MARKS or any(list_spellings(p) & marks for p in parts)
         for order in (tuple(parts),) if fixed else permutations(parts):  # "a sinistra", never "sinistra a"
-            for key in spellings("".join(order)) if len(parts) == 2 else ():
+            for key in list_spellings("".join(order)) if len(parts) == 2 else ():
                 turned.setdefault(key, meaning)
-            for forms in zip(*(sorted(spellings(p)) for p in order), strict=False):
+            for forms in zip(*(sorted(list_spellings(p)) for p in order), strict=False):
                 text = " ".join(map(bare.stem, forms))
                 if len(text) >= _ROOT:
                     stemmed.setdefault(text, meaning)
     for key, meaning in turned.items():
         exact.setdefault(key, meaning)
-    doubtful = frozenset(s for w in list_phrases(source.doubtful) for s in spellings(w))
+    doubtful = frozenset(s for w in list_phrases(source.doubtful) for s in list_spellings(w))
     return WordLanguage(
         name, exact, stemmed, doubtful | _ENGLISH_TOO, endings, bare.links, tuple(source.sides.split())
     )
@@ -98,16 +100,16 @@ def _language(name: str, source: LanguageFile) -> WordLanguage:
 @lru_cache(maxsize=1)
 def list_word_languages() -> tuple[WordLanguage, ...]:
     """Return every language, ready to look words up in."""
-    return tuple(_language(name, source) for name, source in sources().items())
+    return tuple(_language(name, source) for name, source in load_language_files().items())
 
 
 @lru_cache(maxsize=1)
-def synonyms() -> Mapping[str, str]:
+def list_synonyms() -> Mapping[str, str]:
     """Return every phrase of every language -> what it is called in English, for who looks at or changes
     them.
     """
     out: dict[str, str] = {}
-    for source in sources().values():
+    for source in load_language_files().values():
         for phrase, meaning in source.phrases.items():
             out.setdefault(phrase.lower(), meaning)
     return MappingProxyType(out)

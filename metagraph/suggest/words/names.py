@@ -26,14 +26,14 @@ from metagraph.suggest.words.stances import FoundStance, Stances, Words, is_low,
 from metagraph.suggest.words.tokens import (
     FoundPhrase,
     TakenName,
+    count_variant_words,
     drop_numbers,
     drop_shared_words,
     find_name_languages,
+    find_phrases,
     is_number_word,
-    phrases,
     quote_words,
     split_clip_name,
-    variant,
 )
 
 __all__ = [
@@ -157,7 +157,7 @@ class _Reader:
         return rest[0] == "2" and len(rest) > 1 and self._stances.named(rest[1:]) is not None
 
     def _act(self, rest: Words) -> Words:
-        return drop_numbers(rest[: len(rest) - variant(rest)] or rest)
+        return drop_numbers(rest[: len(rest) - count_variant_words(rest)] or rest)
 
     def _passing(self, words: Words, stance: FoundStance | None, rest: Words) -> _Parse | None:
         """Read a transition: from one stance to another, down into one, up out of one."""
@@ -178,7 +178,7 @@ class _Reader:
                 return self._to(
                     words, start[0] if start else None, rest[at], rest[at + 1 :], 0.95 if start else 0.8
                 )
-        if stance is None or not stance.prefixes & {words, words[: len(words) - variant(words)]}:
+        if stance is None or not stance.prefixes & {words, words[: len(words) - count_variant_words(words)]}:
             for at in range(1, len(words) - 1):
                 if self._joins.get(words[at]) == "to" and at >= len(words) - len(rest):
                     left, right = self._stances.named(words[:at]), self._stances.named(words[at + 1 :])
@@ -196,7 +196,7 @@ class _Reader:
     def _to(self, words: Words, stance: FoundStance | None, joined: str, end: Words, sure: float) -> _Parse:
         found = self._stances.named(end, stance.words if stance else ())
         if found is None or found[0].words != end:
-            end = end[: len(end) - variant(end)] or end
+            end = end[: len(end) - count_variant_words(end)] or end
             found = self._stances.named(end, stance.words if stance else ()) or found
         shown = f"{label((joined,))} {label(end)}".strip()
         if found:
@@ -204,7 +204,7 @@ class _Reader:
         return _Parse(words, stance, int(stance is not None), (), shown, None, end, 0.6 if end else 0.0, sure)
 
     def _moving(self, words: Words, stance: FoundStance | None, rest: Words) -> _Parse | None:
-        told = next((p for p in phrases(words, self._kinds) if p.meaning == "transition"), None)
+        told = next((p for p in find_phrases(words, self._kinds) if p.meaning == "transition"), None)
         text = drop_numbers(rest)
         if (
             stance is not None
@@ -307,7 +307,7 @@ class _Reader:
         )
 
     def _other(self, words: Words) -> Belief[str] | None:
-        said = next((p for p in phrases(words, self._kinds) if p.meaning == "other"), None)
+        said = next((p for p in find_phrases(words, self._kinds) if p.meaning == "other"), None)
         return Belief(said.text, 0.85, _says(said.text)) if said is not None else None
 
     def _recalled(self, parse: _Parse, field: str) -> Belief[str] | None:
@@ -339,9 +339,9 @@ class _Reader:
                 stance.confidence,
                 _says(stance.why) if " names " not in stance.why else stance.why,
             )
-        if any(p.meaning == "other" for p in phrases(parse.words, self._kinds)):
+        if any(p.meaning == "other" for p in find_phrases(parse.words, self._kinds)):
             return None  # walking, fighting: none of the four
-        said = [p for p in phrases(parse.act, self._kinds) if p.meaning in ("gesture", "fidget")]
+        said = [p for p in find_phrases(parse.act, self._kinds) if p.meaning in ("gesture", "fidget")]
         if said:
             best = max(said, key=lambda p: (p.end - p.start, -p.start))
             if any(p.meaning != best.meaning and p.end - p.start == best.end - best.start for p in said):
@@ -366,7 +366,7 @@ class _Reader:
         """
         own = parse.stance.words if parse.stance is not None and parse.own else ()
         end = (*parse.end_words, *(parse.end.words if parse.end is not None else ())) if parse.joined else ()
-        return any(p.text in NEVER for words in (own, end) for p in phrases(words, self._kinds))
+        return any(p.text in NEVER for words in (own, end) for p in find_phrases(words, self._kinds))
 
     def _before(self, parse: _Parse) -> str:
         """Return the word before what is done: acts of an "idle" are fidgets."""
@@ -422,7 +422,7 @@ class _Reader:
             return cast("Belief[Layer]", learned)
         layers = self._patterns.meanings["layers"]
         stood = parse.stance.words if parse.stance and parse.own else ()
-        from_stance = next(iter(phrases(stood, layers)), None)
+        from_stance = next(iter(find_phrases(stood, layers)), None)
         from_act = self._told(parse.act, layers)
         if from_stance and (from_stance.meaning != "body" or from_stance.text == "body"):
             return _layer(from_stance, 0.95 if len(stood) > 1 else 0.85)
@@ -430,7 +430,7 @@ class _Reader:
             if from_stance and from_act.meaning != "body":
                 return _layer(from_act, 0.65)
             return _layer(from_act, 0.85)
-        side = next(iter(phrases(parse.act, self._patterns.meanings["limbs"])), None)
+        side = next(iter(find_phrases(parse.act, self._patterns.meanings["limbs"])), None)
         if side and not (kind and kind.value == "stance"):
             return Belief("arms", 0.8, phrase("name says '{words}', which is a hand", words=side.text))
         if from_stance:  # what is done there may well be another layer's
@@ -442,13 +442,13 @@ class _Reader:
 
     def _told(self, words: Words, table: Mapping[str, str]) -> FoundPhrase | None:
         """Return the longest phrase of a table in the words, the first of equal ones."""
-        return max(phrases(words, table), key=lambda p: (p.end - p.start, -p.start), default=None)
+        return max(find_phrases(words, table), key=lambda p: (p.end - p.start, -p.start), default=None)
 
     def _limb(self, parse: _Parse) -> Belief[Limb] | None:
         if parse.joined:
             return None
         limbs = self._patterns.meanings["limbs"]
-        said = phrases(parse.act, limbs)
+        said = find_phrases(parse.act, limbs)
         sides = [p for p in said if len(p.text) <= 5 or " " in p.text]
         learned = self._recalled(parse, "limb")
         if learned is not None and (
@@ -473,7 +473,7 @@ class _Reader:
         learned = self._recalled(parse, "tags")
         if learned is not None:
             return Belief(tuple(learned.value.split()), learned.confidence, learned.reason)
-        said = phrases(parse.act, self._patterns.meanings["tags"]) if not parse.joined else []
+        said = find_phrases(parse.act, self._patterns.meanings["tags"]) if not parse.joined else []
         if not said:
             return None
         tags = tuple(dict.fromkeys(t for p in said for t in p.meaning.split()))

@@ -115,7 +115,7 @@ class SpokenLanguages:
         alone = False  # whether the word before stands for one of another language by itself
         for item in items:
             if item.token is not None and not item.known:
-                out += english_words(item.token, english)
+                out += find_english_words(item.token, english)
                 alone = False
                 continue
             words = item.meaning.split()
@@ -200,14 +200,14 @@ class SpokenLanguages:
                 return None
             if meaning == NOTHING and some[0].text in meanings["joins"]:
                 return None  # "to" among Japanese words in Latin letters
-            if not bold and means_something_in_english(some[0].text, meanings):
+            if not bold and has_english_meaning(some[0].text, meanings):
                 return None
             return meaning
         if found is not None:
             if any(t.alone for t in some):
                 return None
             return found[0] if found[1] or bold else None
-        if len(some) == 1 and (means_something_in_english(some[0].text, meanings) or len(some[0].text) < 5):
+        if len(some) == 1 and (has_english_meaning(some[0].text, meanings) or len(some[0].text) < 5):
             return None
         if any(t.run for t in some) or (len(some) > 1 and not bold):
             return None
@@ -215,17 +215,17 @@ class SpokenLanguages:
         return got if got not in MARKS else None
 
 
-def means_something_in_english(word: str, meanings: Any) -> bool:
-    """Whether a word itself means something in English, as the patterns have it."""
+def has_english_meaning(word: str, meanings: Any) -> bool:
+    """Return whether a word itself means something in English, as the patterns have it."""
     return any(word in meanings[table] for table in ("kinds", "layers", "limbs", "postures", "joins"))
 
 
 def is_english(word: str, meanings: Any) -> bool:
     """Whether a word tells that a name is in English."""
-    return len(word) > 2 and word not in _LOANED and means_something_in_english(word, meanings)
+    return len(word) > 2 and word not in _LOANED and has_english_meaning(word, meanings)
 
 
-def english_words(token: Token, english: Callable[[str], tuple[str, ...]]) -> tuple[str, ...]:
+def find_english_words(token: Token, english: Callable[[str], tuple[str, ...]]) -> tuple[str, ...]:
     """Return a token that no other language knows: its letters folded where English knows them so."""
     if token.text == ARROW:
         return (EnglishWord("to", token.shown, token.start, token.end),)

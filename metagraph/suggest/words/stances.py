@@ -12,12 +12,12 @@ from metagraph.suggest.words.cut import as_written
 from metagraph.suggest.words.patterns import Patterns
 from metagraph.suggest.words.tokens import (
     TakenName,
+    count_variant_words,
     drop_numbers,
+    find_phrases,
+    find_stem,
     is_designator,
     is_number_word,
-    phrases,
-    stem,
-    variant,
 )
 
 Words = tuple[str, ...]
@@ -156,17 +156,17 @@ class Stances:
         held.prefixes.update(p for p in prefixes if p)
 
     def _acts(self, words: Sequence[str]) -> list[str]:
-        return [p.text for p in phrases(words, self._kinds) if p.meaning in ("gesture", "fidget")]
+        return [p.text for p in find_phrases(words, self._kinds) if p.meaning in ("gesture", "fidget")]
 
     def _other(self, words: Sequence[str]) -> bool:
-        return any(p.meaning == "other" for p in phrases(words, self._kinds))
+        return any(p.meaning == "other" for p in find_phrases(words, self._kinds))
 
     def _announced(self, words: Words) -> None:
         """A clip whose own name says it is a stance: "crossed idle", "idle seated back 01", "arms
         crossed".
         """
-        core = words[: len(words) - variant(words)]
-        if not core or any(p.meaning == "transition" for p in phrases(core, self._kinds)):
+        core = words[: len(words) - count_variant_words(words)]
+        if not core or any(p.meaning == "transition" for p in find_phrases(core, self._kinds)):
             return
         last = core[-1]
         if self._other(core):
@@ -182,7 +182,7 @@ class Stances:
             repeats = last in ("loop", "hold", "pose")  # said of gestures as well: "wave loop"
             if self._passes_over(rest) or (acts and (weak or repeats)) or (repeats and not rest):
                 return
-            trimmed = rest[: len(rest) - variant(rest)] or core
+            trimmed = rest[: len(rest) - count_variant_words(rest)] or core
             while len(trimmed) > 1 and self._kinds.get(trimmed[-1]) == "stance":
                 trimmed = trimmed[:-1]  # "sitting idle loop"
             self._add(
@@ -216,8 +216,8 @@ class Stances:
 
     def _posture_run(self, words: Sequence[str]) -> int:
         """Return how many words at the beginning tell a posture, at least one of them a word of posture."""
-        starts = {p.start: p for p in phrases(words, self._kinds) if p.meaning != "stance"}
-        postures = {p.start: p for p in phrases(words, self._patterns.meanings["postures"])}
+        starts = {p.start: p for p in find_phrases(words, self._kinds) if p.meaning != "stance"}
+        postures = {p.start: p for p in find_phrases(words, self._patterns.meanings["postures"])}
         at, told = 0, False
         while at < len(words):
             if at in postures and (at not in starts or postures[at].end >= starts[at].end):
@@ -232,17 +232,17 @@ class Stances:
 
     def _clip_that_others_continue(self, words: Words, followers: Mapping[Words, int]) -> None:
         count = followers.get(words, 0)
-        core = words[: len(words) - variant(words)]
+        core = words[: len(words) - count_variant_words(words)]
         if not core or self._other(core) or core in self.found or any(w in self._joins for w in core):
             return
         if self._acts(core) and not (self._poses(core) and self._goes_on(words)):
             return
-        if count >= 2 and not any(p.meaning == "transition" for p in phrases(core, self._kinds)):
+        if count >= 2 and not any(p.meaning == "transition" for p in find_phrases(core, self._kinds)):
             self._add(core, 0.85, phrase("{count} names begin with it", count=count), words, core)
 
     def _poses(self, words: Words) -> bool:
         """Whether words may be a posture, though they may be an act as well: "head tilt left"."""
-        return bool(phrases(words, self._patterns.meanings["postures"]))
+        return bool(find_phrases(words, self._patterns.meanings["postures"]))
 
     def _goes_on(self, words: Words) -> bool:
         """Whether other names say after these words what is done: then these say where."""
@@ -258,7 +258,7 @@ class Stances:
                 head = taken.words[: taken.split]
                 heads[head] = heads.get(head, 0) + 1
         for head, count in heads.items():
-            core = head[: len(head) - variant(head)]
+            core = head[: len(head) - count_variant_words(head)]
             if (
                 core
                 and (count >= 2 or self.postural(core))
@@ -287,8 +287,8 @@ class Stances:
         """Leave out what belongs to the act that follows: numbers and body parts, "idle finger" of "idle
         finger nail".
         """
-        run = run[: len(run) - variant(run)]
-        told = max((p.end for p in phrases(run, self._patterns.meanings["postures"])), default=0)
+        run = run[: len(run) - count_variant_words(run)]
+        told = max((p.end for p in find_phrases(run, self._patterns.meanings["postures"])), default=0)
         while len(run) > told and run[-1] not in _PLACES and run[-1] not in self._patterns.meanings["limbs"]:
             run = run[:-1]
         return run
@@ -299,7 +299,7 @@ class Stances:
         """
         pairs: dict[tuple[Words, Words], str] = {}
         for taken in distinct:
-            words = taken.words[: len(taken.words) - variant(taken.words)]
+            words = taken.words[: len(taken.words) - count_variant_words(taken.words)]
             for at in range(1, len(words) - 1):
                 if (
                     self._joins.get(words[at]) == "to"
@@ -326,7 +326,7 @@ class Stances:
         )
 
     def _only_number(self, words: Words) -> bool:
-        return variant(words) == len(words)
+        return count_variant_words(words) == len(words)
 
     def _designated(self, distinct: Sequence[TakenName]) -> None:
         """Stances called alike except for a number or letter ("idle 1", "idle 2", "sit a") are different ones
@@ -341,7 +341,7 @@ class Stances:
                     core = words[start:at]
                     if is_designator(words[at]) and self._stands(core):
                         rest = words[at + 1 :]
-                        goes_on = start > 0 or variant(rest) < len(rest)
+                        goes_on = start > 0 or count_variant_words(rest) < len(rest)
                         mine = marks.setdefault(core, {})
                         mine[words[at]] = mine.get(words[at], False) or goes_on
                         if start > 0:
@@ -372,7 +372,7 @@ class Stances:
         """One stance spelled in several ways ("seated", "sitting") is one, called by its surest name."""
         spelled: dict[Words, list[FoundStance]] = {}
         for stance in self.found.values():
-            spelled.setdefault(tuple(map(stem, stance.words)), []).append(stance)
+            spelled.setdefault(tuple(map(find_stem, stance.words)), []).append(stance)
         for several in spelled.values():
             first, *others = sorted(several, key=lambda s: (-s.confidence, s.words))
             for other in others:
@@ -391,7 +391,7 @@ class Stances:
 
     def known(self, words: Words) -> FoundStance | None:
         """Return the stance that words, a number after them apart, are the name of."""
-        for n in range(variant(words) + 1):
+        for n in range(count_variant_words(words) + 1):
             if len(words) > n and (found := self._by_prefix.get(words[: len(words) - n])) is not None:
                 return found
         return None
@@ -463,12 +463,12 @@ class Stances:
         known = self._bares.get(words)
         if known is None:
             kept = [w for w in drop_numbers(words) if self._kinds.get(w) != "stance" and w not in _BARE]
-            known = self._bares[words] = tuple(stem(w) for w in kept)
+            known = self._bares[words] = tuple(find_stem(w) for w in kept)
         return known
 
     def standing(self) -> FoundStance | None:
         """Return the stance of standing with nothing more said: "stand", or plain "idle"."""
-        upright = [s for s in self.found.values() if "stand" in map(stem, s.words)]
+        upright = [s for s in self.found.values() if "stand" in map(find_stem, s.words)]
         if upright:
             return min(upright, key=lambda s: (len(s.words), s.words))
         return self.found.get(("idle",))
@@ -476,12 +476,14 @@ class Stances:
     def low(self, words: Sequence[str] = ()) -> FoundStance | None:
         """Return the stance of sitting or lying that words speak of; without any, the only one there is."""
         there = [s for s in self.found.values() if is_low(s.words)]
-        told = {stem(w) for w in drop_numbers(words)}
+        told = {find_stem(w) for w in drop_numbers(words)}
         verb = told & set(_STEMS_DOWN)
-        fitting = [s for s in there if not verb or verb & {stem(w) for w in s.words}]
+        fitting = [s for s in there if not verb or verb & {find_stem(w) for w in s.words}]
         if not fitting or (len(fitting) > 1 and not verb):
             return None
-        return min(fitting, key=lambda s: (-len(told & {stem(w) for w in s.words}), len(s.words), s.words))
+        return min(
+            fitting, key=lambda s: (-len(told & {find_stem(w) for w in s.words}), len(s.words), s.words)
+        )
 
     def usual(self) -> tuple[FoundStance, float] | None:
         """Return the stance of clips that name none: the only one, or the plain one among several."""
@@ -497,7 +499,7 @@ def _marks(words: Words) -> Words:
 
 
 def is_low(words: Sequence[str]) -> bool:
-    return any(stem(w) in _STEMS_DOWN for w in words)
+    return any(find_stem(w) in _STEMS_DOWN for w in words)
 
 
 def _followers(distinct: Sequence[TakenName]) -> dict[Words, int]:
@@ -506,6 +508,6 @@ def _followers(distinct: Sequence[TakenName]) -> dict[Words, int]:
     out: dict[Words, int] = {}
     for words in own:
         for n in range(1, len(words)):
-            if words[:n] in own and variant(words[n:]) < len(words) - n:
+            if words[:n] in own and count_variant_words(words[n:]) < len(words) - n:
                 out[words[:n]] = out.get(words[:n], 0) + 1
     return out

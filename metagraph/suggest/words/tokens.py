@@ -14,7 +14,7 @@ from metagraph.suggest.words.cut import EnglishWord, Token, as_written, cut_toke
 from metagraph.suggest.words.defaults import Meanings
 from metagraph.suggest.words.heard import find_spoken_languages
 from metagraph.suggest.words.patterns import Patterns
-from metagraph.suggest.words.spoken import SpokenLanguages, english_words
+from metagraph.suggest.words.spoken import SpokenLanguages, find_english_words
 
 _EXTENSION = re.compile(r"\.(?:fbx|bvh|glb|gltf|anim|dae|c3d|ma|mb|blend|uasset)$", re.IGNORECASE)
 _LONGEST = 4  # words in a phrase
@@ -100,7 +100,7 @@ def _segment(
     def read() -> None:
         if speech is None:
             for token in said:
-                words.extend(english_words(token, english))
+                words.extend(find_english_words(token, english))
         else:
             words.extend(speech.read(said, english, patterns.meanings))
         said.clear()
@@ -199,16 +199,16 @@ def _shared_first(taken: Sequence[TakenName], patterns: Patterns) -> str | None:
     if word not in patterns.vocabulary:
         return word
     # A word of the list that all share is a character's ("generic male ..."), unless it is what they all are.
-    saying = sum(1 for words in going_on if phrases(words, meanings["kinds"]))
+    saying = sum(1 for words in going_on if find_phrases(words, meanings["kinds"]))
     return word if len(named) > FEW and 2 * saying >= len(going_on) else None
 
 
 def _is_other(words: Sequence[str], patterns: Patterns) -> bool:
-    found = phrases(words, patterns.meanings["kinds"])
+    found = find_phrases(words, patterns.meanings["kinds"])
     return bool(found) and all(p.meaning == "other" for p in found)
 
 
-def phrases(words: Sequence[str], table: Meanings) -> list[FoundPhrase]:
+def find_phrases(words: Sequence[str], table: Meanings) -> list[FoundPhrase]:
     """Find the table's phrases, from the left, the longest first, none overlapping."""
     out: list[FoundPhrase] = []
     at = 0
@@ -256,7 +256,7 @@ def is_designator(word: str) -> bool:
     return word.isdecimal() or word in ("a", "b", "c", "d", "e", "f", "g", "h")
 
 
-def variant(words: Sequence[str]) -> int:
+def count_variant_words(words: Sequence[str]) -> int:
     """Return how many words at the end only tell variants apart: numbers, or one letter a to d."""
     n = 0
     while n < len(words) and (
@@ -289,7 +289,7 @@ _STEMS = {
 }
 
 
-def stem(word: str) -> str:
+def find_stem(word: str) -> str:
     """Return the word in the form in which stances are compared: "seated" and "sit" are the same."""
     known = _STEMS.get(word)
     if known:

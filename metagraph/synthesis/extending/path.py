@@ -21,7 +21,7 @@ from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search.lookups import CHEAPEST
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.search.ruled_search import JumpRules, apply_rules
-from metagraph.synthesis.states import States, SynthesisError, terms_of
+from metagraph.synthesis.states import States, SynthesisError, compute_cost_terms
 
 Array = NDArray[Any]
 Told = tuple[int, SpeechNews]  # the frame before which something became known
@@ -80,7 +80,9 @@ class DriverGraph:
         return self.graph.states
 
 
-def driver_graph(graph: MotionGraph, heard: HeardStates, rules: ExtendingRules | None = None) -> DriverGraph:
+def make_driver_graph(
+    graph: MotionGraph, heard: HeardStates, rules: ExtendingRules | None = None
+) -> DriverGraph:
     """Return a graph made ready: no way through it comes to an end. Raises SynthesisError if nothing is left
     of it to move with.
     """
@@ -114,10 +116,10 @@ def _ways_out(graph: MotionGraph, last: Array) -> MotionGraph:
         into = np.flatnonzero(kept & ~first & ~last)
     if not len(into):
         raise SynthesisError("no take has three frames one after another: give longer takes")
-    before = terms_of(states, into - 1)
+    before = compute_cost_terms(states, into - 1)
     sources, targets, costs = [], [], []
     for state in stuck.tolist():
-        apart = np.linalg.norm(before - terms_of(states, np.array([state])), axis=-1).sum(-1)
+        apart = np.linalg.norm(before - compute_cost_terms(states, np.array([state])), axis=-1).sum(-1)
         near = np.argsort(apart, kind="stable")[:WAYS_OUT]
         sources += [state] * len(near)
         targets += into[near].tolist()
@@ -140,7 +142,7 @@ class PathExtender:
 
     def __init__(self, graph: DriverGraph, seed: int = 1) -> None:
         from metagraph.synthesis.extending.extension_kernels import KnownStates
-        from metagraph.synthesis.search.greedy_search_kernels import Links, cheapest
+        from metagraph.synthesis.search.greedy_search_kernels import Links, find_cheapest
 
         self.graph, self.rules, self.seed = graph, graph.rules, seed
         self.speech = SpeechSoFar()
@@ -148,7 +150,7 @@ class PathExtender:
         self._limit = np.float32(graph.graph.threshold.limit)
         paid = graph.ruled
         self._links = Links(
-            paid.starts, paid.targets, paid.costs, *cheapest(paid.starts, paid.costs, CHEAPEST // 2)
+            paid.starts, paid.targets, paid.costs, *find_cheapest(paid.starts, paid.costs, CHEAPEST // 2)
         )
         events = STRESS * graph.heard.happens(STRESS) | EDGE * graph.heard.happens(EDGE)
         self._events = events.astype(np.uint8)

@@ -24,11 +24,11 @@ from numpy.typing import NDArray
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import HeardStates, WantedSegment
 from metagraph.synthesis.graph import MotionGraph
-from metagraph.synthesis.search.exact_search_links import SearchLinks, both_ways
+from metagraph.synthesis.search.exact_search_links import SearchLinks, arrange_both_ways
 from metagraph.synthesis.search.exact_search_problem import SearchProblem
 from metagraph.synthesis.search.exact_search_sweep import Foresight, Sweep
 from metagraph.synthesis.search.frame_costs import FrameCosts
-from metagraph.synthesis.search.path import Cancelled, Path, check_cancelled, jumps_of
+from metagraph.synthesis.search.path import Cancelled, Path, check_cancelled, find_way_jumps
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
@@ -104,7 +104,7 @@ class ExactSearch:
     @cached_property
     def _arranged(self) -> tuple[SearchLinks, SearchLinks]:
         """The transitions, there and back."""
-        return both_ways(self._graph, self._problem.classes, self._other)
+        return arrange_both_ways(self._graph, self._problem.classes, self._other)
 
     def guessed(self) -> float:
         """Return what some path costs, infinite where none was come upon: where many are at a frame, the
@@ -178,4 +178,4 @@ class ExactSearch:
             if t == 0:
                 break
             t, code = t - length, before if before >= 0 else -1 - before
-        return Path(way, cost, jumps_of(way))
+        return Path(way, cost, find_way_jumps(way))

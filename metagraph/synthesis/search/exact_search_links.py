@@ -47,7 +47,7 @@ class SearchLinks:
 _KNOWN: WeakKeyDictionary[MotionGraph, tuple[int, Array, SearchLinks, SearchLinks]] = WeakKeyDictionary()
 
 
-def both_ways(
+def arrange_both_ways(
     graph: MotionGraph, classes: StateClasses, other: ThreadPoolExecutor
 ) -> tuple[SearchLinks, SearchLinks]:
     """Return a graph's transitions, and those turned round, states numbered from the last on; as they were

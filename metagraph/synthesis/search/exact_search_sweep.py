@@ -19,7 +19,7 @@ from metagraph.synthesis.search.exact_search_links import SearchLinks
 from metagraph.synthesis.search.exact_search_problem import SearchProblem
 from metagraph.synthesis.search.frame_costs import PaidAlong
 from metagraph.synthesis.search.lookups import is_due_at
-from metagraph.synthesis.search.path import Cancelled, check_cancelled, stuck
+from metagraph.synthesis.search.path import Cancelled, check_cancelled, describe_stuck
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
@@ -135,10 +135,10 @@ class Sweep:
                 break
             self._ways.append((self.alive.copy(), self._back[self.alive]))
         if not self._number:
-            raise SynthesisError(stuck(self._last + 1))
+            raise SynthesisError(describe_stuck(self._last + 1))
         self._pay()
         if not self._number:  # runs that came along since they were looked at
-            raise SynthesisError(stuck(frames - 1))
+            raise SynthesisError(describe_stuck(frames - 1))
         self.cost = self._whole
         return self._ways
 

@@ -17,8 +17,13 @@ from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import HeardStates, WantedSegment
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search.frame_costs import FrameCosts
-from metagraph.synthesis.search.lookups import charges_of, cheapest_links, find_fitting_states, look_up_speech
-from metagraph.synthesis.search.path import Cancelled, Path, check_cancelled, jumps_of, stuck
+from metagraph.synthesis.search.lookups import (
+    find_cheapest_links,
+    find_fitting_states,
+    look_up_speech,
+    make_charges,
+)
+from metagraph.synthesis.search.path import Cancelled, Path, check_cancelled, describe_stuck, find_way_jumps
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
@@ -57,7 +62,7 @@ class Width:
 USUAL = Width()
 
 
-def greedy(
+def search_greedily(
     graph: MotionGraph,
     heard: HeardStates,
     wanted: WantedSegment,
@@ -97,21 +102,21 @@ def search_greedily_once(
     run: int = 1,
     charged: FrameCosts | None = None,
 ) -> Path:
-    """Return what `greedy` does, in one try of this width. Raises SynthesisError when it comes to an end
-    before the speech does.
+    """Return what `search_greedily` does, in one try of this width. Raises SynthesisError when it comes to an
+    end before the speech does.
     """
-    from metagraph.synthesis.search.greedy_search_kernels import segment
+    from metagraph.synthesis.search.greedy_search_kernels import search_segment
 
     frames, chance = len(wanted), np.random.default_rng(seed)
     fits = np.flatnonzero(find_fitting_states(graph, heard, wanted, 0))
     if not len(fits):
-        raise SynthesisError(stuck(0))
+        raise SynthesisError(describe_stuck(0))
     own = np.sort(chance.choice(fits, min(STARTS * width.saved, len(fits)), replace=False)).astype(np.int32)
     at, cost, met = np.zeros(len(own), np.int32), np.zeros(len(own), np.float32), np.zeros(len(own), bool)
     links, speech, charges = (
-        cheapest_links(graph),
+        find_cheapest_links(graph),
         look_up_speech(graph, heard, wanted),
-        charges_of(charged, frames),
+        make_charges(charged, frames),
     )
     best_at = np.full(2 * len(graph.states), -1, np.int32)
     ahead = AHEAD * graph.threshold.limit / RATE
@@ -121,7 +126,7 @@ def search_greedily_once(
     t0 = 0
     for t1 in _stretches(wanted):
         check_cancelled(cancelled)
-        off, ats, owns, _, found, paid, random = segment(
+        off, ats, owns, _, found, paid, random = search_segment(
             t0,
             t1,
             at,
@@ -140,7 +145,7 @@ def search_greedily_once(
             np.uint64(random),
         )
         if not len(found):
-            raise SynthesisError(stuck(t0))
+            raise SynthesisError(describe_stuck(t0))
         keep = _kept(paid + ahead * np.maximum(0, t1 + LOOK - found[:, 3]), found[:, 4], width.saved, chance)
         which, since, state, _, key = found[keep].T
         names = np.concatenate([ids, count + np.arange(len(off) - len(ids))])
@@ -163,7 +168,7 @@ def search_greedily_once(
         first = int(since[at_run])
         way[first:end] = state[at_run] + np.arange(end - first)
         at_run, end = int(off[at_run]), first
-    return Path(way, float(cost[place]), jumps_of(way))
+    return Path(way, float(cost[place]), find_way_jumps(way))
 
 
 def _kept(score: Array, keys: Array, saved: int, chance: np.random.Generator) -> Array:

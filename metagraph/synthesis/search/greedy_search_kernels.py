@@ -102,7 +102,7 @@ def find_next_marked(marked: Array) -> Array:
 
 
 @compiled
-def cheapest(starts: Array, costs: Array, most: Any) -> Any:
+def find_cheapest(starts: Array, costs: Array, most: Any) -> Any:
     """Return firsts and cheap, as `Links` has them, of at most so many transitions a state."""
     firsts = np.zeros(len(starts), np.int64)
     for state in range(len(starts) - 1):
@@ -219,7 +219,7 @@ def _note(
 
 
 @compiled_exactly
-def segment(
+def search_segment(
     t0: Any, t1: Any, at: Array, own: Array, price: Array, mets: Array, links: Any, speech: Any, charges: Any,
     best: Array, saved: Any, branches: Any, tries: Any, deepest: Any, least: Any, random: Any,
 ) -> Any:  # fmt: skip

@@ -26,14 +26,14 @@ EVENTS = (STRESS, EDGE)  # in the order of rows that are looked up
 _LINKS: WeakKeyDictionary[MotionGraph, Links] = WeakKeyDictionary()
 
 
-def cheapest_links(graph: MotionGraph) -> Links:
+def find_cheapest_links(graph: MotionGraph) -> Links:
     """Return a graph's transitions, and the cheapest of each state; those are looked for once."""
-    from metagraph.synthesis.search.greedy_search_kernels import Links, cheapest
+    from metagraph.synthesis.search.greedy_search_kernels import Links, find_cheapest
 
     found = _LINKS.get(graph)
     if found is None:
         found = Links(
-            graph.starts, graph.targets, graph.costs, *cheapest(graph.starts, graph.costs, CHEAPEST)
+            graph.starts, graph.targets, graph.costs, *find_cheapest(graph.starts, graph.costs, CHEAPEST)
         )
         _LINKS[graph] = found
     return found
@@ -79,7 +79,7 @@ def look_up_speech(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment
     )
 
 
-def charges_of(charged: FrameCosts | None, frames: int) -> Charges:
+def make_charges(charged: FrameCosts | None, frames: int) -> Charges:
     """Return what frames cost as the greedy search looks it up."""
     from metagraph.synthesis.search.greedy_search_kernels import Charges
 

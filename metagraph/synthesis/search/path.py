@@ -35,11 +35,13 @@ def check_cancelled(cancelled: Cancelled) -> None:
         raise SynthesisError("the search was cancelled")
 
 
-def jumps_of(way: Array) -> Array:
+def find_way_jumps(way: Array) -> Array:
+    """Return the places of a way `[T]` of states that come by a transition, ascending."""
     return np.flatnonzero(np.diff(way) != 1) + 1
 
 
-def stuck(t: int) -> str:
+def describe_stuck(t: int) -> str:
+    """Return in words that no motion goes on at frame t, and what helps."""
     return (
         f"no motion goes with this speech beyond {t / RATE:.1f} s: allow more tolerance, leave a kind of "
         "constraint out, "

@@ -61,7 +61,7 @@ class PathQuality:
         )
 
 
-def quality(states: States, path: Path) -> PathQuality:
+def measure_quality(states: States, path: Path) -> PathQuality:
     """Return what a path of these states looks like."""
     shown = np.asarray(path.states)
     frames, window = len(shown), round(RECENT * RATE)

@@ -17,8 +17,8 @@ from metagraph.graph.conversation.model import SOUNDS, Segment, Sound
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import EDGE, STRESS, TOLERANCE, HeardStates, WantedSegment, list_wanted
 from metagraph.synthesis.graph import MotionGraph
-from metagraph.synthesis.iconic_words import only_states_of_words
-from metagraph.synthesis.retiming import FARTHER, NEARER, Retiming, keeps_constraints, timing_cost
+from metagraph.synthesis.iconic_words import find_states_of_words
+from metagraph.synthesis.retiming import FARTHER, NEARER, Retiming, keeps_constraints, make_timing_cost
 from metagraph.synthesis.search.frame_costs import join_costs
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
@@ -61,7 +61,7 @@ class Constraints:
     def wanted(self, segments: Sequence[Segment], seconds: float, soft: SoftConstraints) -> WantedSegment:
         """Return what is wanted frame by frame by that."""
         want = list_wanted(segments, seconds, self.tolerance, self.use, self.peaks, self.edges)
-        return replace(want, only=only_states_of_words(soft.places)) if self.words else want
+        return replace(want, only=find_states_of_words(soft.places)) if self.words else want
 
 
 @dataclass(frozen=True)
@@ -224,7 +224,7 @@ class _Task:
                 kept, path = more, found
         retiming, kept = self._retimed(path, kept)
         words = describe_given_up(self.asked, kept)
-        missed = misses(self.heard, path, self.segments, self.asked, retiming) if words else ()
+        missed = find_misses(self.heard, path, self.segments, self.asked, retiming) if words else ()
         return RelaxedAnswer(path, kept, words, missed, retiming)
 
     def strictly(self) -> RelaxedAnswer:
@@ -263,7 +263,9 @@ class _Task:
         if soft.free is not None:
             kinds = charged.kinds if charged is not None else ()
             price = NEARER if kept.tolerance <= self.asked.tolerance else FARTHER
-            charged = join_costs([*kinds, timing_cost(self.heard, want, self.graph.threshold.limit, price)])
+            charged = join_costs(
+                [*kinds, make_timing_cost(self.heard, want, self.graph.threshold.limit, price)]
+            )
         return find_path(
             self.graph, self.heard, want, how.search, kept.rules, how.seed, self.cancelled, charged
         )
@@ -301,7 +303,7 @@ class _Task:
         return None, kept
 
 
-def misses(
+def find_misses(
     heard: HeardStates,
     path: Path,
     segments: Collection[Segment],

@@ -21,7 +21,7 @@ from metagraph.synthesis.constraints import HeardStates, WantedSegment
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search.exact_search import find_best_path
 from metagraph.synthesis.search.frame_costs import FrameCosts
-from metagraph.synthesis.search.greedy_search import greedy
+from metagraph.synthesis.search.greedy_search import search_greedily
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import SynthesisError
 
@@ -101,7 +101,7 @@ def find_path(
         if search == "exact":
             path = find_best_path(allowed, heard, wanted, cancelled, rules.frames, charged)
         else:
-            path = greedy(
+            path = search_greedily(
                 allowed, heard, wanted, seed, cancelled=cancelled, run=rules.frames, charged=charged
             )
     except SynthesisError as error:

@@ -9,7 +9,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.formats.store import read_project
-from metagraph.graph.offered import tools
+from metagraph.graph.offered import list_tools
 
 
 @pytest.mark.nightly
@@ -20,4 +20,4 @@ def test_tools_are_written_beside_the_export_and_named(
     assert main(["export", str(source), "-o", str(tmp_path), "--tools", "--no-mesh"]) == 0
     written = tmp_path / "sample.tools.json"
     assert str(written) in capsys.readouterr().out
-    assert json.loads(written.read_bytes()) == json.loads(json.dumps(tools(read_project(source))))
+    assert json.loads(written.read_bytes()) == json.loads(json.dumps(list_tools(read_project(source))))

@@ -311,7 +311,7 @@ def test_pieces_are_cut_and_know_model_and_seed(
 ) -> None:
     from metagraph.synthesis import cut
 
-    monkeypatch.setattr(cut, "candidates", lambda clip, *_: ((1.0, 3.0, 0.9), (3.0, 5.0, 0.5)))
+    monkeypatch.setattr(cut, "find_candidates", lambda clip, *_: ((1.0, 3.0, 0.9), (3.0, 5.0, 0.5)))
     save_project(Project("mine"), tmp_path / "mine.metagraph.yaml")
     words = ("--minutes", 0.5, "--seed", 7, "-o", tmp_path / "clips")
     project = ("--project", tmp_path / "mine.metagraph.yaml")

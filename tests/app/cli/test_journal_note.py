@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.parser import main
-from metagraph.formats.locking import new_owner
-from metagraph.formats.project.journal import Journal, journal_path
+from metagraph.formats.locking import make_owner
+from metagraph.formats.project.journal import Journal, make_journal_path
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -28,7 +28,7 @@ def saved(tmp_path: Path) -> Path:
 def leave(saved: Path, count: int, sitting: str = "ab12") -> Path:
     """Edit a project a number of times and let the program end; return the journal."""
     states = [edits.rename_project(Project("show"), f"name {n}") for n in range(count + 1)]
-    journal = Journal(journal_path(saved, sitting), saved, new_owner())
+    journal = Journal(make_journal_path(saved, sitting), saved, make_owner())
     for n in range(count):
         journal.edit(states[n] if n else Project("show"), states[n + 1], "Rename")
     journal.close()
@@ -87,7 +87,7 @@ def test_a_journal_of_a_window_that_is_open_or_of_another_project_is_not_mention
     other = saved.with_name(f"other{SUFFIX}")
     save_project(Project("show"), other)
     leave(other, 1)
-    journal = Journal(journal_path(saved, "ab12"), saved, new_owner())
+    journal = Journal(make_journal_path(saved, "ab12"), saved, make_owner())
     journal.edit(Project("show"), Project("open"), "Rename")
     main(["info", str(saved)])
     journal.close()

@@ -17,10 +17,10 @@ import pytest
 from app.cli import outputs
 from app.cli.outputs import FOLDERS, NEVER, OUTPUTS, WRITTEN, ProjectOutput
 from app.cli.parser import COMMANDS, _parser, main
-from app.project.version_count import set_version_count, version_count
+from app.project.version_count import count_kept_versions, set_version_count
 from metagraph.errors import FileError
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.project.versions import earlier_versions
+from metagraph.formats.project.versions import list_earlier_versions
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project
 from metagraph.graph import edits
 from tests.projects import clip
@@ -194,7 +194,7 @@ def test_a_project_that_another_process_has_open_is_left_alone(
 ) -> None:
     code = "import sys\nfrom pathlib import Path\nfrom metagraph.formats.locking import *\n"
     code += (
-        "lock = Lock(Path(sys.argv[1]), new_owner()); lock.acquire(); print(lock.held, flush=True); input()"
+        "lock = Lock(Path(sys.argv[1]), make_owner()); lock.acquire(); print(lock.held, flush=True); input()"
     )
     process = subprocess.Popen(
         [sys.executable, "-c", code, str(project)],
@@ -217,22 +217,22 @@ def test_a_project_changed_in_place_keeps_its_earlier_versions(project: Path) ->
     before = project.read_bytes()
     assert main(["moods", str(project), "--mood", "happy"]) == 0
     assert main(["moods", str(project), "--mood", "happy"]) == 0, "nothing changes"
-    (version,) = earlier_versions(project)
+    (version,) = list_earlier_versions(project)
     assert version.path.read_bytes() == before
     assert not list(project.parent.glob(".*lock"))
     set_version_count(0)
     assert main(["moods", str(project), "--mood", "sad"]) == 0
-    assert len(earlier_versions(project)) == 1
+    assert len(list_earlier_versions(project)) == 1
 
 
 def test_how_many_are_kept_is_one_setting(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert version_count() == 3
+    assert count_kept_versions() == 3
     set_version_count(7)
-    assert version_count() == 7
+    assert count_kept_versions() == 7
     monkeypatch.setenv("METAGRAPH_VERSIONS", "2")
-    assert version_count() == 2
+    assert count_kept_versions() == 2
     monkeypatch.setenv("METAGRAPH_VERSIONS", "many")
-    assert version_count() == 3
+    assert count_kept_versions() == 3
 
 
 def test_a_project_that_was_written_meanwhile_is_left_as_it_is(project: Path) -> None:
@@ -286,7 +286,7 @@ def test_a_second_label_adds_what_is_new_and_leaves_what_a_person_set(
     }.items()
     assert after.graphs[action.layer].weight("legs") == 0.5 and after.base == project.base
     assert not after.uses.get(gone.clip), "what was taken away is not put back"
-    assert earlier_versions(path)[0].path.read_bytes() == before
+    assert list_earlier_versions(path)[0].path.read_bytes() == before
 
 
 def test_a_report_that_was_changed_is_kept_beside_the_new_one(

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import demo_command, window_command
-from app.cli.command_output import stage_performance
+from app.cli.command_output import choose_plan
 from app.cli.parser import COMMANDS, main
 from metagraph.engines.reading import read_export
 from metagraph.formats.gltf.reader import write_glb
@@ -392,7 +392,7 @@ def test_a_window_without_a_screen_is_the_demo_with_its_usual_options(
     asked: list[Namespace] = []
 
     def run_demo(options: Namespace) -> int:
-        stage_performance(open_project(options.project).project, options)  # it has all that this needs
+        choose_plan(open_project(options.project).project, options)  # it has all that this needs
         asked.append(options)
         return 0
 

@@ -34,7 +34,7 @@ def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypa
         under.extend(labels)
         return np.zeros((4, 4, 4), np.uint8)
 
-    monkeypatch.setattr("preview.sheet.contact_sheet", contact_sheet)
+    monkeypatch.setattr("preview.sheet.make_contact_sheet", contact_sheet)
     shown = ShownPlayback(project, make_plan(project, 10.0), 10.0)
     seen = [(load_figure(project, SAMPLE.parent), shown)]
     draw_to(tmp_path / "sheet.png", seen, Shot(10.0, (96, 72), 30, 16, "dark"))

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from app.cli.parser import main
-from metagraph.formats.store import absolute, open_project, save_project
+from metagraph.formats.store import make_paths_absolute, open_project, save_project
 from metagraph.formats.transcripts.reader import read_transcript
 from tests.speech import group, talk
 
@@ -152,7 +152,7 @@ def test_three_are_kept_and_it_says_where_each_looks(
     three: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     project = tmp_path / "a.metagraph.yaml"
-    save_project(absolute(open_project(SAMPLE / "sample.metagraph.yaml").project, SAMPLE), project)
+    save_project(make_paths_absolute(open_project(SAMPLE / "sample.metagraph.yaml").project, SAMPLE), project)
     given = (three[0], "--words", three[1], "--project", project)
     code, data, _ = run(capsys, *given, "--name", "Three")
     kept = open_project(project).project.conversations[data["kept"]]

@@ -10,7 +10,7 @@ import pytest
 from app.cli import window_command
 from app.cli.parser import main
 from app.project.document import Document
-from metagraph.formats.locking import Lock, new_owner
+from metagraph.formats.locking import Lock, make_owner
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -31,7 +31,7 @@ def test_a_project_is_saved_as_often_as_the_user_wants(
 
     def use(project: Path | None, sample: bool, clip: str | None) -> int:
         document = Document()
-        document.lock = Lock(path, new_owner())
+        document.lock = Lock(path, make_owner())
         document.lock.acquire()
         document.load(read_project(path) if project else Project(), project, lock=document.lock)
         for seed in (7, 8, 9):

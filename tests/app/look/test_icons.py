@@ -6,12 +6,12 @@ import pytest
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QIcon
 
-from app.look.icons import PATHS, icon
+from app.look.icons import PATHS, make_icon
 
 
 @pytest.mark.parametrize("name", PATHS)
 def test_every_icon_draws_something_in_its_colour(qapp, name):
-    picture = icon(name, "#ff0000").pixmap(QSize(54, 54)).toImage()
+    picture = make_icon(name, "#ff0000").pixmap(QSize(54, 54)).toImage()
     pixels = [picture.pixelColor(x, y) for x in range(picture.width()) for y in range(picture.height())]
     inked = [p for p in pixels if p.alpha() > 100]
     assert len(inked) > len(pixels) / 80
@@ -25,7 +25,7 @@ def test_every_icon_draws_something_in_its_colour(qapp, name):
 
 
 def test_a_disabled_icon_is_fainter(qapp):
-    made = icon("play", "#ffffff")
+    made = make_icon("play", "#ffffff")
     strength = [
         max(made.pixmap(QSize(18, 18), mode).toImage().pixelColor(9, 9).alpha() for _ in "x")
         for mode in (QIcon.Mode.Normal, QIcon.Mode.Disabled)
@@ -34,4 +34,4 @@ def test_a_disabled_icon_is_fainter(qapp):
 
 
 def test_an_icon_is_drawn_once(qapp):
-    assert icon("undo", "#123456") is icon("undo", "#123456")
+    assert make_icon("undo", "#123456") is make_icon("undo", "#123456")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.look.names import drop_common_start, node_names, plain_action_name, row_names, tell_apart
+from app.look.names import drop_common_start, make_readable_name, name_node_rows, name_rows, tell_apart
 from metagraph.graph import edits
 
 
@@ -24,7 +24,7 @@ from metagraph.graph import edits
     ],
 )
 def test_a_name_is_read_without_what_the_place_says(name, stance, limb, words):
-    assert plain_action_name(name, stance, limb) == words
+    assert make_readable_name(name, stance, limb) == words
 
 
 def test_numbers_of_takes_go_where_nothing_else_has_the_name():
@@ -43,10 +43,10 @@ def test_two_ways_to_one_stance_are_told_apart(toy):
     project = toy.project()
     rest = toy.id(project, "rest")
     there = project.graphs["arms"].of(rest, "transition")
-    assert list(row_names(project, there).values()) == [project.stance(a.end_stance).name for a in there]
+    assert list(name_rows(project, there).values()) == [project.stance(a.end_stance).name for a in there]
     clip, end = there[0].clip, there[0].end_stance
     project = edits.place_clips(project, [clip], "arms", "transition", rest, end)
-    names = list(row_names(project, project.graphs["arms"].of(rest, "transition")).values())
+    names = list(name_rows(project, project.graphs["arms"].of(rest, "transition")).values())
     assert all(names) and any(":" in n for n in names)
 
 
@@ -55,8 +55,8 @@ def test_the_number_of_a_stance_is_no_takes_number(toy):
     rest = toy.id(project, "rest")
     way = project.graphs["arms"].of(rest, "transition")[0]
     project = edits.rename_stance(project, way.end_stance, "idle 3")
-    assert row_names(project, [way]) == {way.id: "idle 3"}
-    assert row_names(project, project.graphs["arms"].of(rest, "transition"))[way.id] == "idle 3"
+    assert name_rows(project, [way]) == {way.id: "idle 3"}
+    assert name_rows(project, project.graphs["arms"].of(rest, "transition"))[way.id] == "idle 3"
 
 
 def test_a_stance_called_after_its_loop_is_left_out_by_what_all_share(toy):
@@ -70,20 +70,20 @@ def test_a_stance_called_after_its_loop_is_left_out_by_what_all_share(toy):
     one, two = graph.of(stance, "gesture")
     names = {loop.id: "sitting_low__loop", one.id: "sitting_low__nod_01", two.id: "sitting_low__wave_01"}
     project = edits.update_each(project, {i: {"name": n} for i, n in names.items()})
-    assert list(node_names(project, "arms", stance, "gesture").values()) == ["nod", "wave"]
+    assert list(name_node_rows(project, "arms", stance, "gesture").values()) == ["nod", "wave"]
     project = edits.update_actions(project, [two.id], name="wave")
-    told = list(node_names(project, "arms", stance, "gesture").values())
+    told = list(name_node_rows(project, "arms", stance, "gesture").values())
     assert told == ["sitting low nod", "wave"], "what not all share may tell something"
 
 
 def test_a_nodes_names_follow_its_actions_and_its_stance(toy):
     project = toy.project()
     rest = toy.id(project, "rest")
-    first = node_names(project, "arms", rest, "gesture")
-    assert node_names(project, "arms", rest, "gesture") is first
+    first = name_node_rows(project, "arms", rest, "gesture")
+    assert name_node_rows(project, "arms", rest, "gesture") is first
     ident = next(iter(first))
     project = edits.update_actions(project, [ident], name="something_else_07")
-    assert node_names(project, "arms", rest, "gesture")[ident] == "something else"
+    assert name_node_rows(project, "arms", rest, "gesture")[ident] == "something else"
 
 
 def test_names_of_a_node_are_made_anew_only_where_something_is_called_otherwise(toy):
@@ -93,7 +93,7 @@ def test_names_of_a_node_are_made_anew_only_where_something_is_called_otherwise(
     stance = action.stance
 
     def names(of):
-        return node_names(of, layer, stance, "gesture")
+        return name_node_rows(of, layer, stance, "gesture")
 
     kept = names(project)
     louder = edits.update_actions(project, (action.id,), likelihood=2.5)

@@ -6,7 +6,16 @@ import pytest
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import QApplication
 
-from app.look.theme import DARK, KIND_MARKS, KIND_TITLES, LIGHT, apply_theme, make_style_sheet, palette, theme
+from app.look.theme import (
+    DARK,
+    KIND_MARKS,
+    KIND_TITLES,
+    LIGHT,
+    apply_theme,
+    get_theme,
+    make_palette,
+    make_style_sheet,
+)
 from metagraph.graph.model import KINDS
 
 GROUNDS = ("ground", "panel", "card", "field", "hover")
@@ -50,7 +59,7 @@ def test_colour_is_never_alone():
 
 
 def test_an_unknown_theme_is_the_dark_one():
-    assert theme("no such") is DARK
+    assert get_theme("no such") is DARK
 
 
 @pytest.mark.nightly
@@ -59,4 +68,4 @@ def test_applying_a_theme_reaches_palette_and_style(qapp):
         apply_theme(QApplication.instance(), look)
         assert QApplication.palette().color(QPalette.ColorRole.Window).name() == look.panel
         assert qapp.styleSheet() == make_style_sheet(look)
-        assert palette(look).color(QPalette.ColorRole.PlaceholderText).name() == look.dim
+        assert make_palette(look).color(QPalette.ColorRole.PlaceholderText).name() == look.dim

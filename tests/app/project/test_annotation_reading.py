@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.project.annotation_reading import begin_reading, describe_doubts, remember_reading, work_into_project
+from app.project.annotation_reading import apply_reading, begin_reading, describe_doubts, remember_reading
 from metagraph.formats.elan import read_elan
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.graph.model import LAYERS, Project
@@ -31,7 +31,7 @@ def test_an_annotation_with_nothing_in_it_says_so_and_changes_nothing_but_the_me
     reading = begin_reading(Annotation((tier("words", "hello"),)))
     assert reading.observed == {} and reading.labels == ()
     assert "tier" in describe_doubts(reading)[0]
-    made = work_into_project(Project(), reading, LAYERS, True, "talk")
+    made = apply_reading(Project(), reading, LAYERS, True, "talk")
     assert (made.learned, made.performance) == ((), None)
     assert made.project == Project(tiers={"words": "ignore"})
 
@@ -70,15 +70,15 @@ def test_the_project_remembers_how_it_was_read_and_the_next_reading_begins_so() 
 
 def test_models_are_learned_of_the_layers_that_are_wanted_and_were_seen(conversation: Annotation) -> None:
     reading = begin_reading(conversation)
-    made = work_into_project(Project(), reading, ("arms", "head"), False, None)
+    made = apply_reading(Project(), reading, ("arms", "head"), False, None)
     assert made.learned == ("arms", "head") and made.performance is None
     assert set(made.project.markov) == {"arms", "head"}
     assert made.project.markov["head"].positive > 0.8 and made.project.markov["head"].tags == ()
     assert from_data(to_data(made.project)) == made.project
-    tagged = work_into_project(Project(), reading, LAYERS, True, None, smoothing=0.5).project.markov
+    tagged = apply_reading(Project(), reading, LAYERS, True, None, smoothing=0.5).project.markov
     assert tagged["head"].tags == ("positive", "negative", "")
     assert all(p > 0 for row in tagged["arms"].matrix for p in row)
-    assert work_into_project(
+    assert apply_reading(
         Project(), begin_reading(Annotation((tier("LH", "beat"),))), LAYERS, False, None
     ).learned == ("arms",)
 
@@ -92,8 +92,8 @@ def test_few_actions_are_doubted(conversation: Annotation) -> None:
 
 def test_what_was_seen_is_kept_as_a_performance_of_its_own_name(conversation: Annotation) -> None:
     reading = begin_reading(conversation)
-    first = work_into_project(Project(), reading, (), False, "talk")
-    second = work_into_project(first.project, reading, (), False, "talk")
+    first = apply_reading(Project(), reading, (), False, "talk")
+    second = apply_reading(first.project, reading, (), False, "talk")
     assert [p.name for p in second.project.performances.values()] == ["talk", "talk 2"]
     kept = second.project.performances[second.performance or ""]
     assert not kept.idle and kept.length >= conversation.end
@@ -110,7 +110,7 @@ def test_an_annotation_is_performed_as_it_was_seen_and_other_seeds_vary_the_acti
     conversation: Annotation, sample: Project
 ) -> None:
     reading = begin_reading(conversation)
-    made = work_into_project(sample, reading, (), False, "talk")
+    made = apply_reading(sample, reading, (), False, "talk")
     kept = made.project.performances[made.performance or ""]
     plans = [
         plan_performance(made.project, kept.asks, kept.length, seed, dict(kept.stances), kept.idle)
@@ -147,7 +147,7 @@ def test_a_change_of_one_arm_is_performed_by_any_transition(toy: Any) -> None:
             )
         )
     )
-    made = work_into_project(project, reading, (), False, "shift")
+    made = apply_reading(project, reading, (), False, "shift")
     kept = made.project.performances[made.performance or ""]
     assert [ask.limb for ask in kept.asks] == ["left", "left"]  # type: ignore[union-attr]
     plan = plan_performance(made.project, kept.asks, kept.length, 1, dict(kept.stances), kept.idle)

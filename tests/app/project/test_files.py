@@ -12,14 +12,14 @@ import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.project import questions
-from app.project.autosave import state_folder
+from app.project.autosave import make_state_folder
 from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
 from app.project.leftovers import list_untitled_journals
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.locking import lock_path, new_owner
+from metagraph.formats.locking import lock_path, make_owner
 from metagraph.formats.project.journal_records import read_records
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import open_project, read_project, save_project
@@ -230,7 +230,7 @@ def crash(desk) -> None:
     document.autosave.journal.close()
     kill_sittings(place.parent)
     document.autosave.journal = document.lock = None
-    document.owner = new_owner()
+    document.owner = make_owner()
     document.undo_stack.setClean()
 
 
@@ -657,7 +657,7 @@ def test_recent_projects_are_the_latest_first_and_only_those_that_exist(desk, tm
 @pytest.mark.parametrize("content", ["", "{", "[1, null]", json.dumps({"a": 1}), json.dumps(None)])
 def test_a_broken_list_of_recent_projects_is_an_empty_one(desk, content):
 
-    (state_folder() / "recent.json").write_text(content)
+    (make_state_folder() / "recent.json").write_text(content)
     assert desk.recent() == []
 
 

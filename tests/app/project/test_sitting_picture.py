@@ -21,7 +21,11 @@ def test_the_picture_has_the_bones_of_the_preview_and_none_of_the_face(drive):
     bones = SittingPicture(Project(), standing(skeleton))._figure
     shown = joints.find_drawn_joints(skeleton)
     assert bones is not None and bones.shape[1:] == (2, 2)
-    assert len(bones) == int((shown & (joints.nearest_above(skeleton, shown) >= 0)).sum()) < int(shown.sum())
+    assert (
+        len(bones)
+        == int((shown & (joints.find_nearest_above(skeleton, shown) >= 0)).sum())
+        < int(shown.sum())
+    )
     assert 1.0 < np.ptp(bones[..., 1]) < 2.2  # from the feet to the head, and nothing far away
 
 

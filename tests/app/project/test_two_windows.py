@@ -15,8 +15,8 @@ from app.project import questions
 from app.project.document import Document
 from app.project.files import Files
 from app.project.jobs import Jobs
-from metagraph.formats.locking import STALE, lock_path, new_owner
-from metagraph.formats.project.journal import Journal, journal_path
+from metagraph.formats.locking import STALE, lock_path, make_owner
+from metagraph.formats.project.journal import Journal, make_journal_path
 from metagraph.formats.recovery import find_left_journals, read_journal
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits
@@ -189,7 +189,7 @@ def test_a_file_that_cannot_be_opened_is_not_kept_from_others(windows, person, s
 
 def test_a_lock_on_a_sleeping_computer_is_taken_over_when_that_is_chosen(windows, person, saved, qtbot):
     path = lock_path(saved)
-    path.write_bytes(msgspec.json.encode(msgspec.structs.replace(new_owner(), host="studio-3", user="ada")))
+    path.write_bytes(msgspec.json.encode(msgspec.structs.replace(make_owner(), host="studio-3", user="ada")))
     os.utime(path, (time.time() - STALE * 2,) * 2)
     person.next = ["Take over"]
     two = opened(qtbot, windows(), saved)
@@ -200,7 +200,7 @@ def test_a_lock_on_a_sleeping_computer_is_taken_over_when_that_is_chosen(windows
 def test_who_was_taken_over_becomes_read_only_and_loses_nothing(windows, person, saved, qtbot):
     one = opened(qtbot, windows(), saved)
     seed(one, 5)
-    lock_path(saved).write_bytes(msgspec.json.encode(msgspec.structs.replace(new_owner(), host="studio-3")))
+    lock_path(saved).write_bytes(msgspec.json.encode(msgspec.structs.replace(make_owner(), host="studio-3")))
     one.keeper.refresh()
     qtbot.waitUntil(lambda: one.document.read_only)
     assert "show.metagraph.yaml" in one.words[-1]
@@ -225,8 +225,8 @@ def test_a_folder_that_takes_no_lock_opens_all_the_same(windows, person, saved, 
 def crashed(saved, number, count=1, base=None):
     """Leave the journal of a sitting that was killed after some edits; return its project."""
     before = base or read_project(saved)
-    owner = msgspec.structs.replace(new_owner(), pid=ended())
-    journal = Journal(journal_path(saved, owner.sitting), saved, owner)
+    owner = msgspec.structs.replace(make_owner(), pid=ended())
+    journal = Journal(make_journal_path(saved, owner.sitting), saved, owner)
     for n in range(count):
         after = edits.set_settings(before, seed=number + n)
         journal.edit(before, after)

@@ -9,7 +9,7 @@ import pytest
 
 from app import translation
 from app.shell.actions import Command
-from app.shell.command_table import all_met, any_met, bind_commands, not_met
+from app.shell.command_table import bind_commands, require_all, require_any, require_not
 from app.translation import tr_noop
 from tests.app.catalogue_texts import catalogue_texts
 
@@ -70,10 +70,10 @@ def test_conditions_combine():
         return feature[1]
 
     for a, b in itertools.product((False, True), repeat=2):
-        assert all_met(first, second)((a, b)) == (a and b)
-        assert any_met(first, second)((a, b)) == (a or b)
-        assert not_met(all_met(first, not_met(second)))((a, b)) == (not a or b)
-    assert all_met()(()) and not any_met()(())
+        assert require_all(first, second)((a, b)) == (a and b)
+        assert require_any(first, second)((a, b)) == (a or b)
+        assert require_not(require_all(first, require_not(second)))((a, b)) == (not a or b)
+    assert require_all()(()) and not require_any()(())
 
 
 @pytest.mark.window

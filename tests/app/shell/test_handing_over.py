@@ -88,10 +88,10 @@ def test_while_something_runs_the_window_stays_and_changes_once_it_has_ended(
     go_on = threading.Event()
     toys.shell.jobs.start("Importing clips", lambda job: go_on.wait(20))
     choose(keeper, "Deutsch")
-    assert keeper.window is toys.window and translation.current_language() == "en"
+    assert keeper.window is toys.window and translation.get_language() == "en"
     assert "Importing clips" in toys.window.statusBar().currentMessage()
     go_on.set()
-    toys.wait(lambda: translation.current_language() == "de")
+    toys.wait(lambda: translation.get_language() == "de")
     assert keeper.window is not toys.window
 
 
@@ -102,4 +102,4 @@ def test_while_a_live_session_runs_the_window_stays(toys: Any, keeper: WindowKee
     choose(keeper, "Deutsch")
     assert keeper.window is toys.window and "live session" in toys.window.statusBar().currentMessage()
     live.end()
-    toys.wait(lambda: translation.current_language() == "de")
+    toys.wait(lambda: translation.get_language() == "de")

@@ -16,7 +16,7 @@ from PySide6.QtTest import QTest
 
 from app.cli.parser import main
 from app.stage.conversation_plans import ConversationPlans, keep_conversation
-from metagraph.formats.store import absolute, open_project, save_project
+from metagraph.formats.store import make_paths_absolute, open_project, save_project
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
@@ -57,7 +57,7 @@ def saved(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """
     folder = tmp_path_factory.mktemp("talk")
     talks = {"v9000": conversation(folder)}
-    whole = absolute(sample, ROOT / "sample_clips")
+    whole = make_paths_absolute(sample, ROOT / "sample_clips")
     save_project(
         replace(whole, conversations=talks, lines={}, performances={}), folder / "talk.metagraph.yaml"
     )
@@ -167,7 +167,7 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
     project = open_project(talking).project
     talk = project.conversations["v9000"]
     other = replace(project, conversations={}, settings=replace(project.settings, alpha=9.0))
-    save_project(absolute(other, folder), folder / "other.metagraph.yaml")
+    save_project(make_paths_absolute(other, folder), folder / "other.metagraph.yaml")
     for path, alpha, told in (
         ("other.metagraph.yaml", 9.0, False),
         ("missing.metagraph.yaml", project.settings.alpha, True),
@@ -229,7 +229,9 @@ def test_two_other_projects_are_each_read_once(talking, monkeypatch):
     project = open_project(talking).project
     talk = project.conversations["v9000"]
     for name in ("one", "two"):
-        save_project(absolute(replace(project, conversations={}), folder), folder / f"{name}.metagraph.yaml")
+        save_project(
+            make_paths_absolute(replace(project, conversations={}), folder), folder / f"{name}.metagraph.yaml"
+        )
     whole = stage.open_whole
     monkeypatch.setattr(stage, "open_whole", lambda path: (read.append(path.name), whole(path))[1])
     sides = tuple(
@@ -371,7 +373,7 @@ def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> N
 @pytest.mark.nightly
 def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: Path) -> None:
     from metagraph.playback.planning.running_plan import plan_performance
-    from tests.posing import pose_at
+    from tests.posing import compute_pose_at
 
     project = open_project(three).project
     shown = ConversationPlans().show(project, "v9000", three.parent)
@@ -383,7 +385,7 @@ def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: 
         looks = {ask.to for ask in kept.asks if isinstance(ask, Look)}
         assert len(looks) == 2 and looks <= {ask.name for ask in kept.asks if isinstance(ask, Place)}
         plan = plan_performance(after, kept.asks, kept.length, kept.seed, idle=kept.idle)
-        mine, theirs = pose_at(plan, after, times), one.pose(times)
+        mine, theirs = compute_pose_at(plan, after, times), one.pose(times)
         assert theirs is not None and np.allclose(mine.rotations, theirs.rotations)
 
 

@@ -76,7 +76,7 @@ def test_a_project_without_takes_has_no_graph_and_one_that_cannot_be_made_says_w
     def fails(*_: object) -> None:
         raise ValueError("no two states are connected")
 
-    monkeypatch.setattr("app.stage.live_stage.live_graph", fails)
+    monkeypatch.setattr("app.stage.live_stage.make_live_graph", fails)
     stage = made(LiveStage(recorded))
     assert stage.session.generating.graphs == {} and stage.graph_error == "no two states are connected"
 

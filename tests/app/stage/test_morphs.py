@@ -16,7 +16,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback.planner import make_plan
 from preview.figure import SkinnedFigure, StickFigure
-from tests.posing import morphs_at
+from tests.posing import compute_morphs_at
 
 
 def test_a_figure_without_morphs_takes_no_weights(toy):
@@ -47,7 +47,7 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
 
     project = edits.add_stance(project, "head", "face", [entry.id])
     loop = project.graphs["head"].of(next(iter(project.graphs["head"].stances)), "stance")[0]
-    assert morphs_at(
+    assert compute_morphs_at(
         make_plan(project, 5.0), project, frame / entry.fps - project.span(loop)[0]
     ) == pytest.approx({name: min(1.0, max(0.0, value)) for name, value in wanted.items()}, abs=1e-3)
     times = np.array([frame / entry.fps])
@@ -63,15 +63,15 @@ def test_the_characters_own_morph_targets_are_known_when_it_is_opened(
 ) -> None:
     """A face is recognised from what the character has, not only from what clips move."""
     from app.project.opening import open_whole
-    from metagraph.formats.gltf.reader import morph_targets
+    from metagraph.formats.gltf.reader import read_morph_targets
     from metagraph.formats.store import save_project
     from metagraph.graph.life import Face
 
     robot = shared_data / "robot-expressive"
     file = next(robot.rglob("*.glb"))
-    assert morph_targets(file) == read_character(file).morphs != ()
+    assert read_morph_targets(file) == read_character(file).morphs != ()
     imported = import_files(Project(), tmp_path, [file])
     project = imported.into(Project())
-    assert project.face.morphs == morph_targets(file)
+    assert project.face.morphs == read_morph_targets(file)
     save_project(replace(project, face=Face()), tmp_path / "robot.metagraph.yaml")
-    assert open_whole(tmp_path / "robot.metagraph.yaml").project.face.morphs == morph_targets(file)
+    assert open_whole(tmp_path / "robot.metagraph.yaml").project.face.morphs == read_morph_targets(file)

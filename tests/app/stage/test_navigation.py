@@ -8,7 +8,7 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.stage.navigation import NAVIGATIONS, choose_navigation, chosen_navigation
+from app.stage.navigation import NAVIGATIONS, choose_navigation, get_navigation
 
 LEFT, MIDDLE, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.MiddleButton, Qt.MouseButton.RightButton
 NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
@@ -42,7 +42,7 @@ def test_each_program_has_its_own_drags(program, button, held, move):
 def test_what_is_kept_and_no_longer_there_is_the_usual_one(qapp):
     with pytest.raises(KeyError):
         choose_navigation("softimage")
-    assert chosen_navigation().id == "usual"
+    assert get_navigation().id == "usual"
 
 
 def drag(view, button, held=NONE):

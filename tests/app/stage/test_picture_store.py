@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QImage
 
 from app.stage.kept_pictures import KeptPictures
 from app.stage.picture_process import PictureOrder
-from app.stage.picture_store import PictureStore, picture_key
+from app.stage.picture_store import PictureStore, make_picture_key
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def noise(side: int, seed: int) -> QImage:
 
 def test_a_picture_is_found_by_what_it_shows(toy, order):
     same = replace(order, number=7)
-    assert picture_key(same) == picture_key(order)
+    assert make_picture_key(same) == make_picture_key(order)
     turned = replace(order.clip, rotations=order.clip.rotations[:, ::-1].copy())
     for other in (
         replace(order, clip=turned),
@@ -41,17 +41,17 @@ def test_a_picture_is_found_by_what_it_shows(toy, order):
         replace(order, hidden=("hat",)),
         replace(order, paper=(1, 1, 1)),
     ):
-        assert picture_key(other) != picture_key(order)
+        assert make_picture_key(other) != make_picture_key(order)
 
 
 def test_a_character_whose_file_was_changed_is_another(order, tmp_path):
     path = tmp_path / "ada.glb"
     path.write_bytes(b"one")
-    first = picture_key(replace(order, character=path))
+    first = make_picture_key(replace(order, character=path))
     path.write_bytes(b"other")
-    assert picture_key(replace(order, character=path)) != first
+    assert make_picture_key(replace(order, character=path)) != first
     path.unlink()
-    assert picture_key(replace(order, character=path)) != first
+    assert make_picture_key(replace(order, character=path)) != first
 
 
 def test_stills_and_strips_come_back_as_they_were_kept(tmp_path):

@@ -7,15 +7,15 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
-from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, common_value
+from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, find_common_value
 
 
 def test_common_is_the_value_all_share_or_mixed():
-    assert common_value([1]) == 1
-    assert common_value([None, None]) is None
-    assert common_value([1, 1.0]) == 1
-    assert common_value([1, 2]) is Mixed
-    assert common_value([None, 0]) is Mixed
+    assert find_common_value([1]) == 1
+    assert find_common_value([None, None]) is None
+    assert find_common_value([1, 1.0]) == 1
+    assert find_common_value([1, 2]) is Mixed
+    assert find_common_value([None, 0]) is Mixed
     assert repr(Mixed) == "mixed"
 
 

@@ -17,14 +17,14 @@ from app.widgets.lane_geometry import (
     LEFT,
     RULER,
     LaneScale,
-    cue_at,
     describe_mark,
-    lane_at,
+    find_cue_at,
+    find_lane_at,
     mark_at,
+    measure_text_width,
     place_lanes,
     place_marks,
     split_lane,
-    text_width,
 )
 from app.widgets.request_menu import STAGE
 from metagraph.graph import requests as a
@@ -65,10 +65,10 @@ def test_the_cue_under_a_point_is_the_one_that_plays_then(toy):
     lane = split_lane(place_lanes(height)["arms"])[1]
     for cue in cues:
         middle = QPointF(scale.x((cue.start + cue.end) / 2), lane.center().y())
-        assert cue_at(shown, scale, height, middle) == ("arms", cue)
+        assert find_cue_at(shown, scale, height, middle) == ("arms", cue)
     cue = cues[0]
     assert (
-        cue_at(
+        find_cue_at(
             shown,
             scale,
             height,
@@ -76,10 +76,10 @@ def test_the_cue_under_a_point_is_the_one_that_plays_then(toy):
         )
         is None
     )
-    assert cue_at(shown, scale, height, QPointF(LEFT - 5, lane.center().y())) is None, (
+    assert find_cue_at(shown, scale, height, QPointF(LEFT - 5, lane.center().y())) is None, (
         "the lane's name is no cue"
     )
-    assert cue_at(shown, scale, height, QPointF(scale.x(cue.start + 0.1), 3)) is None
+    assert find_cue_at(shown, scale, height, QPointF(scale.x(cue.start + 0.1), 3)) is None
 
 
 @pytest.mark.parametrize("height", [160, 232, 900])
@@ -119,7 +119,7 @@ def test_requests_stand_in_their_lane_at_their_time(qapp, toy):
         ("stroke", 14, "arms"),
     ):
         assert found[ident].rect.left() == pytest.approx(LEFT + 40 * seconds)
-        assert lane_at(232.0, found[ident].rect.center()) == lane
+        assert find_lane_at(232.0, found[ident].rect.center()) == lane
     assert [found[i].kind for i in ("g", "s", "l")] == ["gesture", "transition", None]
 
 
@@ -163,7 +163,7 @@ def test_what_does_not_play_says_why(qapp, toy):
     project = toy.project()
     lost = shown_asks(project, a.Gesture(id="g", at=2.0, tags=("nonsense",), priority=3))[0]
     assert lost.lost
-    assert lost.rect.width() >= text_width(f"⚠ {lost.words}", QFont().toString()) + 10, (
+    assert lost.rect.width() >= measure_text_width(f"⚠ {lost.words}", QFont().toString()) + 10, (
         "its sign and its words have room"
     )
     words = describe_mark(lost)

@@ -15,7 +15,7 @@ import pytest
 
 from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
-from metagraph.engines.script import cases
+from metagraph.engines.script import make_script_cases
 from metagraph.engines.vectors import write_vectors
 from metagraph.formats.imports import gather
 from metagraph.graph import edits
@@ -152,7 +152,7 @@ def test_the_pages_words_pose_clips_nobody_here_made(shared_data: Path, tmp_path
 
 def poses_as_exported(project: Project, folder: Path) -> None:
     made = write_project_files(many_ways(project), folder)
-    write_vectors(made.json, list(cases(read_export(made.json, resolved=True)))[::6])
+    write_vectors(made.json, list(make_script_cases(read_export(made.json, resolved=True)))[::6])
     character, vectors = read_vectors(folder)
     seen: set[str] = set()
     for plays, off in compared(character, vectors):

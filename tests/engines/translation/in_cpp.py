@@ -11,8 +11,8 @@ from metagraph.graph.model import LIMBS, MetaGraph, Project
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.mood import Mood, MoodFrom, Moods
-from metagraph.playback.planning.prominence import prominence
-from metagraph.playback.planning.vigour import vigour
+from metagraph.playback.planning.prominence import measure_prominence
+from metagraph.playback.planning.vigour import measure_vigour
 from metagraph.playback.timing import phases
 
 SEED, UNTIL, BUSY = 7, 120.0, 3.25  # of what a model writes
@@ -233,17 +233,17 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
             a.likelihood,
             a.cooldown,
             a.spacing,
-            prominence(project, a),
+            measure_prominence(project, a),
         ]
         lists = ["\n".join(each) for each in (a.joints, a.tags)]
         given = ", ".join([*map(_word, [*words, *lists]), *map(_or_nan, numbers)])
         actions.append(f"out.push_back(action({given}));")
-        found = phases.phases(project, a)
+        found = phases.find_phases(project, a)
         own = ", ".join(
             map(repr, (found.start, found.ready, found.stroke, found.stroke_end, found.relax, found.end))
         )
         phases_.append(f"out[{_text(a.id)}] = made<Phases>({own});")
-        vigours.append(f"out[{_text(a.id)}] = {vigour(project, a)!r};")
+        vigours.append(f"out[{_text(a.id)}] = {measure_vigour(project, a)!r};")
     stances = ", ".join(
         f"made<Stance>({_text(s.id)}, {_text(s.layer)}, {_text(s.name)})" for s in graph.stances.values()
     )

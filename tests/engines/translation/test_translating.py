@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from metagraph.engines.translation.__main__ import ATTRIBUTES, mark_generated
-from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
+from metagraph.engines.translation.gesture_word_lists import make_gesture_word_modules
 from metagraph.engines.translation.listing import LISTING, NATIVE, RUNTIMES, Translated
-from metagraph.engines.translation.lowering import module_of
+from metagraph.engines.translation.lowering import convert_module
 from metagraph.engines.translation.printing import TranslationError
 from metagraph.engines.translation.source import SourceModule, SubsetError
-from metagraph.engines.translation.translating import print_modules, read_modules, type_modules
+from metagraph.engines.translation.translating import print_modules, read_modules, read_typed_modules
 from tests.engines import cpp_program
 from tests.engines.translation import every_means
 
@@ -31,14 +31,14 @@ EVERY = Translated("tests.engines.translation.every_means", "every_means")
 @pytest.fixture(scope="module")
 def sources() -> dict[Translated, SourceModule]:
     """What is translated and the module of all means, read at once: to read takes most of the time."""
-    return type_modules([*LISTING, EVERY], ROOT)
+    return read_typed_modules([*LISTING, EVERY], ROOT)
 
 
 def test_the_runtimes_hold_what_is_translated_today(sources: dict[Translated, SourceModule]) -> None:
     """Else: `.venv/bin/python -m metagraph.engines.translation`."""
-    made = print_modules({one: module_of(sources[one]) for one in LISTING}, NATIVE)
+    made = print_modules({one: convert_module(sources[one]) for one in LISTING}, NATIVE)
     assert not [path for path, text in made.items() if (RUNTIMES / path).read_text(encoding="utf-8") != text]
-    every = [*(RUNTIMES / path for path in made), *gesture_word_lists()]
+    every = [*(RUNTIMES / path for path in made), *make_gesture_word_modules()]
     assert ATTRIBUTES.read_text() == mark_generated(every), "who reads a change need not read these"
 
 
@@ -49,7 +49,9 @@ def means(sources: dict[Translated, SourceModule]) -> dict[str, str]:
     one, source = EVERY, sources[EVERY]
     names = {n for d in source.tree.defs for n in [getattr(d, "name", "")] if n} | {"STEP", "WORDS"}
     source.only = tuple(names - set(wanted))
-    return {Path(path).suffix: text for path, text in print_modules({one: module_of(source)}, {}).items()}
+    return {
+        Path(path).suffix: text for path, text in print_modules({one: convert_module(source)}, {}).items()
+    }
 
 
 def test_javascript_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
@@ -166,7 +168,7 @@ def untranslatable(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Source
     for name, code in modules.items():
         quiet = "def f(x):" in code or "f() -> list[int]" in code
         (folder / f"{name}.py").write_text("# mypy: ignore-errors\n" * quiet + code + "\n")
-    sources = type_modules([Translated(name, name) for name in modules], folder)
+    sources = read_typed_modules([Translated(name, name) for name in modules], folder)
     return {one.module: source for one, source in sources.items()}
 
 
@@ -176,7 +178,7 @@ def test_what_is_outside_the_subset_is_refused_with_its_place_and_a_remedy(
 ) -> None:
     for n, (code, words) in enumerate(REFUSED.items()):
         with pytest.raises(SubsetError) as told:
-            module_of(untranslatable[f"m{n}"])
+            convert_module(untranslatable[f"m{n}"])
         found = str(told.value)
         assert words in found, (code, found)
         assert f"m{n}.py, line " in found and "; " in found
@@ -191,7 +193,7 @@ def test_what_no_language_knows_is_told(untranslatable: dict[str, SourceModule])
     assert wrong.keys() == UNKNOWN.keys()
     for name, words in wrong.items():
         with pytest.raises(TranslationError, match=words):
-            print_modules({Translated(name, name): module_of(untranslatable[name])}, {})
+            print_modules({Translated(name, name): convert_module(untranslatable[name])}, {})
 
 
 @pytest.mark.nightly

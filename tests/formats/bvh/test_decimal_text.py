@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.formats.bvh import decimal_text
-from metagraph.formats.bvh.decimal_text import decimals
+from metagraph.formats.bvh.decimal_text import read_decimals
 
 HEAD = b"MOTION\nFrame Time: 0.1\n"
 
 
 def read(text: bytes) -> list[float]:
-    return decimals(HEAD + text, len(HEAD)).tolist()
+    return read_decimals(HEAD + text, len(HEAD)).tolist()
 
 
 READ = (

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats.clips import read_clips
-from metagraph.motion.roles import find_roles, missing_roles
+from metagraph.motion.roles import find_missing_roles, find_roles
 
 Offset = tuple[float, float, float]
 Figure = dict[str, tuple[str, Offset]]  # joint -> its parent, "" for none, and its offset, centimetres
@@ -102,7 +102,7 @@ def test_each_suit_gives_a_person_of_its_size_with_all_parts(
 ) -> None:
     (clip,) = read_clips(write(tmp_path / "a.bvh", joints, places, time))
     roles = find_roles(clip.skeleton)
-    assert clip.fps == rate and not missing_roles(roles)
+    assert clip.fps == rate and not find_missing_roles(roles)
     assert clip.translated == (0,)  # places that only repeat the offset move nothing
     names = clip.skeleton.names
     assert (names[roles["left_hand"]], names[roles["left_foot"]]) == (hand, foot)

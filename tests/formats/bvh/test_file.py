@@ -13,7 +13,7 @@ from metagraph.errors import FileError
 from metagraph.formats.bvh.file import read_bvh, write_bvh
 from metagraph.formats.takes import FRAME_TIME, FROM_OFFSET
 from metagraph.motion import rotation
-from metagraph.motion.adopt import difference
+from metagraph.motion.adopt import describe_difference
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
@@ -219,7 +219,7 @@ def test_every_channel_order_turns_the_first_named_axis_outermost(path: Path, or
     names = " ".join(f"{axis}rotation" for axis in order)
     clip = read(path, figure(rows="0 90 0 0 0 0  10 200 -30\n" * 2, child=f"3 {names}"))
     expected = rotation.from_euler(np.radians([10, 200, -30]), order)
-    assert rotation.angle_between(clip.rotations[0, 1].astype(float), expected) < 1e-6
+    assert rotation.measure_angle_between(clip.rotations[0, 1].astype(float), expected) < 1e-6
 
 
 @pytest.mark.parametrize(
@@ -242,7 +242,7 @@ def test_any_number_of_channels_in_any_arrangement(
 ) -> None:
     clip = read(path, figure(rows=f"0 90 0 0 0 0 {values}\n" * 2, child=child))
     expected = rotation.from_euler(np.radians(angles), "ZXY")
-    assert rotation.angle_between(clip.rotations[0, 1].astype(float), expected) < 1e-6
+    assert rotation.measure_angle_between(clip.rotations[0, 1].astype(float), expected) < 1e-6
     if "position" in child:
         assert clip.translated == (0, 1)
         np.testing.assert_allclose(clip.translations[0, 1], [0.01, 0.02, 0.03], atol=1e-7)
@@ -277,7 +277,10 @@ def test_numbers_of_many_digits_keep_their_precision(path: Path) -> None:
     )
     assert clip.root[0, 0] == np.float32(0.12345678901234568)
     assert (
-        abs(np.degrees(rotation.angle_between(clip.rotations[0, 1], rotation.IDENTITY)) - 12.345678901) < 1e-4
+        abs(
+            np.degrees(rotation.measure_angle_between(clip.rotations[0, 1], rotation.IDENTITY)) - 12.345678901
+        )
+        < 1e-4
     )
 
 
@@ -347,7 +350,7 @@ def person(tmp_path: Path, metres: float, spin: np.ndarray | None = None) -> Pat
     scaled = Skeleton(
         skeleton.names, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations / (metres * 100)
     )
-    rotations = rotation.identity_rotations((3, len(skeleton))).astype(np.float32)
+    rotations = rotation.make_identity_rotations((3, len(skeleton))).astype(np.float32)
     root = np.tile(scaled.rest_translations[0], (3, 1))
     if spin is not None:
         rotations[:, 0] = spin
@@ -396,7 +399,7 @@ def test_a_person_lying_down_is_left_lying(tmp_path: Path) -> None:
 
 def test_a_bind_pose_left_on_the_first_frame_is_dropped_with_a_note(tmp_path: Path) -> None:
     skeleton = mannequin_skeleton()
-    rotations = rotation.identity_rotations((30, len(skeleton))).astype(np.float32)
+    rotations = rotation.make_identity_rotations((30, len(skeleton))).astype(np.float32)
     arm = skeleton.index("LeftUpperArm")
     rotations[1:, arm] = rotation.from_axis_angle(np.tile([0, 0, 1.0], (29, 1)), -0.7 + 0.01 * np.arange(29))
     path = tmp_path / "walk.bvh"
@@ -417,22 +420,24 @@ def test_written_and_read_back_the_motion_is_the_same(path: Path) -> None:
     rotations = rotation.normalize(rng.normal(size=(20, len(skeleton), 4))).astype(np.float32)
     translated = (0, 5, 9)
     translations = skeleton.rest_translations[list(translated)] + rng.normal(size=(20, 3, 3))
-    clip = Clip("wild", skeleton, 24, rotation.continuous(rotations), translations, translated)
+    clip = Clip("wild", skeleton, 24, rotation.make_continuous(rotations), translations, translated)
     write_bvh(clip, path)
     back = read_bvh(path, 0.01)
     assert back.fps == 24 and back.frames == 20
     mine, theirs = skeleton.globals(clip.poses()), back.skeleton.globals(back.poses())
     order = [back.skeleton.index(name) for name in skeleton.names]
     np.testing.assert_allclose(theirs[1][:, order], mine[1], atol=2e-5)
-    assert rotation.angle_between(theirs[0][:, order].astype(float), mine[0].astype(float)).max() < 1e-5
+    assert (
+        rotation.measure_angle_between(theirs[0][:, order].astype(float), mine[0].astype(float)).max() < 1e-5
+    )
 
 
 def test_writing_into_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    skeleton = Skeleton(("a",), np.array([-1]), rotation.identity_rotations((1,)), np.zeros((1, 3)))
+    skeleton = Skeleton(("a",), np.array([-1]), rotation.make_identity_rotations((1,)), np.zeros((1, 3)))
     with pytest.raises(FileError, match="cannot be written"):
         write_bvh(
-            Clip("c", skeleton, 30, rotation.identity_rotations((1, 1)), np.zeros((1, 1, 3))),
+            Clip("c", skeleton, 30, rotation.make_identity_rotations((1, 1)), np.zeros((1, 1, 3))),
             tmp_path / "file" / "clip.bvh",
         )
 
@@ -517,4 +522,4 @@ def test_real_files_read_as_people_of_human_size(shared_data: Path) -> None:
 def test_clips_of_one_actor_have_skeletons_that_go_together(shared_data: Path) -> None:
     skeletons = [read_bvh(f).skeleton for f in sorted((shared_data / "bandai-namco-1").glob("*_bye_*.bvh"))]
     assert len({s.fingerprint for s in skeletons}) <= 2  # one bone differs by 0.4 mm in some files
-    assert all(difference(s, skeletons[0]) is None for s in skeletons)
+    assert all(describe_difference(s, skeletons[0]) is None for s in skeletons)

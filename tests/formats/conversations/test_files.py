@@ -22,7 +22,7 @@ from metagraph.formats.transcripts.reader import read_transcript
 from metagraph.graph.conversation.edits import add_conversation
 from metagraph.graph.conversation.model import Segment, Side
 from metagraph.graph.model import Project
-from metagraph.speech.addressing import turns_of
+from metagraph.speech.addressing import list_addressed_turns
 from sample_clips.make import three as maker
 from sample_clips.make.talk import MissingError
 from tests.speech import group, talk
@@ -436,7 +436,7 @@ def test_three_who_speak_a_language_each_are_read_each_in_theirs_and_name_each_o
     assert [(s.name, s.language) for s in made.sides] == [("Ann", "en"), ("Uwe", "de"), ("Zoé", "fr")]
     kinds = [{s.text for s in side.segments if s.kind == "response"} for side in made.sides]
     assert kinds == [{"great"}, {"genau"}, {"d'accord", "oui"}]
-    assert [(t.side, t.to) for t in turns_of(made)] == [(0, 1), (1, 0), (2, 0), (0, 2), (2, 0)]
+    assert [(t.side, t.to) for t in list_addressed_turns(made)] == [(0, 1), (1, 0), (2, 0), (0, 2), (2, 0)]
 
 
 @pytest.mark.skipif(not SPEECH.is_dir(), reason="the recordings of praatIO are not here")

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from metagraph.formats.conversations.languages import Speaking, languages_of
+from metagraph.formats.conversations.languages import Speaking, choose_languages
 from metagraph.formats.conversations.words import TranscribedSide
 from metagraph.graph.conversation.model import Segment, Word
 from tests.speech.dialogues import OTHERS, TALKS, written
@@ -26,7 +26,7 @@ def read(
     a: TranscribedSide, b: TranscribedSide, speaking: Speaking | None = None
 ) -> tuple[list[str | None], list[str]]:
     notes: list[str] = []
-    found = languages_of(notes, ["Ann", "Ben"], [a, b], speaking or Speaking())
+    found = choose_languages(notes, ["Ann", "Ben"], [a, b], speaking or Speaking())
     return [one.code if one is not None else None for one in found], notes
 
 

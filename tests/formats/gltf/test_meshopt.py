@@ -14,13 +14,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from metagraph.formats.gltf.meshopt import MeshoptError, block_elements, unpack_buffer
+from metagraph.formats.gltf.meshopt import MeshoptError, count_block_elements, unpack_buffer
 from metagraph.formats.gltf.meshopt_encoding import (
-    exponential,
-    octahedral,
+    encode_exponential,
+    encode_octahedral,
+    encode_quaternions,
     pack_attributes,
     pack_indices,
-    quaternions,
 )
 
 REFERENCE: dict[str, Any] = json.loads(Path(__file__).with_name("meshopt_reference.json").read_bytes())
@@ -75,7 +75,7 @@ def test_indices_come_back_exactly(indices: list[int]) -> None:
 
 
 def test_blocks_hold_as_many_elements_as_fit() -> None:
-    assert [block_elements(stride) for stride in (4, 32, 64, 256)] == [256, 256, 128, 32]
+    assert [count_block_elements(stride) for stride in (4, 32, 64, 256)] == [256, 256, 128, 32]
 
 
 def unit(width: int) -> NDArray[np.float64]:
@@ -89,7 +89,7 @@ def unit(width: int) -> NDArray[np.float64]:
 def test_turns_are_as_near_as_their_bits_allow(bits: int, off: float) -> None:
     wanted = unit(4)
     raw = unpack_buffer(
-        pack_attributes(quaternions(wanted, bits), 8), len(wanted), 8, "ATTRIBUTES", "QUATERNION"
+        pack_attributes(encode_quaternions(wanted, bits), 8), len(wanted), 8, "ATTRIBUTES", "QUATERNION"
     )
     found = np.frombuffer(raw, "<i2").reshape(-1, 4) / 32767
     apart = np.minimum(np.linalg.norm(found - wanted, axis=1), np.linalg.norm(found + wanted, axis=1))
@@ -98,7 +98,9 @@ def test_turns_are_as_near_as_their_bits_allow(bits: int, off: float) -> None:
 
 def test_normals_are_within_a_degree_or_so() -> None:
     wanted = unit(3)
-    raw = unpack_buffer(pack_attributes(octahedral(wanted, 8), 4), len(wanted), 4, "ATTRIBUTES", "OCTAHEDRAL")
+    raw = unpack_buffer(
+        pack_attributes(encode_octahedral(wanted, 8), 4), len(wanted), 4, "ATTRIBUTES", "OCTAHEDRAL"
+    )
     found = np.frombuffer(raw, "<i1").reshape(-1, 4)[:, :3].astype(float)
     assert np.abs(np.linalg.norm(found, axis=1) / 127 - 1).max() < 0.01
     cosines = (found * wanted).sum(1) / np.linalg.norm(found, axis=1)
@@ -108,7 +110,7 @@ def test_normals_are_within_a_degree_or_so() -> None:
 def test_floats_are_whole_numbers_of_their_exponent_and_large_ones_keep_their_digits() -> None:
     wanted = np.array([0, -0.0, 1, -1, 1e-9, 0.3, -2.25, 300, 1e6, -3.3e8, 3e20])
     raw = unpack_buffer(
-        pack_attributes(exponential(wanted, -15), 4), len(wanted), 4, "ATTRIBUTES", "EXPONENTIAL"
+        pack_attributes(encode_exponential(wanted, -15), 4), len(wanted), 4, "ATTRIBUTES", "EXPONENTIAL"
     )
     found = np.frombuffer(raw, "<f4")
     assert (np.abs(found - wanted) <= np.maximum(2.0**-16, np.abs(wanted) * 2.0**-22)).all()

@@ -159,7 +159,7 @@ def test_normalised_integers_are_rotations(tmp_path: Path, dtype: str, scale: in
     output = scene.array(np.round(np.array(TURN) * scale), dtype, normalized=True)
     scene.animate("bend", (1, "rotation", [0, 1], output, "LINEAR"))
     clip = read_one(scene, tmp_path)
-    assert rotation.angle_between(clip.rotations[-1, 1].astype(float), TURN[1]) < 2 / scale
+    assert rotation.measure_angle_between(clip.rotations[-1, 1].astype(float), TURN[1]) < 2 / scale
 
 
 def test_sparse_accessors_replace_what_they_name_even_without_a_base(tmp_path: Path) -> None:
@@ -215,7 +215,10 @@ def test_strides_and_offsets_within_a_view_are_followed(tmp_path: Path) -> None:
         {"bufferView": view, "byteOffset": 4, "componentType": 5126, "count": 2, "type": "VEC4"}
     )
     scene.animate("bend", (1, "rotation", [0, 1], len(scene.json["accessors"]) - 1, "LINEAR"))
-    assert rotation.angle_between(read_one(scene, tmp_path).rotations[-1, 1].astype(float), TURN[1]) < 1e-6
+    assert (
+        rotation.measure_angle_between(read_one(scene, tmp_path).rotations[-1, 1].astype(float), TURN[1])
+        < 1e-6
+    )
 
 
 # --- names, rates, several animations
@@ -285,7 +288,7 @@ def test_scale_and_turn_of_an_armature_are_folded_into_the_top_joint(tmp_path: P
     )
     np.testing.assert_allclose(clip.root[[0, -1]], [[0, 1, 0], [0, 2, 0]], atol=1e-6)
     expected = rotation.multiply(np.array([-QUARTER, 0, 0, QUARTER]), np.array(TURN[1]))
-    assert rotation.angle_between(clip.rotations[-1, 0].astype(float), expected) < 1e-6
+    assert rotation.measure_angle_between(clip.rotations[-1, 0].astype(float), expected) < 1e-6
 
 
 def test_an_armature_that_moves_becomes_a_joint(tmp_path: Path) -> None:
@@ -378,7 +381,7 @@ def test_nodes_with_matrices_are_taken_apart(tmp_path: Path) -> None:
     scene = Scene(nodes)
     scene.animate("nod", (2, "rotation", [0, 1], TURN, "LINEAR"))
     clip = read_one(scene, tmp_path)
-    assert rotation.angle_between(clip.skeleton.rest_rotations[1], TURN[1]) < 1e-6
+    assert rotation.measure_angle_between(clip.skeleton.rest_rotations[1], TURN[1]) < 1e-6
 
 
 def test_a_bind_pose_key_at_the_start_is_dropped_only_when_plain(tmp_path: Path) -> None:
@@ -693,7 +696,7 @@ def test_the_wrong_number_of_values_is_refused(tmp_path: Path) -> None:
 def moving(frames: int = 40, fps: float = 24.0) -> list[Clip]:
     skeleton = mannequin_skeleton()
     t = np.arange(frames) / fps
-    wave = rotation.identity_rotations((frames, len(skeleton)))
+    wave = rotation.make_identity_rotations((frames, len(skeleton)))
     arm = skeleton.index("RightUpperArm")
     wave[:, arm] = rotation.from_axis_angle(np.tile([0, 0, 1.0], (frames, 1)), np.sin(5 * t))
     wave[:, 5] = rotation.from_axis_angle(np.array([0, 1.0, 0]), np.array(0.3))
@@ -702,7 +705,7 @@ def moving(frames: int = 40, fps: float = 24.0) -> list[Clip]:
     still = np.tile(skeleton.rest_translations[:1], (frames, 1, 1))
     return [
         Clip("wave", skeleton, fps, wave, np.stack([root, jaw], 1), (0, 6)),
-        Clip("still", skeleton, fps, rotation.identity_rotations((frames, len(skeleton))), still),
+        Clip("still", skeleton, fps, rotation.make_identity_rotations((frames, len(skeleton))), still),
         Clip("pose", skeleton, fps, wave[:1], still[:1]),
     ]
 
@@ -757,7 +760,7 @@ def test_a_written_character_reads_back_with_its_skin_morphs_and_materials(tmp_p
         "smile",
         skeleton,
         30,
-        rotation.identity_rotations((9, len(skeleton))),
+        rotation.make_identity_rotations((9, len(skeleton))),
         still,
         morphs=("smile",),
         weights=weights,

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.formats.project.canonical_text import canonical
+from metagraph.formats.project.canonical_text import read_canonical
 from metagraph.formats.project.text import TextError, parse_yaml, read_text_data, to_text
 from tests.formats.project.test_text import values
 from tests.projects import words
@@ -79,14 +79,14 @@ def altered(text: str, r: random.Random) -> str:
 
 @pytest.mark.parametrize("letter", ["\x00", "\x0b", "\x1f", "\x7f", "\ufeff"])
 def test_what_no_yaml_may_hold_is_left_to_it_to_refuse_in_comments_too(letter: str) -> None:
-    assert canonical(f"#{letter} A project\nmetagraph: 1\n") is None
+    assert read_canonical(f"#{letter} A project\nmetagraph: 1\n") is None
 
 
 @pytest.mark.nightly
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(words, values, min_size=1, max_size=4))
 def test_data_comes_back_from_its_text_or_is_left_to_yaml(data: dict[str, Any]) -> None:
-    assert canonical(to_text(data)) in (data, None)
+    assert read_canonical(to_text(data)) in (data, None)
 
 
 @settings(max_examples=50, deadline=None)
@@ -95,7 +95,7 @@ def test_whatever_is_changed_by_hand_is_read_as_yaml_reads_it_or_left_to_it(seed
     r = random.Random(seed)
     for _ in range(20):
         text = altered(TEXT, r)
-        found = canonical(text)
+        found = read_canonical(text)
         if found is not None:
             assert repr(found) == repr(parse_yaml(text)[0]), text
 
@@ -105,7 +105,7 @@ def test_whatever_is_changed_by_hand_is_read_as_yaml_reads_it_or_left_to_it(seed
 )
 def test_projects_are_canonical(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    found = canonical(text)
+    found = read_canonical(text)
     assert found is not None and found == parse_yaml(text)[0]
 
 
@@ -135,12 +135,12 @@ def test_projects_are_canonical(path: Path) -> None:
     ids=lambda text: ascii(text[:30]),
 )
 def test_what_is_said_otherwise_is_left_to_yaml(text: str) -> None:
-    assert canonical(text) is None
+    assert read_canonical(text) is None
 
 
 def test_the_line_of_a_field_is_known_where_it_is_asked_for() -> None:
     data, lines = read_text_data(TEXT)
-    assert data == canonical(TEXT) and lines()["layers.arms.deep"] == 16
+    assert data == read_canonical(TEXT) and lines()["layers.arms.deep"] == 16
 
 
 def test_a_text_that_is_neither_is_told_of() -> None:

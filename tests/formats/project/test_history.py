@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.project.history import history, with_motion
+from metagraph.formats.project.history import list_undo_steps, with_motion
 from metagraph.formats.project.journal import Journal
-from metagraph.formats.project.journal_records import frame_record
+from metagraph.formats.project.journal_records import encode_record
 from metagraph.formats.recovery import Left, read_journal
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -49,7 +49,7 @@ def test_every_state_on_the_way_is_there_again(states: list[Project]) -> None:
             journal.close()
             return
         left = left_by(journal)
-        steps = history(left)
+        steps = list_undo_steps(left)
         assert [s.text for s in steps] == [f"edit {n}" for n in range(len(states) - 1)]
         for step, (before, after) in zip(steps, pairwise(states), strict=True):
             assert step.before == from_data(to_data(before)) and step.after == from_data(to_data(after))
@@ -66,7 +66,7 @@ def test_what_a_step_left_alone_is_shared(tmp_path: Path) -> None:
     journal = begun(tmp_path, states[0])
     for before, after in pairwise(states):
         journal.edit(before, after, "rename")
-    one, two = history(left_by(journal))
+    one, two = list_undo_steps(left_by(journal))
     assert one.before.graphs is two.after.graphs
     assert one.before.clips["c2"] is two.after.clips["c2"]
 
@@ -82,7 +82,7 @@ def test_a_run_of_merged_edits_is_one_step_and_what_was_undone_none(tmp_path: Pa
     journal.edit(a, c, "drag", "redone")
     journal.edit(c, e, "last")
     left = left_by(journal)
-    steps = history(left)
+    steps = list_undo_steps(left)
     assert [s.text for s in steps] == ["drag", "last"]
     assert (to_data(steps[0].before), to_data(steps[0].after)) == (to_data(a), to_data(c))
     assert steps[-1].after == left.project
@@ -100,7 +100,7 @@ def test_undoing_what_was_saved_is_a_step_that_can_be_undone(tmp_path: Path) -> 
     a, b = numbered(2)
     journal = begun(tmp_path, b)  # saved after a became b
     journal.edit(b, a, "rename", "undone")
-    (step,) = history(left_by(journal))
+    (step,) = list_undo_steps(left_by(journal))
     assert step.text == "Undo rename" and to_data(step.before) == to_data(b)
 
 
@@ -108,7 +108,7 @@ def test_records_of_a_time_without_words_are_steps_too(tmp_path: Path) -> None:
     a, b = numbered(2)
     journal = begun(tmp_path, a)
     journal.edit(a, b)
-    (step,) = history(left_by(journal))
+    (step,) = list_undo_steps(left_by(journal))
     assert step.text == "Recovered edit" and to_data(step.after) == to_data(b)
 
 
@@ -117,7 +117,7 @@ def test_edits_that_end_where_they_began_are_no_step(tmp_path: Path) -> None:
     journal = begun(tmp_path, a)
     journal.edit(a, b, "rename")
     journal.edit(b, a, "rename", "undone")
-    assert history(left_by(journal)) == ()
+    assert list_undo_steps(left_by(journal)) == ()
 
 
 def test_motion_comes_back_to_clips_that_were_removed_or_renamed_on_the_way(tmp_path: Path) -> None:
@@ -135,7 +135,7 @@ def test_motion_comes_back_to_clips_that_were_removed_or_renamed_on_the_way(tmp_
         clips = {i: replace(e, motion=files[e.path].renamed(e.name)) for i, e in project.clips.items()}
         return replace(project, clips=clips)
 
-    steps = with_motion(history(left), left.project, load(left.project), load)
+    steps = with_motion(list_undo_steps(left), left.project, load(left.project), load)
     assert asked == [["a.glb"], ["b.glb"]], "what is read already is not read again"
     for step in steps:
         for project in (step.before, step.after):
@@ -151,10 +151,10 @@ def test_words_that_are_none_do_no_harm(tmp_path: Path, garbage: dict[str, objec
     journal.edit(a, b, "rename")
     journal.close()
     with (tmp_path / "j").open("ab") as file:
-        file.write(frame_record({"name": "other", **garbage}, 3))
+        file.write(encode_record({"name": "other", **garbage}, 3))
     found = read_journal(tmp_path / "j", None)
     assert found is not None and found.project.name == "other"
-    assert history(found)[-1].after == found.project
+    assert list_undo_steps(found)[-1].after == found.project
 
 
 @settings(max_examples=40, deadline=None)
@@ -170,4 +170,4 @@ def test_from_any_state_to_any_other(states: list[Project], data: st.DataObject)
         left = read_journal(journal.path, None)
         if to_data(a) != to_data(b):
             assert left is not None
-            assert [s.text for s in history(left)] == ["jump", "back", "again"]
+            assert [s.text for s in list_undo_steps(left)] == ["jump", "back", "again"]

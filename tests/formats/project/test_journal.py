@@ -21,12 +21,18 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.formats.locking import new_owner
+from metagraph.formats.locking import make_owner
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.project.journal import Journal, find_changes, journal_path
+from metagraph.formats.project.journal import Journal, find_changes, make_journal_path
 from metagraph.formats.project.replay import apply_change
 from metagraph.formats.recovery import find_left_journals, read_journal, recover
-from metagraph.formats.store import SUFFIX, content_digest, encode_project, file_digest, save_project
+from metagraph.formats.store import (
+    SUFFIX,
+    compute_content_digest,
+    compute_file_digest,
+    encode_project,
+    save_project,
+)
 from metagraph.graph import edits
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word
@@ -148,7 +154,7 @@ def same(project: Project, other: Project) -> bool:
 
 
 def test_every_finished_edit_is_there_at_once(saved: Path) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     journal = Journal(path, saved)
     project = large(5)
     assert recover(path, saved) is None
@@ -166,7 +172,7 @@ def test_every_finished_edit_is_there_at_once(saved: Path) -> None:
 
 
 def test_nothing_is_written_before_the_first_edit_or_for_no_change(saved: Path) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     journal = Journal(path, saved)
     journal.edit(large(5), large(5).with_graph(large(5).graphs["arms"]))
     assert not path.exists()
@@ -181,7 +187,7 @@ def test_a_project_never_saved_is_recovered_from_the_journal_alone(tmp_path: Pat
 
 
 def test_undone_edits_are_recovered_undone(saved: Path) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     a = large(5)
     b = edits.remove_actions(a, ["a23", "a24"])
     journal = Journal(path, saved)
@@ -196,7 +202,7 @@ def test_undone_edits_are_recovered_undone(saved: Path) -> None:
 
 @pytest.mark.nightly
 def test_a_torn_file_gives_every_edit_before_the_tear(saved: Path) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     states = written(saved, path, 6)
     whole = path.read_bytes()
     ends = [found.start() for found in re.finditer(rb"\n\n", whole)][2:]  # of the edits' records
@@ -223,7 +229,7 @@ def test_a_torn_file_gives_every_edit_before_the_tear(saved: Path) -> None:
     ],
 )
 def test_garbage_behind_good_edits_takes_nothing_of_them_away(saved: Path, tail: bytes) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     states = written(saved, path, 3)
     path.write_bytes(path.read_bytes() + tail + b'{"name": "after the garbage"}\n')
     found = recover(path, saved)
@@ -234,14 +240,14 @@ def test_garbage_behind_good_edits_takes_nothing_of_them_away(saved: Path, tail:
 
 @pytest.mark.parametrize("content", [b"", b"\n", b'{"sav'])
 def test_a_file_with_no_edit_is_nothing_to_recover(saved: Path, content: bytes) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     path.write_bytes(content)
     assert recover(path, saved) is None
 
 
 @pytest.mark.parametrize("content", [b"\x00\n\x00\n", b"{}\n{}\n", b"[]\n{}\n", b"x", b"{}\n"])
 def test_a_journal_nobody_can_read_is_kept_and_told(saved: Path, content: bytes) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     path.write_bytes(content)
     with pytest.raises(FileError, match=r"damaged.*kept"):
         recover(path, saved)
@@ -249,7 +255,7 @@ def test_a_journal_nobody_can_read_is_kept_and_told(saved: Path, content: bytes)
 
 
 def test_a_journal_of_which_no_edit_is_good_is_kept_and_told(saved: Path) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     written(saved, path, 0)
     journal = Journal(path, saved)
     journal.begin()
@@ -260,7 +266,7 @@ def test_a_journal_of_which_no_edit_is_good_is_kept_and_told(saved: Path) -> Non
 
 
 def test_a_journal_of_another_state_of_the_file_is_refused_and_kept(saved: Path) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     written(saved, path, 3)
     content = path.read_bytes()
     save_project(edits.rename_project(large(5), "other"), saved)
@@ -270,7 +276,7 @@ def test_a_journal_of_another_state_of_the_file_is_refused_and_kept(saved: Path)
 
 
 def test_a_journal_knows_the_file_as_it_was_when_the_edits_began(saved: Path) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     journal = Journal(path, saved)
     save_project(edits.rename_project(large(5), "changed by somebody else"), saved)
     journal.edit(large(5), edits.rename_clip(large(5), "c1", "x"))
@@ -305,7 +311,7 @@ def kept() -> Iterator[Callable[..., Journal]]:
 def test_edits_made_while_saving_are_known_whichever_file_a_crash_leaves(
     saved: Path, kept: Callable[..., Journal], written: bool
 ) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     states = [large(5)]
     for n in range(5):
         states.append(edits.rename_clip(states[-1], "c1", f"name {n}"))
@@ -315,7 +321,7 @@ def test_edits_made_while_saving_are_known_whichever_file_a_crash_leaves(
     mark = journal.mark()
     assert mark is not None
     journal.edit(states[2], states[3])  # while the thread puts the file into words
-    journal.settle(mark, content_digest(encode_project(states[2], saved)))
+    journal.settle(mark, compute_content_digest(encode_project(states[2], saved)))
     journal.edit(states[3], states[4])  # while it writes
     if written:
         save_project(states[2], saved)
@@ -327,30 +333,30 @@ def test_edits_made_while_saving_are_known_whichever_file_a_crash_leaves(
 
 
 def test_a_journal_of_which_all_was_saved_offers_nothing(saved: Path, kept: Callable[..., Journal]) -> None:
-    journal, after = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "x")
+    journal, after = kept(make_journal_path(saved), saved), edits.rename_clip(large(5), "c1", "x")
     journal.edit(large(5), after)
     mark = journal.mark()
     assert mark is not None
-    journal.settle(mark, content_digest(encode_project(after, saved)))
+    journal.settle(mark, compute_content_digest(encode_project(after, saved)))
     save_project(after, saved)
     assert recover(journal.path, saved) is None
 
 
 def test_nothing_is_marked_before_the_first_edit(saved: Path, kept: Callable[..., Journal]) -> None:
-    journal = kept(journal_path(saved), saved)
+    journal = kept(make_journal_path(saved), saved)
     assert journal.mark() is None
     assert not journal.path.exists()
 
 
 def test_the_last_of_several_savings_counts(saved: Path, kept: Callable[..., Journal]) -> None:
-    journal, states = kept(journal_path(saved), saved), [large(5)]
+    journal, states = kept(make_journal_path(saved), saved), [large(5)]
     for n in range(6):
         states.append(edits.rename_clip(states[-1], "c1", f"name {n}"))
         journal.edit(states[-2], states[-1])
         if n in (1, 3):
             mark = journal.mark()
             assert mark is not None
-            journal.settle(mark, content_digest(encode_project(states[-1], saved)))
+            journal.settle(mark, compute_content_digest(encode_project(states[-1], saved)))
             save_project(states[-1], saved)
     found = recover(journal.path, saved)
     assert found is not None
@@ -360,7 +366,7 @@ def test_the_last_of_several_savings_counts(saved: Path, kept: Callable[..., Jou
 def test_edits_that_were_recovered_and_killed_before_the_next_are_there_still(
     saved: Path, kept: Callable[..., Journal]
 ) -> None:
-    journal, project = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "recovered")
+    journal, project = kept(make_journal_path(saved), saved), edits.rename_clip(large(5), "c1", "recovered")
     journal.begin(project, unsaved=3)
     found = recover(journal.path, saved)
     assert found is not None
@@ -370,7 +376,7 @@ def test_edits_that_were_recovered_and_killed_before_the_next_are_there_still(
 def test_a_project_in_a_journal_without_an_edit_is_nothing_to_recover(
     saved: Path, kept: Callable[..., Journal]
 ) -> None:
-    journal = kept(journal_path(saved), saved)
+    journal = kept(make_journal_path(saved), saved)
     journal.begin(large(5))
     assert recover(journal.path, saved) is None
 
@@ -382,10 +388,10 @@ def test_a_journal_that_holds_its_project_is_read_though_the_file_has_changed(
     saved: Path, kept: Callable[..., Journal]
 ) -> None:
     journal, after = (
-        kept(journal_path(saved, "ab"), saved, new_owner()),
+        kept(make_journal_path(saved, "ab"), saved, make_owner()),
         edits.rename_clip(large(5), "c1", "mine"),
     )
-    before = file_digest(saved)
+    before = compute_file_digest(saved)
     journal.begin(large(5))
     journal.edit(large(5), after)
     save_project(edits.rename_project(large(5), "theirs"), saved)
@@ -402,7 +408,7 @@ def test_the_journal_of_a_sitting_that_goes_on_is_not_offered_and_those_of_dead_
 ) -> None:
     after, paths = edits.rename_clip(large(5), "c1", "x"), []
     for sitting in ("a1", "b2", ""):
-        journal = kept(journal_path(saved, sitting), saved, new_owner() if sitting else None)
+        journal = kept(make_journal_path(saved, sitting), saved, make_owner() if sitting else None)
         journal.edit(large(5), after)
         journal.close()
         paths.append(journal.path)
@@ -417,7 +423,7 @@ def test_the_journals_of_other_projects_beside_it_are_not_its_own(
     saved: Path, kept: Callable[..., Journal]
 ) -> None:
     for name in (f"a{saved.name}", f"{saved.name}.copy", "x"):
-        journal = kept(journal_path(saved.with_name(name), "ab"), None)
+        journal = kept(make_journal_path(saved.with_name(name), "ab"), None)
         journal.begin(large(1), 1)
         journal.close()
     assert find_left_journals(saved) == []
@@ -427,7 +433,7 @@ def test_the_journals_of_other_projects_beside_it_are_not_its_own(
 def test_beginning_anew_never_leaves_less_than_before(
     saved: Path, kept: Callable[..., Journal], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    journal, after = kept(journal_path(saved), saved), edits.rename_clip(large(5), "c1", "x")
+    journal, after = kept(make_journal_path(saved), saved), edits.rename_clip(large(5), "c1", "x")
     journal.edit(large(5), after)
 
     def stop(*args: Any) -> None:
@@ -453,7 +459,7 @@ def test_a_folder_that_cannot_be_written_is_told_in_words(tmp_path: Path) -> Non
 def test_a_journal_with_bytes_changed_gives_a_project_or_an_error_in_words(
     saved: Path, chance: random.Random
 ) -> None:
-    path = journal_path(saved)
+    path = make_journal_path(saved)
     written(saved, path, 3)
     content = bytearray(path.read_bytes())
     for _ in range(chance.randint(1, 4)):
@@ -468,13 +474,13 @@ def test_a_journal_with_bytes_changed_gives_a_project_or_an_error_in_words(
 CHILD = """
 import sys
 from pathlib import Path
-from metagraph.formats.project.journal import Journal, journal_path
+from metagraph.formats.project.journal import Journal, make_journal_path
 from metagraph.formats.store import read_project
 from metagraph.graph import edits
 
 saved = Path(sys.argv[1])
 project = read_project(saved)
-journal = Journal(journal_path(saved), saved)
+journal = Journal(make_journal_path(saved), saved)
 n = 0
 while True:
     after = edits.rename_clip(project, "c1", f"name {n}")
@@ -497,7 +503,7 @@ def test_a_process_killed_between_edits_loses_none_that_was_finished(saved: Path
         os.kill(child.pid, signal.SIGKILL)
         rest = child.stdout.read().split()
     finished = int(rest[-1]) if rest else finished
-    found = recover(journal_path(saved), saved)
+    found = recover(make_journal_path(saved), saved)
     assert found is not None
     assert found[1] >= finished + 1  # at most one more, whose number was not printed yet
     assert found[0].clips["c1"].name == f"name {found[1] - 1}"

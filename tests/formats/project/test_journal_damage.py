@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.project.journal import Journal
-from metagraph.formats.project.journal_records import LostEdit, frame_record, parse_record, read_records
+from metagraph.formats.project.journal_records import LostEdit, encode_record, parse_record, read_records
 from metagraph.formats.recovery import DAMAGED, read_journal, retire
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
@@ -67,7 +67,7 @@ def test_a_journal_full_of_zeros_at_its_end_says_so(saved: Path) -> None:
 def test_an_edit_that_does_not_fit_without_a_lost_one_is_told(saved: Path) -> None:
     path = write(saved, ["a"])
     content = (
-        path.read_bytes() + frame_record({"clips": 3, "step": "odd"}, 3) + frame_record({"name": "b"}, 4)
+        path.read_bytes() + encode_record({"clips": 3, "step": "odd"}, 3) + encode_record({"name": "b"}, 4)
     )
     path.write_bytes(content)
     found = read_journal(path, saved)
@@ -124,7 +124,7 @@ def test_a_journal_of_which_nothing_can_be_read_is_an_error(saved: Path) -> None
 
 
 def test_a_record_is_read_as_it_was_written_and_not_with_another_number() -> None:
-    line = frame_record({"name": "tab\there\nand \u2028 there"}, 7).strip(b"\n")
+    line = encode_record({"name": "tab\there\nand \u2028 there"}, 7).strip(b"\n")
     record = parse_record(line)
     assert record is not None and (record.number, record.data["name"]) == (7, "tab\there\nand \u2028 there")
     assert parse_record(line.replace(b"\t7\t", b"\t8\t")) is None

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.locking import new_owner
+from metagraph.formats.locking import make_owner
 from metagraph.formats.project.data import to_data
-from metagraph.formats.project.journal import Journal, journal_path
+from metagraph.formats.project.journal import Journal, make_journal_path
 from metagraph.formats.recovery import find_left_journals, read_journal
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
@@ -26,7 +26,7 @@ class Sitting:
         self.saved = folder / f"show{SUFFIX}"
         self.project = Project("show")
         save_project(self.project, self.saved)
-        self.journal = Journal(journal_path(self.saved, "ab12"), self.saved, new_owner())
+        self.journal = Journal(make_journal_path(self.saved, "ab12"), self.saved, make_owner())
         self.edit("first")
 
     def edit(self, name: str) -> None:
@@ -118,7 +118,7 @@ def test_it_is_not_called_safe_before_it_is_there_again(
 def test_what_somebody_put_in_its_place_is_kept(sitting: Sitting) -> None:
     path = sitting.journal.path
     path.unlink()
-    other = Journal(path, sitting.saved, new_owner())
+    other = Journal(path, sitting.saved, make_owner())
     other.edit(Project("show"), edits.rename_project(Project("show"), "another's"))
     other.close()
     sitting.edit("second")

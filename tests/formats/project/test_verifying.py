@@ -16,8 +16,8 @@ from metagraph.errors import FileError
 from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import import_files
-from metagraph.formats.locking import Lock, new_owner
-from metagraph.formats.project.journal import Journal, journal_path
+from metagraph.formats.locking import Lock, make_owner
+from metagraph.formats.project.journal import Journal, make_journal_path
 from metagraph.formats.project.verified import Verified
 from metagraph.formats.project.verifying import verify_project
 from metagraph.formats.project.versions import make_version_path, write_project
@@ -88,8 +88,8 @@ def state(folder: Path) -> dict[str, tuple[int, bytes]]:
 
 
 def edited(path: Path, names: list[str]) -> Journal:
-    owner, project = new_owner(), read_project(path)
-    journal = Journal(journal_path(path, owner.sitting), path, owner)
+    owner, project = make_owner(), read_project(path)
+    journal = Journal(make_journal_path(path, owner.sitting), path, owner)
     for name in names:
         after = edits.rename_project(project, name)
         journal.edit(project, after, f"Rename to {name}")
@@ -254,9 +254,9 @@ def test_a_journal_that_cannot_be_read_and_one_kept_as_damaged_are_told(home: Pa
 
 
 def test_half_written_files_of_the_dead_are_told_and_those_of_the_living_are_not(home: Path) -> None:
-    from metagraph.formats.replacing import unfinished_name
+    from metagraph.formats.replacing import make_unfinished_name
 
-    (home.parent / unfinished_name()).write_bytes(b"half")
+    (home.parent / make_unfinished_name()).write_bytes(b"half")
     assert not verify_project(home).faults
     left = home.with_name(f".saving-{OTHERS_MARK}-{'a' * 12}")
     left.write_bytes(b"half")
@@ -265,7 +265,7 @@ def test_half_written_files_of_the_dead_are_told_and_those_of_the_living_are_not
 
 
 def test_a_lock_of_the_dead_is_told_and_one_of_the_living_is_not(home: Path) -> None:
-    lock = Lock(home, new_owner())
+    lock = Lock(home, make_owner())
     lock.acquire()
     found = verify_project(home)
     assert not found.faults and "has the project open" in words(found, "leftovers")
@@ -274,7 +274,7 @@ def test_a_lock_of_the_dead_is_told_and_one_of_the_living_is_not(home: Path) -> 
 
 
 def test_a_lock_of_another_computer_is_judged_without_writing_anything(home: Path) -> None:
-    owner = replace(new_owner(), host="elsewhere", machine="other")
+    owner = replace(make_owner(), host="elsewhere", machine="other")
     Lock(home, owner).acquire()
     before = state(home.parent)
     assert not verify_project(home).faults

@@ -12,7 +12,12 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.project import versions as v
-from metagraph.formats.project.versions import earlier_versions, is_version, make_version_path, write_project
+from metagraph.formats.project.versions import (
+    is_version,
+    list_earlier_versions,
+    make_version_path,
+    write_project,
+)
 from metagraph.formats.store import SUFFIX
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -24,14 +29,14 @@ def path(tmp_path: Path) -> Path:
 
 
 def texts(path: Path) -> list[str]:
-    return [version.path.read_text() for version in earlier_versions(path)]
+    return [version.path.read_text() for version in list_earlier_versions(path)]
 
 
 def test_each_save_keeps_what_was_there_and_the_oldest_goes(path: Path) -> None:
     for n in range(6):
         assert write_project(path, f"state {n}".encode(), 3) is None
     assert path.read_text() == "state 5" and texts(path) == ["state 4", "state 3", "state 2"]
-    assert [version.number for version in earlier_versions(path)] == [1, 2, 3]
+    assert [version.number for version in list_earlier_versions(path)] == [1, 2, 3]
     assert sorted(p.name for p in path.parent.iterdir()) == [
         path.name,
         *(f"{path.name}.{n}" for n in (1, 2, 3)),
@@ -73,7 +78,7 @@ def test_versions_have_the_rights_and_the_time_of_the_file(path: Path) -> None:
     path.chmod(0o600)
     os.utime(path, (1000, 2000))
     write_project(path, b"also", 3)
-    (version,) = earlier_versions(path)
+    (version,) = list_earlier_versions(path)
     assert version.path.stat().st_mode & 0o777 == 0o600 and version.saved == 2000
     assert path.stat().st_mode & 0o777 == 0o600
 
@@ -91,7 +96,7 @@ def test_other_files_are_no_versions(path: Path) -> None:
     path.write_text("a")
     for name in ("01", "0", "x", "100", "1.bak", "-1"):
         path.with_name(f"{path.name}.{name}").write_text("mine")
-    assert earlier_versions(path) == ()
+    assert list_earlier_versions(path) == ()
     make_version_path(path, 1).mkdir()
     note = write_project(path, b"b", 3)
     assert note is not None and path.read_text() == "b", "a folder in the way does not hold the save up"

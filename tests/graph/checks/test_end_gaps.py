@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.checks import end_gaps
-from metagraph.graph.checks.end_gaps import FAR, LONG, TALL, UNHURRIED, hidden, slow
+from metagraph.graph.checks.end_gaps import (
+    FAR,
+    LONG,
+    TALL,
+    UNHURRIED,
+    find_slow_distances,
+    measure_hidden_gap,
+)
 from metagraph.graph.model import Project
 
 heights = st.floats(0.01, 200)
@@ -19,14 +26,18 @@ heights = st.floats(0.01, 200)
 
 @given(heights, st.floats(0, LONG, exclude_max=True))
 def test_a_short_blend_covers_no_more_than_none(height: float, blend: float) -> None:
-    assert hidden(height, blend) == hidden(height, 0.0) == pytest.approx(FAR * height / TALL)
-    assert not slow(np.zeros(3), height, blend).any()
+    assert (
+        measure_hidden_gap(height, blend)
+        == measure_hidden_gap(height, 0.0)
+        == pytest.approx(FAR * height / TALL)
+    )
+    assert not find_slow_distances(np.zeros(3), height, blend).any()
 
 
 @given(heights, st.floats(LONG, 5), st.floats(0, 5))
 def test_from_there_on_it_grows_with_the_blend(height: float, blend: float, more: float) -> None:
-    assert hidden(height, blend) == pytest.approx(UNHURRIED * blend * height / TALL)
-    assert hidden(height, blend + more) >= hidden(height, blend)
+    assert measure_hidden_gap(height, blend) == pytest.approx(UNHURRIED * blend * height / TALL)
+    assert measure_hidden_gap(height, blend + more) >= measure_hidden_gap(height, blend)
 
 
 def test_a_project_without_clips_has_no_distances(toy: Any) -> None:

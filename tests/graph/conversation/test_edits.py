@@ -18,7 +18,7 @@ from metagraph.graph.conversation.model import (
     Segment,
     Side,
     Word,
-    lists_of,
+    get_word_lists,
     with_sides,
 )
 from metagraph.graph.edit_error import EditError
@@ -178,13 +178,13 @@ def test_each_side_may_have_lists_and_a_language_of_its_own() -> None:
     before, ident = project()
     after = c.set_word_lists(before, ident, ["ja"], ["yeah"], 1, "de")
     of = after.conversations[ident]
-    assert lists_of(of, 1) == (("ja",), ("yeah",)) and lists_of(of, 0) == lists_of(
+    assert get_word_lists(of, 1) == (("ja",), ("yeah",)) and get_word_lists(of, 0) == get_word_lists(
         before.conversations[ident], 0
     )
     assert [s.language for s in of.sides] == ["", "de"] and segments(after, ident, 1)[0].kind == "hesitation"
     assert segments(after, ident) == segments(before, ident)
     both = c.set_word_lists(after, ident, ["yeah"], ["um"], None, "en")
-    assert [lists_of(both.conversations[ident], n) for n in (0, 1)] == [(("yeah",), ("um",))] * 2
+    assert [get_word_lists(both.conversations[ident], n) for n in (0, 1)] == [(("yeah",), ("um",))] * 2
     assert segments(both, ident, 1)[0].kind == "response"
     with pytest.raises(EditError):
         c.set_word_lists(before, ident, ["x" * 201], [], 0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.clip_source import course_of, source_of, with_source
+from metagraph.graph.clip_source import get_clip_course, get_source_clip, with_source
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.retiming import keep_hand, set_hold, set_kept, set_retime, set_speed
 from metagraph.graph.model import BasePose
@@ -84,14 +84,14 @@ def test_a_file_that_is_read_again_is_retimed_again(project, wave):
     again = edits.add_clips(slow, [(entry.path, entry.take, "ab" * 32, source)])
     assert again.clips[wave.clip].frames == entry.frames
     assert again.clips[wave.clip].motion.duration == pytest.approx(2 * source.duration, abs=0.05)
-    assert source_of(again.clips[wave.clip]) is source
+    assert get_source_clip(again.clips[wave.clip]) is source
 
 
 def test_the_course_of_a_clip_says_where_it_is_held(project, wave):
     held = set_retime(project, wave.clip, Retime(2.0, (Hold(0.4, 0.5),)))
-    (first, last), *_ = course_of(held.clips[wave.clip]).stays
+    (first, last), *_ = get_clip_course(held.clips[wave.clip]).stays
     assert 0.2 <= first < last and last - first == pytest.approx(0.5, abs=0.2)
-    assert with_source(held.clips[wave.clip], source_of(held.clips[wave.clip])) == held.clips[wave.clip]
+    assert with_source(held.clips[wave.clip], get_source_clip(held.clips[wave.clip])) == held.clips[wave.clip]
 
 
 def kept_hand(project, clip, first=0.3, last=0.7):
@@ -105,7 +105,10 @@ def test_a_kept_hand_is_kept_longer_or_elsewhere_and_let_go(project, wave):
     assert longer == replace(before, last=0.9), "it stays where it is as long as it begins where it did"
     whole = set_kept(kept, wave.clip, 0, -1.0, 99.0)
     (all_of,) = whole.clips[wave.clip].retime.contacts
-    assert (all_of.first, all_of.last) == (0.0, pytest.approx(source_of(whole.clips[wave.clip]).duration))
+    assert (all_of.first, all_of.last) == (
+        0.0,
+        pytest.approx(get_source_clip(whole.clips[wave.clip]).duration),
+    )
     for first, last in ((0.5, 0.5), (0.6, 0.2)):
         assert set_kept(kept, wave.clip, 0, first, last).clips[wave.clip].retime.plain
     with pytest.raises(EditError, match="no longer"):

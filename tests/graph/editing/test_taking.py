@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
-from metagraph.graph.editing.taking import describe_taking, piece_of, take
+from metagraph.graph.editing.taking import describe_taking, take, take_piece
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
@@ -85,7 +85,7 @@ def test_a_clip_of_the_same_name_and_another_content_is_another_clip(other: Proj
 
 def test_a_chosen_action_brings_its_stance_with_a_loop_and_nothing_else(other: Project, toy: Any) -> None:
     point = toy.id(other, "up point")
-    piece = piece_of(other, actions=[point])
+    piece = take_piece(other, actions=[point])
     assert {s.name for s in piece.graphs["arms"].stances.values()} == {"up"}
     taking = take(Project(), piece, actions=[point])
     assert {a.name for a in taking.project.actions()} == {"up loop", "up point"}
@@ -95,14 +95,14 @@ def test_a_chosen_action_brings_its_stance_with_a_loop_and_nothing_else(other: P
 
 def test_a_chosen_transition_brings_both_stances(other: Project, toy: Any) -> None:
     way = toy.id(other, "up to far")
-    taking = take(Project(), piece_of(other, actions=[way]), actions=[way])
+    taking = take(Project(), take_piece(other, actions=[way]), actions=[way])
     assert {a.name for a in taking.project.actions()} == {"up loop", "far loop", "up to far"}
     assert not [p for p in check_project(taking.project) if p.severity == "error"]
 
 
 def test_a_chosen_stance_brings_all_that_is_placed_on_it(other: Project, toy: Any) -> None:
     up = toy.id(other, "up")
-    piece = piece_of(other, stances=[up])
+    piece = take_piece(other, stances=[up])
     wanted = [a.id for a in piece.actions() if a.stance == up]
     names = {a.name for a in take(Project(), piece, actions=wanted).project.actions()}
     assert names == {

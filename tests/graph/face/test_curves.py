@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.formats.gltf.reader import morph_targets, write_glb
+from metagraph.formats.gltf.reader import read_morph_targets, write_glb
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits
 from metagraph.graph.face.arkit import ARKIT
-from metagraph.graph.face.blendshape_names import match_arkit_shape, meanings
+from metagraph.graph.face.blendshape_names import find_curve_meanings, match_arkit_shape
 from metagraph.graph.face.curves import describe_unused_curves, fit_curves_to_face
 from metagraph.graph.face.rig import UPPER_LID_SHUT, with_morphs
 from metagraph.graph.model import Project
@@ -48,7 +48,7 @@ def on(targets: Any, curves: dict[str, Any], names: dict[str, str] | None = None
     return fit_curves_to_face(project(targets, made, names), made)
 
 
-ADA = morph_targets(SAMPLES / "ada.glb")
+ADA = read_morph_targets(SAMPLES / "ada.glb")
 VRM = ("A", "I", "U", "E", "O", "Blink", "Joy", "Angry", "Sorrow")
 
 
@@ -78,7 +78,7 @@ def test_every_shape_is_known_in_any_case_with_any_prefix_and_short_sides(
 
 @given(st.lists(st.text(max_size=20), max_size=8))
 def test_no_name_upsets_it_and_each_is_either_understood_or_told(names: list[str]) -> None:
-    found, lost = meanings(names)
+    found, lost = find_curve_meanings(names)
     assert set(found) | set(lost) == set(names) and not set(found) & set(lost)
     for meaning in found.values():
         assert meaning.shapes.keys() <= set(ARKIT)
@@ -134,7 +134,9 @@ def test_arkits_curves_move_a_face_that_has_only_vrms() -> None:
 
 def angle(made: Clip, joint: str, frame: int = 0) -> float:
     j = SKELETON.index(joint)
-    return float(np.degrees(rotation.angle_between(made.rotations[frame, j], SKELETON.rest_rotations[j])))
+    return float(
+        np.degrees(rotation.measure_angle_between(made.rotations[frame, j], SKELETON.rest_rotations[j]))
+    )
 
 
 @pytest.mark.parametrize("targets", [(), ADA], ids=["mannequin", "Ada"])

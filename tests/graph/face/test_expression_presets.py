@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.graph.face.expression_presets import PRESETS, measure_presets, presets_of
+from metagraph.graph.face.expression_presets import PRESETS, make_presets, measure_presets
 from sample_clips.make.face_targets import TARGETS
 
 EYES = ("eyeBlinkLeft", "eyeBlinkRight", "eyeWideLeft", "eyeLookUpLeft", "eyeLookUpRight", "eyeLookInLeft")
 
 
 def test_a_face_without_targets_has_no_presets() -> None:
-    assert presets_of([]) == {} and presets_of(["muscle_07"]) == {}
+    assert make_presets([]) == {} and make_presets(["muscle_07"]) == {}
 
 
 def test_our_characters_make_every_preset() -> None:
-    made = presets_of(TARGETS)
+    made = make_presets(TARGETS)
     assert made.keys() == PRESETS.keys()
     assert all(0 < weight <= 1 and name in TARGETS for mix in made.values() for name, weight in mix.items())
     assert made["happy"]["mouthSmileLeft"] > made["relaxed"]["mouthSmileLeft"] > 0
@@ -24,7 +24,7 @@ def test_our_characters_make_every_preset() -> None:
 
 
 def test_arkits_eyes_make_the_presets_of_the_eyes() -> None:
-    made = presets_of(EYES)
+    made = make_presets(EYES)
     assert made["blink"] == {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
     assert made["blinkLeft"] == {"eyeBlinkLeft": 1.0}
     assert made["lookUp"] == {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0}
@@ -32,18 +32,18 @@ def test_arkits_eyes_make_the_presets_of_the_eyes() -> None:
 
 
 def test_what_is_called_like_a_preset_is_it() -> None:
-    made = presets_of(["Fcl.Happy", "blink_L", "Blink", "A", "I", "U", "E", "O", "Angry"])
+    made = make_presets(["Fcl.Happy", "blink_L", "Blink", "A", "I", "U", "E", "O", "Angry"])
     assert made["happy"] == {"Fcl.Happy": 1.0} and made["angry"] == {"Angry": 1.0}
     assert made["blink"] == {"Blink": 1.0} and made["aa"] == {"A": 1.0}
     assert "sad" not in made
 
 
 def test_what_the_user_bound_counts() -> None:
-    assert presets_of(["mouth_wide_open", "x"], {"viseme_aa": "x"})["aa"] == {"x": 1.0}
+    assert make_presets(["mouth_wide_open", "x"], {"viseme_aa": "x"})["aa"] == {"x": 1.0}
 
 
 def test_a_face_is_taken_for_as_few_presets_as_explain_it():
-    mixes = presets_of(("eyeBlinkLeft", "eyeBlinkRight", "jawOpen", "mouthSmileLeft", "mouthSmileRight"))
+    mixes = make_presets(("eyeBlinkLeft", "eyeBlinkRight", "jawOpen", "mouthSmileLeft", "mouthSmileRight"))
     held = measure_presets(mixes, {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0, "jawOpen": 0.0})
     assert held["blink"] == pytest.approx(1.0)
     assert held["blinkLeft"] == held["blinkRight"] == 0.0
@@ -52,11 +52,11 @@ def test_a_face_is_taken_for_as_few_presets_as_explain_it():
 
 
 def test_an_open_jaw_is_a_vowel_and_not_surprise():
-    held = measure_presets(presets_of(("jawOpen",)), {"jawOpen": np.array([0.0, 0.3])})
+    held = measure_presets(make_presets(("jawOpen",)), {"jawOpen": np.array([0.0, 0.3])})
     assert held["aa"][1] > 0 and held["aa"][0] == 0.0
     assert not held["surprised"].any()
 
 
 def test_a_face_that_makes_no_preset_holds_none():
     assert measure_presets({}, {"jawOpen": 1.0}) == {}
-    assert measure_presets(presets_of(("jawOpen",)), {"tail": 1.0}) == {}
+    assert measure_presets(make_presets(("jawOpen",)), {"tail": 1.0}) == {}

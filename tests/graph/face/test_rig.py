@@ -20,7 +20,7 @@ from metagraph.graph.face.rig import (
     LIDS,
     MOUTH,
     FaceRig,
-    axes_of,
+    find_body_axes,
     find_face,
     list_morph_names,
     with_morphs,
@@ -149,12 +149,12 @@ def test_lids_hung_elsewhere_go_round_the_eye() -> None:
     local_t[joint] += face.shifts[0, place]
     after, moved = skeleton.globals(type(skeleton.rest)(local_r, local_t))
     eye = at_rest[skeleton.index("LeftEye")]
-    axes = axes_of(
+    axes = find_body_axes(
         skeleton, {"left_eye": skeleton.index("LeftEye"), "right_eye": skeleton.index("RightEye")}, at_rest
     )
     turn = rotation.from_axis_angle(axes[0], np.radians(40.0))
     assert np.allclose(moved[joint], eye + rotation.rotate_vectors(turn, at_rest[joint] - eye), atol=1e-9)
-    assert rotation.angle_between(after[joint], rotation.multiply(turn, before[joint])) < 1e-7
+    assert rotation.measure_angle_between(after[joint], rotation.multiply(turn, before[joint])) < 1e-7
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.0, -2.5])
@@ -162,12 +162,12 @@ def test_a_character_that_faces_elsewhere_has_its_own_left_and_ahead(toy: Any, t
     roles = {"left_upper_leg": 10, "right_upper_leg": 13}
     _, at = toy.skeleton.globals(toy.skeleton.rest)
     spin = rotation.from_axis_angle([0, 1.0, 0], turn)
-    axes = axes_of(toy.skeleton, roles, rotation.rotate_vectors(spin, at))
+    axes = find_body_axes(toy.skeleton, roles, rotation.rotate_vectors(spin, at))
     assert np.allclose(axes, rotation.rotate_vectors(spin, np.eye(3)), atol=1e-9)
 
 
 def test_a_character_without_sides_looks_along_z(toy: Any) -> None:
-    assert np.array_equal(axes_of(toy.skeleton, {}, np.zeros((16, 3))), np.eye(3))
+    assert np.array_equal(find_body_axes(toy.skeleton, {}, np.zeros((16, 3))), np.eye(3))
 
 
 # --- clips that show a face

@@ -10,10 +10,10 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import edits as m
 from metagraph.graph.manual import groups as g
 from metagraph.graph.manual.check import check_manual
-from metagraph.graph.manual.machine import ANY, Condition, Link, links_expanded, remove_from_machine
-from metagraph.graph.manual.timing import exit_moment
+from metagraph.graph.manual.machine import ANY, Condition, Link, expand_links, remove_from_machine
+from metagraph.graph.manual.timing import find_exit_moment
 from metagraph.graph.model import Project
-from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan
+from metagraph.playback.manual_playback import Fire, make_manual_plan, plan_link_alone
 from tests.graph.manual.test_machine import linked, project
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
@@ -28,7 +28,7 @@ def grouped(*names: str, every: bool = False) -> tuple[Project, dict[str, str], 
 
 def pairs(p: Project, ids: dict[str, str]) -> set[str]:
     names = {i: n for n, i in ids.items()}
-    return {f"{names[a]}>{names[b]}" for a, b in links_expanded(p.manual["arms"])}
+    return {f"{names[a]}>{names[b]}" for a, b in expand_links(p.manual["arms"])}
 
 
 def test_an_alias_of_nothing_is_refused() -> None:
@@ -55,7 +55,7 @@ def test_an_alias_of_every_state_stands_for_those_to_come() -> None:
     p = m.add_link(p, "arms", alias, ids["sit"])
     assert pairs(p, ids) == {"idle>sit", "wave>sit", "nod>sit"}
     p = m.add_states(p, ["c2"], "arms")
-    assert len(links_expanded(p.manual["arms"])) == 4
+    assert len(expand_links(p.manual["arms"])) == 4
 
 
 def test_a_link_to_a_group_leads_to_its_entry_and_one_without_takes_none() -> None:
@@ -67,10 +67,10 @@ def test_a_link_to_a_group_leads_to_its_entry_and_one_without_takes_none() -> No
     assert pairs(p, ids) == {"idle>nod"}
     assert p.manual["arms"].reachable() == {ids["idle"], ids["nod"]}
     lost = g.update_aliases(p, [alias], entry=None)
-    assert not links_expanded(lost.manual["arms"])
+    assert not expand_links(lost.manual["arms"])
     assert "no-entry" in [x.code for x in check_manual(lost)]
     with pytest.raises(KeyError):
-        link_alone(lost, next(iter(lost.manual["arms"].links)))
+        plan_link_alone(lost, next(iter(lost.manual["arms"].links)))
 
 
 def test_a_states_own_link_stands_before_its_aliases_and_theirs_before_any_states() -> None:
@@ -205,7 +205,7 @@ def test_a_source_is_left_at_its_time_at_a_share_or_at_its_end(
     p = project()
     state = replace(p.manual["arms"].states["m5"], loop=loop)
     end = p.clips[state.clip].duration
-    at = exit_moment(p, state, link)
+    at = find_exit_moment(p, state, link)
     if leaves is None:
         assert at is None
     else:

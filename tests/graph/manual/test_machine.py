@@ -9,7 +9,7 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import edits as m
-from metagraph.graph.manual.machine import ANY, Condition, Manual, links_expanded
+from metagraph.graph.manual.machine import ANY, Condition, Manual, expand_links
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
@@ -38,7 +38,7 @@ def linked(*pairs: tuple[str, str]) -> tuple[Project, dict[str, str]]:
 
 def test_an_empty_machine_reaches_nothing() -> None:
     assert Manual("arms").reachable() == frozenset()
-    assert links_expanded(Manual("arms")) == frozenset()
+    assert expand_links(Manual("arms")) == frozenset()
     assert Manual("arms").triggers == ()
 
 
@@ -98,7 +98,7 @@ def test_a_link_from_any_state_stands_for_one_from_every_other() -> None:
     out, ids = linked((ANY, "idle"), ("idle", "wave"), ("wave", "wave"))
     a, b = ids["idle"], ids["wave"]
     expected = {(s, a) for s in out.manual["arms"].states if s != a} | {(a, b), (b, b)}
-    assert links_expanded(out.manual["arms"]) == expected
+    assert expand_links(out.manual["arms"]) == expected
 
 
 def test_what_is_reached_only_from_any_state_is_reached() -> None:

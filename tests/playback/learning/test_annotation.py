@@ -22,7 +22,7 @@ from metagraph.playback.learning.annotation import (
     is_covering,
     is_meaning,
     label_notes,
-    labels,
+    list_labels,
     split_meaning,
 )
 
@@ -215,7 +215,7 @@ def test_a_tier_that_is_mostly_covered_by_different_labels_names_the_stances_the
     assert not is_covering(of("Head stance", "left", "left", length=0.9)), "one and the same is no change"
     assert not is_covering(of("Head stance", "left", "right", length=0.3))
     assert not is_covering(AnnotationTier("Head stance"))
-    found = labels(Annotation((stances,)), {"Head stance": "head stance"})
+    found = list_labels(Annotation((stances,)), {"Head stance": "head stance"})
     assert {x.text: x.meaning for x in found} == {"left": "stance", "neutral": "stance", "right": "stance"}
 
 
@@ -226,7 +226,7 @@ def test_labels_are_counted_by_layer_however_they_are_spelled_the_most_frequent_
         of("Head", "nod", "gesture"),
         of("text", "gesture"),
     )
-    found = labels(Annotation(tiers), guess_roles(Annotation(tiers)))
+    found = list_labels(Annotation(tiers), guess_roles(Annotation(tiers)))
     assert found == (
         Label("arms", "gesture", 3, "gesture"),
         Label("arms", "rest", 1, "ignore"),
@@ -239,7 +239,7 @@ def test_labels_are_counted_by_layer_however_they_are_spelled_the_most_frequent_
 def test_labels_are_remembered_for_their_layer_or_for_all() -> None:
     tiers = (of("LH", "x", "y"), of("Head", "x"))
     roles = guess_roles(Annotation(tiers))
-    found = labels(
+    found = list_labels(
         Annotation(tiers),
         roles,
         {"x": "fidget calm", "arms: y": "no such meaning"},
@@ -250,7 +250,7 @@ def test_labels_are_remembered_for_their_layer_or_for_all() -> None:
         "arms: y": "hold",
         "head: x": "fidget calm",
     }
-    assert labels(Annotation(tiers), roles, label_notes(found)) == found, "what is told comes back"
+    assert list_labels(Annotation(tiers), roles, label_notes(found)) == found, "what is told comes back"
 
 
 def test_meanings_are_a_word_and_tags() -> None:
@@ -263,7 +263,7 @@ def test_the_sample_annotation_is_understood_without_being_told() -> None:
     annotation = read_elan(SAMPLE)
     roles = guess_roles(annotation)
     assert {r for r in roles.values() if r != "ignore"} == {*ROLES, "speech"} - {"arms"}
-    assert {x.key: x.meaning for x in labels(annotation, roles)} == {
+    assert {x.key: x.meaning for x in list_labels(annotation, roles)} == {
         "arms: gesture": "gesture",
         "arms: fidget": "fidget",
         "arms: stance-transition": "transition",
@@ -279,7 +279,7 @@ def test_gesture_phases_of_others_are_found_and_speech_is_not_taken_for_gestures
         annotation = read_elan(path)
         roles = {tier: role for tier, role in guess_roles(annotation).items() if role != "ignore"}
         assert roles == ({"gestures": "arms"} if path.stem == "sample_3.0" else {})
-        meant = {x.text: x.meaning for x in labels(annotation, roles)}
+        meant = {x.text: x.meaning for x in list_labels(annotation, roles)}
         assert meant == (
             {"prep": "preparation", "hold": "hold", "stroke": "stroke", "retr": "retraction"} if roles else {}
         )

@@ -15,13 +15,13 @@ from metagraph.graph.model import LAYERS, Layer, Markov
 from metagraph.playback.learning.compare import (
     SURE,
     compare_model,
-    deviation,
+    compute_quantiles,
+    compute_share_deviation,
+    compute_stationary_shares,
+    count_act_sequences,
     generate,
-    quantiles,
-    stationary,
-    tally,
 )
-from metagraph.playback.learning.learn import Act, learn_model, model_states
+from metagraph.playback.learning.learn import Act, learn_model, list_model_states
 from metagraph.playback.planning.markov import DEFAULTS, write
 
 HOUR = 3600.0
@@ -36,15 +36,15 @@ def act(start: float, end: float, kind: str = "gesture", *tags: str) -> Act:
 
 
 def test_nothing_is_counted_as_nothing() -> None:
-    found = tally([], [GESTURE], False)
+    found = count_act_sequences([], [GESTURE], False)
     assert (found.count, found.rate, found.seconds) == (0, 0.0, 0)
     assert found.shares().tolist() == [0.0]
-    assert np.isnan(quantiles(found.lengths[0])).all()
-    assert tally([[]], [], False).count == 0
+    assert np.isnan(compute_quantiles(found.lengths[0])).all()
+    assert count_act_sequences([[]], [], False).count == 0
 
 
 def test_acts_moves_lengths_and_rests_are_counted() -> None:
-    found = tally(
+    found = count_act_sequences(
         [
             [act(0, 1), act(2, 5), act(5, 6, "fidget")],
             [act(0, 2, "fidget"), act(1, 3, "transition"), act(4, 5)],
@@ -64,8 +64,11 @@ def test_acts_moves_lengths_and_rests_are_counted() -> None:
 
 def test_meaning_counts_where_it_is_part_of_the_states() -> None:
     acts = [[act(0, 1, "gesture", "positive"), act(1, 2)]]
-    assert tally(acts, [GESTURE, ("both", "gesture", "positive")], True).visits.tolist() == [1, 1]
-    assert tally(acts, [GESTURE], False).visits.tolist() == [2]
+    assert count_act_sequences(acts, [GESTURE, ("both", "gesture", "positive")], True).visits.tolist() == [
+        1,
+        1,
+    ]
+    assert count_act_sequences(acts, [GESTURE], False).visits.tolist() == [2]
 
 
 # --- the long run
@@ -75,29 +78,31 @@ def test_meaning_counts_where_it_is_part_of_the_states() -> None:
 def test_the_long_run_is_left_as_it_is_by_another_step(rows: list[list[float]]) -> None:
     matrix = np.array(rows) + 1e-3
     matrix /= matrix.sum(axis=1, keepdims=True)
-    pi = stationary(matrix.tolist())
+    pi = compute_stationary_shares(matrix.tolist())
     assert pi.sum() == pytest.approx(1) and pi.min() >= 0
     assert np.allclose(pi @ matrix, pi, atol=1e-9)
 
 
 def test_chains_that_go_in_circles_or_stay_for_ever_have_a_long_run_too() -> None:
-    assert np.allclose(stationary([[0, 1], [1, 0]]), [0.5, 0.5])
-    assert np.allclose(stationary([[1, 0], [0, 1]]), [0.5, 0.5])
-    assert np.allclose(stationary([[1, 0], [0.5, 0.5]]), [1, 0])
-    assert np.allclose(stationary([[0, 0], [1, 0]]), [2 / 3, 1 / 3]), "a row of zeros is drawn from all alike"
-    assert np.isfinite(deviation([[1, 0], [0, 1]], np.array([0.5, 0.5]), 10)).all()
+    assert np.allclose(compute_stationary_shares([[0, 1], [1, 0]]), [0.5, 0.5])
+    assert np.allclose(compute_stationary_shares([[1, 0], [0, 1]]), [0.5, 0.5])
+    assert np.allclose(compute_stationary_shares([[1, 0], [0.5, 0.5]]), [1, 0])
+    assert np.allclose(compute_stationary_shares([[0, 0], [1, 0]]), [2 / 3, 1 / 3]), (
+        "a row of zeros is drawn from all alike"
+    )
+    assert np.isfinite(compute_share_deviation([[1, 0], [0, 1]], np.array([0.5, 0.5]), 10)).all()
 
 
 def test_a_chain_without_memory_is_off_as_a_coin_is() -> None:
     pi = np.array([0.2, 0.3, 0.5])
-    assert np.allclose(deviation([pi.tolist()] * 3, pi, 400), np.sqrt(pi * (1 - pi) / 400))
+    assert np.allclose(compute_share_deviation([pi.tolist()] * 3, pi, 400), np.sqrt(pi * (1 - pi) / 400))
 
 
 def test_a_chain_that_lingers_is_further_off_and_one_that_alternates_never() -> None:
     half = np.array([0.5, 0.5])
-    coin = deviation([[0.5, 0.5]] * 2, half, 100)
-    assert (deviation([[0.9, 0.1], [0.1, 0.9]], half, 100) > 2 * coin).all()
-    assert np.allclose(deviation([[0, 1], [1, 0]], half, 100), 0)
+    coin = compute_share_deviation([[0.5, 0.5]] * 2, half, 100)
+    assert (compute_share_deviation([[0.9, 0.1], [0.1, 0.9]], half, 100) > 2 * coin).all()
+    assert np.allclose(compute_share_deviation([[0, 1], [1, 0]], half, 100), 0)
 
 
 @pytest.mark.nightly
@@ -135,14 +140,16 @@ def test_an_hour_learned_anew_is_the_model_it_came_from() -> None:
     assert found.observed is not None
     assert np.abs(found.generated.shares() - found.observed.shares()).max() < 4 * found.deviation.max()
     for seen, made in zip(found.observed.lengths, found.generated.lengths, strict=True):
-        assert np.allclose(quantiles(seen), quantiles(made), rtol=0.25)
+        assert np.allclose(compute_quantiles(seen), compute_quantiles(made), rtol=0.25)
 
 
 def test_what_another_model_made_is_found_out() -> None:
     model = DEFAULTS["head"]
     other = replace(model, matrix=((0.2, 0.4, 0.4),) * 3)
     found = compare_model(model, None, HOUR)
-    swapped = replace(found, generated=tally([generate(other, HOUR)], model_states(model), False))
+    swapped = replace(
+        found, generated=count_act_sequences([generate(other, HOUR)], list_model_states(model), False)
+    )
     assert np.abs(swapped.surprises()).max() > 2 * SURE
     assert np.abs(swapped.move_surprises()).max() > 2 * SURE
 
@@ -152,7 +159,10 @@ def test_a_move_that_cannot_be_is_as_surprising_as_can_be() -> None:
     found = compare_model(model, None, 60)
     assert not found.move_surprises().any() and not found.surprises().any()
     wrong = replace(
-        found, generated=tally([[act(0, 1), act(2, 3), act(4, 5, "fidget")]], model_states(model), False)
+        found,
+        generated=count_act_sequences(
+            [[act(0, 1), act(2, 3), act(4, 5, "fidget")]], list_model_states(model), False
+        ),
     )
     assert np.isinf(wrong.move_surprises()[0, 0])
 

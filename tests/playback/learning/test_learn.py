@@ -20,7 +20,7 @@ from metagraph.playback.learning.annotation import (
     AnnotationTier,
     Label,
     guess_roles,
-    labels,
+    list_labels,
 )
 from metagraph.playback.learning.learn import (
     Act,
@@ -28,12 +28,12 @@ from metagraph.playback.learning.learn import (
     describe_state,
     find_act_sequences,
     learn_model,
+    list_model_states,
     make_asks_from_acts,
+    measure_rests,
     merge_acts,
-    model_states,
     read_acts_of_asks,
     remove_state,
-    rests,
     with_cell,
     with_state,
 )
@@ -51,7 +51,7 @@ def annotated(**tiers: list[tuple[float, float, str]]) -> dict[Layer, tuple[Act,
         )
     )
     roles = guess_roles(annotation)
-    return find_act_sequences(annotation, roles, labels(annotation, roles))
+    return find_act_sequences(annotation, roles, list_labels(annotation, roles))
 
 
 def act(start: float, end: float, what: str = "both gesture", *tags: str) -> Act:
@@ -226,7 +226,7 @@ def test_transitions_are_counted_and_rows_sum_to_1() -> None:
             )
         ],
     )
-    assert model_states(model) == (
+    assert list_model_states(model) == (
         ("left", "gesture", ""),
         ("right", "fidget", ""),
         ("both", "transition", ""),
@@ -275,7 +275,7 @@ def test_meaning_is_a_share_of_gestures_or_part_of_the_states() -> None:
     assert (shares.positive, shares.negative, shares.tags) == (0.5, 0.25, ())
     assert len(shares.states) == 2
     states = learn_model("head", acts, tagged=True)
-    assert [describe_state(s, "head") for s in model_states(states)] == [
+    assert [describe_state(s, "head") for s in list_model_states(states)] == [
         "gesture",
         "gesture, positive",
         "gesture, negative",
@@ -297,7 +297,7 @@ def test_lengths_are_means_and_deviations_and_one_alone_varies_as_the_others_do(
 
 def test_rests_are_what_lies_between_and_overlaps_are_none() -> None:
     acts = [act(0, 1), act(3, 4), act(3.8, 5), act(5, 6)]
-    assert rests([acts, kinds("both gesture")]) == [2, 0, 0]
+    assert measure_rests([acts, kinds("both gesture")]) == [2, 0, 0]
     assert learn_model("head", [acts]).gap == 0.6667
     assert learn_model("head", [[act(0, 1), act(1, 2)]]).gap == 0.05, (
         "a model never asks for two things at once"
@@ -339,7 +339,7 @@ def test_every_model_that_is_learned_is_sound_and_can_be_saved(some, tagged: boo
     matrix = np.array(model.matrix)
     assert matrix.shape == (len(model.states),) * 2
     assert np.allclose(matrix.sum(axis=1), 1) and matrix.min() >= 0
-    assert len(set(model_states(model))) == len(model.states) == len(model.lengths)
+    assert len(set(list_model_states(model))) == len(model.states) == len(model.lengths)
     assert decode_markov("arms", encode_markov(model), "markov") == model
     if smoothing == 0:
         moves = {
@@ -347,7 +347,7 @@ def test_every_model_that_is_learned_is_sound_and_can_be_saved(some, tagged: boo
             for acts in observed
             for pair in pairwise((a.limb, a.kind, " ".join(a.tags) if tagged else "") for a in acts)
         }
-        place = {state: n for n, state in enumerate(model_states(model))}
+        place = {state: n for n, state in enumerate(list_model_states(model))}
         assert all(matrix[place[a], place[b]] > 0 for a, b in moves)
 
 
@@ -377,7 +377,7 @@ def test_where_nothing_else_could_follow_the_rest_is_shared_evenly() -> None:
 def test_a_state_can_be_added_and_taken_away_again() -> None:
     model = learn_model("arms", [kinds("left gesture", "right fidget", "left gesture")])
     more = with_state(model, ("right", "gesture", "positive"))
-    assert [describe_state(s, "arms") for s in model_states(more)] == [
+    assert [describe_state(s, "arms") for s in list_model_states(more)] == [
         "left gesture",
         "right gesture, positive",
         "right fidget",
@@ -433,7 +433,7 @@ def test_a_performance_holds_every_layer_in_order_and_fills_nothing_in() -> None
 def test_the_sample_annotation_becomes_models_of_three_layers() -> None:
     annotation = read_elan(SAMPLE)
     roles = guess_roles(annotation)
-    found = find_act_sequences(annotation, roles, labels(annotation, roles))
+    found = find_act_sequences(annotation, roles, list_labels(annotation, roles))
     assert {layer: len(acts) for layer, acts in found.items()} == {"arms": 52, "head": 46, "body": 12}
     assert sum(a.limb == "both" for a in found["arms"]) == 20, (
         "both hands seldom begin and end together, yet are one act"

@@ -23,7 +23,7 @@ from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, Speech, Track, track_of
 from metagraph.playback.planner import make_plan
 from tests import zoo
-from tests.posing import enliven, face_weights, pose_at
+from tests.posing import compute_pose_at, enliven, face_weights
 from tests.thorough import many
 
 Array = np.ndarray[Any, Any]
@@ -44,7 +44,9 @@ def drawn(project: Project, track: Track, end: float = 40.0) -> Schedule:
 
 def layers(project: Project, times: Array, seed: int = 1) -> Pose:
     """What the layers compose, without life."""
-    return pose_at(make_plan(replace(project, life=OFF), 40.0, seed=seed), replace(project, life=OFF), times)
+    return compute_pose_at(
+        make_plan(replace(project, life=OFF), 40.0, seed=seed), replace(project, life=OFF), times
+    )
 
 
 def resting(project: Project, count: int) -> Pose:
@@ -68,7 +70,9 @@ def alive(
 
 def moved(project: Project, before: Pose, after: Pose) -> set[str]:
     assert project.skeleton is not None
-    apart = rotation.angle_between(before.rotations.astype(float), after.rotations.astype(float)).max(0)
+    apart = rotation.measure_angle_between(before.rotations.astype(float), after.rotations.astype(float)).max(
+        0
+    )
     shifted = np.abs(before.translations - after.translations).max((0, 2))
     return {n for n, a, s in zip(project.skeleton.names, apart, shifted, strict=True) if a > 1e-4 or s > 1e-6}
 
@@ -165,7 +169,7 @@ def test_nothing_jumps(sample: Project, seed: int) -> None:
     added = rotation.multiply(
         rotation.conjugate(before.rotations.astype(float)), after.rotations.astype(float)
     )
-    speed = np.degrees(rotation.angle_between(added[:-1], added[1:])).max(0) * rate
+    speed = np.degrees(rotation.measure_angle_between(added[:-1], added[1:])).max(0) * rate
     assert sample.skeleton is not None
     limits = {"Eye": 700, "UpperLid": 1200, "LowerLid": 500, "Jaw": 160, "Head": 190, "Neck": 130}
     for name, fast in zip(sample.skeleton.names, speed, strict=True):
@@ -195,7 +199,7 @@ def test_the_face_stays_level_while_the_chest_rises(sample: Project) -> None:
     assert sample.skeleton is not None
     turned, at = sample.skeleton.globals(after)
     head = np.degrees(
-        rotation.angle_between(turned[:, joint(sample, "Head")].astype(float), rotation.IDENTITY)
+        rotation.measure_angle_between(turned[:, joint(sample, "Head")].astype(float), rotation.IDENTITY)
     )
     assert head.max() < 0.5
     lift = np.ptp(at[:, joint(sample, "LeftUpperArm"), 1]), np.ptp(at[:, joint(sample, "RightUpperArm"), 1])
@@ -210,7 +214,11 @@ def test_a_deeper_breath_moves_more(sample: Project) -> None:
     for amount in (0.5, 1.0, 2.0):
         before, after = alive(sample, alone(QUIET, breathing=amount))
         sizes.append(
-            float(rotation.angle_between(before.rotations.astype(float), after.rotations.astype(float)).max())
+            float(
+                rotation.measure_angle_between(
+                    before.rotations.astype(float), after.rotations.astype(float)
+                ).max()
+            )
         )
     assert sizes[1] == pytest.approx(2 * sizes[0], rel=0.01) and sizes[2] == pytest.approx(
         4 * sizes[0], rel=0.01
@@ -244,7 +252,9 @@ def test_far_targets_are_met_with_the_help_of_the_head(
         "where the head has taken the eyes"
     )
     eye = np.degrees(
-        rotation.angle_between(after.rotations[0, joint(sample, "LeftEye")].astype(float), rotation.IDENTITY)
+        rotation.measure_angle_between(
+            after.rotations[0, joint(sample, "LeftEye")].astype(float), rotation.IDENTITY
+        )
     )
     assert eye < 32
 
@@ -278,11 +288,11 @@ def test_the_gaze_holds_while_the_head_nods_and_shakes(sample: Project) -> None:
         pose = clip.pose_at(times)
         before, after = alive(sample, life, track, times, pose)
         head = [joint(sample, "Head")]
-        swing = rotation.angle_between(
+        swing = rotation.measure_angle_between(
             before.rotations[:, head].astype(float), before.rotations[:1, head].astype(float)
         ).max()
         assert np.degrees(swing) > 3 and gaze_error(sample, after, (0.0, 1.6, 1.2)).max() < 0.5
-        kept = rotation.angle_between(
+        kept = rotation.measure_angle_between(
             after.rotations[:, head].astype(float), before.rotations[:, head].astype(float)
         )
         assert np.degrees(np.ptp(kept)) < 0.6, "the nod itself is left as it is"
@@ -435,7 +445,9 @@ def test_stillness_calms_what_moves(sample: Project) -> None:
     sizes = []
     for stillness in (0.0, 0.5, 0.9):
         _, after = alive(sample, Life(stillness=stillness, blinks=0))
-        steps = rotation.angle_between(after.rotations[:-1].astype(float), after.rotations[1:].astype(float))
+        steps = rotation.measure_angle_between(
+            after.rotations[:-1].astype(float), after.rotations[1:].astype(float)
+        )
         sizes.append(float(steps.sum()))
     assert sizes[0] > 1.8 * sizes[1] > 5 * sizes[2] > 0
 
@@ -490,7 +502,9 @@ def brought_to_life(path: Path, upper: set[str]) -> None:
     times = np.arange(0, clip.duration, 1 / 30)
     before, after = alive(project, Life(), BUSY, times, clip.pose_at(times))
     assert np.isfinite(after.rotations).all() and upper & moved(project, before, after)
-    apart = np.degrees(rotation.angle_between(before.rotations.astype(float), after.rotations.astype(float)))
+    apart = np.degrees(
+        rotation.measure_angle_between(before.rotations.astype(float), after.rotations.astype(float))
+    )
     assert apart.max() < 45
 
 
@@ -505,16 +519,16 @@ def test_real_hosts_shut_their_lids_as_their_own_blink_does(shared_data: Path, h
     assert isinstance(blink, Clip)
     _, after = alive(project, QUIET, track_of([BlinkAt("b", 3.0)]), [3.07])
     upper = [int(find_face(project).lid_joints[n]) for n in (0, 1)]
-    theirs = rotation.angle_between(
+    theirs = rotation.measure_angle_between(
         blink.rotations[:, upper].astype(float), blink.rotations[:1, upper].astype(float)
     ).max(0)
     frame = int(
-        rotation.angle_between(
+        rotation.measure_angle_between(
             blink.rotations[:, upper[0]].astype(float), blink.rotations[0, upper[0]].astype(float)
         ).argmax()
     )
     rest = resting(project, 1)
-    ours = rotation.angle_between(
+    ours = rotation.measure_angle_between(
         after.rotations[0, upper].astype(float), rest.rotations[0, upper].astype(float)
     )
     assert np.degrees(np.abs(ours - theirs)).max() < 1
@@ -617,7 +631,11 @@ def test_a_look_far_aside_turns_the_trunk_along_and_a_glance_does_not(sample: Pr
         assert sample.skeleton is not None
         both = [sample.skeleton.globals(p)[0][0] for p in (pose, after)]
         chest, head = (
-            float(np.degrees(rotation.angle_between(*(x[joint(sample, name)].astype(float) for x in both))))
+            float(
+                np.degrees(
+                    rotation.measure_angle_between(*(x[joint(sample, name)].astype(float) for x in both))
+                )
+            )
             for name in ("UpperChest", "Head")
         )
         return chest, head

@@ -11,7 +11,7 @@ from metagraph.graph.life import Life
 from metagraph.playback.life.expressions import CUE_LASTS, KEPT, FaceShown, answer, asks, settle, shown_face
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Item, ModeFrom, Speech, track_of
-from metagraph.playback.life.voice import voice_from_text
+from metagraph.playback.life.voice import guess_voice
 from metagraph.playback.planning.mood import Bearing, Mood, bearing
 
 TIMES = np.arange(0.0, 40.0, 0.02)
@@ -39,7 +39,7 @@ def shown(found: Schedule, bears: Bearing | None = None, life: Life | None = Non
 
 
 def said(text: str, start: float = 2.0) -> Speech:
-    return Speech("s", start, start + voice_from_text(text).duration, None, text)
+    return Speech("s", start, start + guess_voice(text).duration, None, text)
 
 
 def test_who_is_in_no_mood_and_does_nothing_shows_nothing() -> None:
@@ -63,14 +63,14 @@ def test_without_expressions_a_moods_face_stands_as_it_is(life: Life) -> None:
 
 def test_brows_rise_on_as_many_stressed_syllables_as_the_dial_says() -> None:
     counts = [len(drawn(said(TEXT), life=Life(accent_brows=share)).emphases) for share in (0.0, 1.0)]
-    assert counts == [0, len(voice_from_text(TEXT).accents)]
+    assert counts == [0, len(guess_voice(TEXT).accents)]
     some = [len(drawn(said(TEXT), seed=seed).emphases) for seed in range(60)]
     assert 0.25 < np.mean(some) / counts[1] < 0.55
 
 
 def test_a_raise_begins_just_before_its_syllable_and_is_soon_over() -> None:
     found = drawn(said(TEXT), life=Life(accent_brows=1.0))
-    early = 2.0 + voice_from_text(TEXT).accents - found.emphases.starts
+    early = 2.0 + guess_voice(TEXT).accents - found.emphases.starts
     assert (early > 0).all() and early.max() == pytest.approx(0.06)
     assert found.emphases.values[:, 0].max() <= 0.65
     assert shown(found)["brows"].max() > 0.5

@@ -11,7 +11,15 @@ import pytest
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.playback.life.body import PARTNER_AWAY
-from metagraph.playback.life.gaze import ENDING, BodyGaze, Moves, ease_gaze, eye_time, head_time, settle_gaze
+from metagraph.playback.life.gaze import (
+    ENDING,
+    BodyGaze,
+    Moves,
+    compute_eye_time,
+    compute_head_time,
+    ease_gaze,
+    settle_gaze,
+)
 from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import RECALL, Schedule, schedule
 from metagraph.playback.life.track import LookAt, PlaceFrom, Track, track_of
@@ -41,7 +49,7 @@ def test_curves_go_from_0_to_1_and_never_back(curve: Any) -> None:
 
 
 def test_the_head_settles_within_what_is_remembered() -> None:
-    assert head_time(180) + 0.1 < RECALL and eye_time(20) == pytest.approx(0.065)
+    assert compute_head_time(180) + 0.1 < RECALL and compute_eye_time(20) == pytest.approx(0.065)
 
 
 def test_shares_of_all_targets_are_one_whenever_looked(sample: Project) -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.playback.life.voice import Voice, make_voice, silent, voice_from_text
+from metagraph.playback.life.voice import Voice, guess_voice, make_silent_voice, make_voice
 
 PLACE = {name: n for n, name in enumerate(VISEMES)}
 
@@ -123,7 +123,7 @@ def test_shapes_always_share_the_mouth(some: list[MouthPiece], duration: float) 
 
 
 def test_silence_has_no_peaks_and_no_accents() -> None:
-    quiet = silent(2.0)
+    quiet = make_silent_voice(2.0)
     assert quiet.duration == 2.0 and len(quiet.peaks) == len(quiet.accents) == 0
 
 
@@ -142,4 +142,4 @@ def test_a_voice_that_does_not_say_how_loud_it_is_still_has_accents() -> None:
 
 
 def test_text_is_read_once() -> None:
-    assert voice_from_text("once") is voice_from_text("once") and voice_from_text("").peaks.size == 0
+    assert guess_voice("once") is guess_voice("once") and guess_voice("").peaks.size == 0

@@ -22,7 +22,7 @@ from metagraph.playback.life.schedule import (
     share,
 )
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, Track, track_of
-from metagraph.playback.life.voice import Voice, voice_from_text
+from metagraph.playback.life.voice import Voice, guess_voice
 from metagraph.playback.life.wanted import PARTNER
 
 LANES = ("breaths", "aversions", "saccades", "blinks", "modes", "swells", "emphases")
@@ -283,7 +283,7 @@ def test_who_speaks_by_letters_blinks_26_times_a_minute(seed: int) -> None:
         "The museum opens at nine in the morning and closes at half past five, except on Mondays, when it is "
         "closed all day.",
     ]
-    voices = {text: voice_from_text(text) for text in lines}
+    voices = {text: guess_voice(text) for text in lines}
     found = schedule(Life(), conversation(voices), voices, seed, HOUR, Schedule(), 0.0)
     assert share(found.blinks, 0, HOUR) == pytest.approx(26, abs=3)
 

@@ -38,7 +38,7 @@ def test_a_chain_is_where_the_skeleton_has_it(sample: Project) -> None:
     assert entry.motion is not None
     pose = entry.motion.pose_at(0.5)
     turned, at = skeleton.globals(pose)
-    q, p = solve.globals_of(pose.rotations[body.chain].tolist(), pose.translations[body.chain].tolist())
+    q, p = solve.compute_globals(pose.rotations[body.chain].tolist(), pose.translations[body.chain].tolist())
     assert np.allclose(p, at[body.chain], atol=1e-5) and np.allclose(q, turned[body.chain], atol=1e-5)
 
 
@@ -56,21 +56,21 @@ def test_eyes_go_all_the_way_where_it_is_easy() -> None:
 
 @given(st.floats(-1.5, 1.5), st.floats(0, 1))
 def test_the_head_takes_little_of_little_and_never_more_than_its_share(angle: float, share: float) -> None:
-    part = solve.head_part(angle, share)
+    part = solve.compute_head_part(angle, share)
     assert part * angle >= 0 and abs(part) <= share * abs(angle)
-    assert abs(solve.head_part(radians(4), 1.0)) < radians(1)
+    assert abs(solve.compute_head_part(radians(4), 1.0)) < radians(1)
 
 
 @pytest.mark.parametrize("already", [-0.3, 0.0, 0.4, 1.0])
 @pytest.mark.parametrize("down", [-0.4, 0.0, 0.4])
 def test_a_blink_always_shuts_the_lid_and_no_farther(already: float, down: float) -> None:
-    assert solve.lid(down, 0.86, already, 1.0) == pytest.approx(1.0)
-    open_, half = solve.lid(down, 0.86, already, 0.0), solve.lid(down, 0.86, already, 0.5)
+    assert solve.compute_lid(down, 0.86, already, 1.0) == pytest.approx(1.0)
+    open_, half = solve.compute_lid(down, 0.86, already, 0.0), solve.compute_lid(down, 0.86, already, 0.5)
     assert solve.WIDEST <= open_ <= half <= 1
 
 
 def test_lids_follow_down_and_up() -> None:
-    down, level, up = (solve.lid(a, 0.86, 0.0, 0.0) for a in (0.3, 0.0, -0.3))
+    down, level, up = (solve.compute_lid(a, 0.86, 0.0, 0.0) for a in (0.3, 0.0, -0.3))
     assert down > level == 0 > up
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from metagraph.formats.gltf.reader import morph_targets
+from metagraph.formats.gltf.reader import read_morph_targets
 from metagraph.formats.store import open_project
 from metagraph.graph.conversation.model import Conversation, Rates, Side, Word
 from metagraph.graph.face.rig import with_morphs
@@ -19,9 +19,9 @@ from metagraph.live.live_session import LiveSession
 from metagraph.playback.life.sympathy import Laugh, laughs_along, moods_taken_up, taken_up
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.mood import MOODS, Mood, MoodFrom, Moods, mood_at
-from metagraph.speech.duet import duet
-from metagraph.speech.sympathies import laughs_of
-from tests.posing import morphs_at
+from metagraph.speech.duet import plan_duet
+from metagraph.speech.sympathies import find_laughs
+from tests.posing import compute_morphs_at
 
 SAMPLES = Path(__file__).parents[3] / "sample_clips"
 HAPPY, ANGRY, SAD = (Mood(*MOODS[name]) for name in ("happy", "angry", "sad"))
@@ -30,7 +30,7 @@ HAPPY, ANGRY, SAD = (Mood(*MOODS[name]) for name in ("happy", "angry", "sad"))
 @pytest.fixture(scope="module")
 def sample() -> Project:
     project = open_project(SAMPLES / "sample.metagraph.yaml").project
-    return with_morphs(project, morph_targets(SAMPLES / "ada.glb"))
+    return with_morphs(project, read_morph_targets(SAMPLES / "ada.glb"))
 
 
 def in_mood(project: Project, name: str) -> Project:
@@ -81,13 +81,13 @@ def talk(words: tuple[str, ...] = (), **rates: float) -> Conversation:
 
 
 def smile(project: Project, plan: Plan, seconds: float) -> float:
-    return morphs_at(plan, project, seconds).get("mouthSmileLeft", 0.0)
+    return compute_morphs_at(plan, project, seconds).get("mouthSmileLeft", 0.0)
 
 
 def test_a_listener_smiles_with_a_happy_partner_and_less_with_a_smaller_dial(sample: Project) -> None:
     shown = []
     for share in (0.0, 0.35, 1.0):
-        made = duet(talk(mood=share), "v", (in_mood(sample, "happy"), sample), (None, None))
+        made = plan_duet(talk(mood=share), "v", (in_mood(sample, "happy"), sample), (None, None))
         shown.append(max(smile(made.parts[1].project, made.parts[1].plan, t / 4) for t in range(8, 60)))
     assert shown[0] < 0.35 * shown[2] and shown[0] + 0.05 < shown[1] < shown[2]
     asks = [a for a in made.parts[1].performance.asks if a.id.startswith("side 1 mood")]
@@ -96,11 +96,11 @@ def test_a_listener_smiles_with_a_happy_partner_and_less_with_a_smaller_dial(sam
 
 def test_laughter_among_the_words_brings_a_laughing_face(sample: Project) -> None:
     conversation = talk(("haha", "hahaha", "well"), laugh=1.0)
-    [laugh] = laughs_of(conversation.sides[0], Plan(1, 16.0))
+    [laugh] = find_laughs(conversation.sides[0], Plan(1, 16.0))
     assert laugh == Laugh(8.0, 8.55)
-    made = duet(conversation, "v", (sample, sample), (None, None)).parts[1]
+    made = plan_duet(conversation, "v", (sample, sample), (None, None)).parts[1]
     assert smile(made.project, made.plan, 9.8) > smile(made.project, made.plan, 7.9) + 0.2
-    none = duet(talk(("haha",), laugh=0.0), "v", (sample, sample), (None, None)).parts[1]
+    none = plan_duet(talk(("haha",), laugh=0.0), "v", (sample, sample), (None, None)).parts[1]
     assert not [a for a in none.performance.asks if "laugh" in a.id]
 
 

@@ -22,7 +22,7 @@ from metagraph.playback.planning.director import (
     posture,
     repeat_interval,
 )
-from metagraph.playback.planning.prominence import prominence
+from metagraph.playback.planning.prominence import measure_prominence
 from metagraph.playback.planning.running_plan import improvise
 
 LENGTH = 900.0
@@ -50,7 +50,7 @@ def test_nothing_written_comes_again_before_its_time(sample: Project, mode: Any)
         free = 0.0
         for cue in cues(sample, layer, mode):
             if cue.action.kind != "transition":
-                needed = repeat_interval(cue.action.kind, prominence(sample, cue.action))
+                needed = repeat_interval(cue.action.kind, measure_prominence(sample, cue.action))
                 needed *= 1.0 if cue.start < free + LONG_REST else SHORTER
                 assert cue.start >= last.get(cue.action.id, -1e9) + needed - 1e-6
                 last[cue.action.id] = cue.end
@@ -61,7 +61,7 @@ def test_what_stands_out_is_not_followed_by_another_that_does(sample: Project) -
     shown = [
         c
         for c in cues(sample, "arms", "talking")
-        if c.action.kind != "transition" and prominence(sample, c.action) >= STANDS_OUT
+        if c.action.kind != "transition" and measure_prominence(sample, c.action) >= STANDS_OUT
     ]
     assert len(shown) > 5 and all(b.start >= a.end + APART - 1e-6 for a, b in pairwise(shown))
 

@@ -15,11 +15,11 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.cue_shapes import STOPPED
-from metagraph.playback.planning.extend_performance import answer_ask, hear_asks, since
+from metagraph.playback.planning.extend_performance import answer_ask, drop_ended, hear_asks
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests import thorough
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 END = 30.0
 _SAMPLE: list[Project] = []
@@ -95,7 +95,7 @@ def in_ticks(
         if plan.end < now + ahead:
             plan = hear_asks(project, plan, now, [], now + ahead)
         if forget is not None:
-            plan = since(plan, now - forget)
+            plan = drop_ended(plan, now - forget)
         out.append(plan)
     return out
 
@@ -111,7 +111,9 @@ def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -
         assert [c for c in many.cues if c.start < END] == [c for c in one.cues if c.start < END]
         assert [r for r in many.rests if r.start < END] == [r for r in one.rests if r.start < END]
     times = [0.0, 3.3, END / 2, END - 0.01]
-    assert (pose_at(last, project, times).rotations == pose_at(whole, project, times).rotations).all()
+    assert (
+        compute_pose_at(last, project, times).rotations == compute_pose_at(whole, project, times).rotations
+    ).all()
 
 
 @pytest.mark.nightly
@@ -142,7 +144,8 @@ def test_forgetting_the_past_changes_nothing_to_come(asks: list[Any], memory: fl
         assert len(cut.layers[layer].cues) < len(kept.layers[layer].cues)
         assert all(m.end > 70 for m in cut.layers[layer].metas)
     assert (
-        pose_at(kept, project, [100.0, 149.0]).rotations == pose_at(cut, project, [100.0, 149.0]).rotations
+        compute_pose_at(kept, project, [100.0, 149.0]).rotations
+        == compute_pose_at(cut, project, [100.0, 149.0]).rotations
     ).all()
 
 
@@ -365,7 +368,7 @@ def test_being_there_already_is_answered_as_before_when_it_is_to_be_kept(sample:
 def test_what_is_to_be_kept_is_not_forgotten_with_the_past(sample: Project) -> None:
     plan = plan_performance(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 60)
     whole = hear_asks(sample, plan, 40.0, [], 160)
-    cut = hear_asks(sample, since(plan, 40.0), 40.0, [], 160)
+    cut = hear_asks(sample, drop_ended(plan, 40.0), 40.0, [], 160)
     assert [c.start for c in cut.layers["arms"].cues] == [
         c.start for c in whole.layers["arms"].cues if c.end >= 40
     ]
@@ -391,14 +394,14 @@ def test_poses_are_bit_for_bit_the_same_live_in_ticks_of_16_ms_scrubbed_and_bake
     ]
     end, tick = 12.0, 0.016
     plans = in_ticks(project, heard, end, tick, ahead=4.0, forget=3.0)
-    live = [pose_at(plan, project, n * tick) for n, plan in enumerate(plans)]
+    live = [compute_pose_at(plan, project, n * tick) for n, plan in enumerate(plans)]
     whole = plan_performance(
         project, [a.msgspec.structs.replace(x, id=f"ask{n}") for n, x in enumerate(heard)], end + 8
     )
     times = np.arange(len(plans)) * tick
-    baked = pose_at(whole, project, times)
+    baked = compute_pose_at(whole, project, times)
     shuffled = np.random.default_rng(3).permutation(len(times))
-    scrubbed = {int(n): pose_at(whole, project, times[n]) for n in shuffled[:200]}
+    scrubbed = {int(n): compute_pose_at(whole, project, times[n]) for n in shuffled[:200]}
     for n, pose in enumerate(live):
         assert (pose.rotations == baked.rotations[n]).all() and (
             pose.translations == baked.translations[n]

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from app.project.annotation_reading import AnnotationReading, begin_reading, work_into_project
+from app.project.annotation_reading import AnnotationReading, apply_reading, begin_reading
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Mode, Project
 from metagraph.graph.requests import Behave
 from metagraph.playback.learning.learn import Act, learn_model
 from metagraph.playback.planning.markov import ARMS, DEFAULTS
-from metagraph.playback.planning.mode_shares import mode_spans, with_modes
+from metagraph.playback.planning.mode_shares import find_mode_spans, with_modes
 from metagraph.playback.planning.running_plan import plan_performance
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
@@ -42,7 +42,7 @@ def test_a_model_without_modes_does_the_same_in_each(sample: Project) -> None:
 
 
 def test_pauses_within_a_turn_belong_to_it_and_after_the_others_one_listens_a_while() -> None:
-    spans = mode_spans([(1.0, 2.0), (2.4, 3.0)], [(8.0, 9.0)], 20.0)
+    spans = find_mode_spans([(1.0, 2.0), (2.4, 3.0)], [(8.0, 9.0)], 20.0)
     assert spans == [(0.0, "idle"), (1.0, "talking"), (3.6, "idle"), (8.0, "listening"), (11.0, "idle")]
 
 
@@ -69,9 +69,9 @@ def test_shares_are_those_that_were_seen() -> None:
 
 def test_what_is_learned_from_the_sample_gestures_more_talking_than_not(sample: Project) -> None:
     reading = begin_reading(read_elan(SAMPLE))
-    made = work_into_project(sample, reading, LAYERS, False, None).project
+    made = apply_reading(sample, reading, LAYERS, False, None).project
     idle, _, talking, *_ = made.markov["arms"].modes
     assert talking[0] > idle[0]
     silent = AnnotationReading(reading.annotation, {**reading.roles, "Speech": "ignore"})
-    made = work_into_project(sample, silent, LAYERS, False, None).project
+    made = apply_reading(sample, silent, LAYERS, False, None).project
     assert made.markov["arms"].modes == DEFAULTS["arms"].modes

@@ -16,7 +16,7 @@ from metagraph.graph.touch import Touch
 from metagraph.graph.words import FEELINGS
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.extend_performance import answer_ask, hear_asks, since
+from metagraph.playback.planning.extend_performance import answer_ask, drop_ended, hear_asks
 from metagraph.playback.planning.mood import (
     FADE,
     MOODS,
@@ -38,9 +38,9 @@ from metagraph.playback.planning.mood import (
     turn_extent,
 )
 from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
-from metagraph.playback.planning.vigour import _speed_of, vigour, vigours
+from metagraph.playback.planning.vigour import _speed_of, measure_vigour, measure_vigours
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 
@@ -59,15 +59,15 @@ def free(project: Project) -> Project:
 
 
 def performed(project: Project, *asks: dict[str, Any], end: float = 20.0, idle: bool = False) -> Plan:
-    return plan_performance(project, [a.request_from(ask) for ask in asks], end, 1, idle=idle)
+    return plan_performance(project, [a.make_request(ask) for ask in asks], end, 1, idle=idle)
 
 
 def stroke_of(project: Project, cue: Cue) -> float:
     """Return when a cue's stroke comes."""
-    from metagraph.playback.timing.phases import phases
+    from metagraph.playback.timing.phases import find_phases
 
     times = np.linspace(cue.start, cue.end, 20001)
-    return float(np.interp(phases(project, cue.action).stroke, cue.clip_seconds(times), times))
+    return float(np.interp(find_phases(project, cue.action).stroke, cue.clip_seconds(times), times))
 
 
 def test_the_words_are_those_the_table_has() -> None:
@@ -226,7 +226,8 @@ def test_smaller_gestures_keep_hands_nearer_their_stance_and_begin_and_end_in_it
     hands = [roles["left_hand"], roles["right_hand"]]
     assert sample.skeleton is not None
     places = [
-        sample.skeleton.globals(pose_at(p, sample, times, False))[1][:, hands] for p in (plan, small, still)
+        sample.skeleton.globals(compute_pose_at(p, sample, times, False))[1][:, hands]
+        for p in (plan, small, still)
     ]
     away = [np.linalg.norm(x - places[2], axis=-1).max() for x in places[:2]]
     assert 0.4 * away[0] < away[1] < 0.85 * away[0]
@@ -251,7 +252,7 @@ def test_moods_planned_tick_by_tick_are_those_planned_at_once(sample: Project) -
 def test_a_mood_taken_back_is_over_and_forgetting_keeps_what_lasts(sample: Project) -> None:
     plan = hear_asks(sample, Plan(1, 0.0), 0.0, [a.Feel(id="m", at=0.0, mood="tired")], 20.0)
     assert answer_ask(plan, "m").what == ("mood",)
-    kept = since(plan, 15.0)
+    kept = drop_ended(plan, 15.0)
     assert [m.id for m in kept.track.moods] == ["m"] and list(kept.life.moods.rows[-1]) == [-0.03, -0.8, 1.0]
     after = hear_asks(sample, plan, 8.0, [a.Withdraw(id="w", what="m")], 20.0)
     assert [round(m.end, 3) for m in after.track.moods] == [round(8.0 + sample.settings.lookahead, 3)]
@@ -260,7 +261,7 @@ def test_a_mood_taken_back_is_over_and_forgetting_keeps_what_lasts(sample: Proje
 
 def test_energetic_actions_are_those_whose_hands_move_fast(sample: Project) -> None:
     gestures = [x for x in sample.graphs["arms"].actions.values() if x.kind == "gesture"]
-    found = sorted(vigour(sample, x) for x in gestures)
+    found = sorted(measure_vigour(sample, x) for x in gestures)
     assert -1 <= found[0] < -0.1 and 0.1 < found[-1] <= 1
     assert abs(found[len(found) // 2]) < 0.1, "the middle one is as fast as the middle one"
 
@@ -273,9 +274,9 @@ def test_how_energetic_all_actions_are_is_what_each_is(sample: Project) -> None:
             one_by_one = project.with_graph(again)
             speeds = {ident: _speed_of(project, x) for ident, x in graph.actions.items()}
             known = {ident: speed for ident, speed in speeds.items() if speed is not None}
-            found = vigours(project, replace(graph), known)
+            found = measure_vigours(project, replace(graph), known)
             assert [found.get(x, 0.0) for x in again.actions] == [
-                vigour(one_by_one, x) for x in again.actions.values()
+                measure_vigour(one_by_one, x) for x in again.actions.values()
             ]
 
 
@@ -292,7 +293,7 @@ def test_hands_are_faster_and_farther_out_the_more_aroused(sample: Project) -> N
             {"do": "action", "id": f"g{n}", "action": x, "at": 1.0 + 8 * n} for n, x in enumerate(actions)
         ]
         plan = performed(project, *asks, end=42.0)
-        at = sample.skeleton.globals(pose_at(plan, project, np.arange(0, 42, 1 / 30), False))[1]
+        at = sample.skeleton.globals(compute_pose_at(plan, project, np.arange(0, 42, 1 / 30), False))[1]
         hands = at[:, [roles["left_hand"], roles["right_hand"]]] - at[:, [roles["chest"]]]
         speed = np.linalg.norm(np.diff(hands, axis=0), axis=-1) * 30
         speeds.append(float(speed[speed > 0.1].mean()))
@@ -309,7 +310,7 @@ def test_heads_hang_in_sadness_and_life_slows_with_arousal(sample: Project) -> N
     for valence, arousal in ((-1.0, -0.6), (0.0, 0.0), (1.0, 0.6)):
         project = feeling(sample, valence, arousal)
         plan = make_plan(project, 60.0, seed=1, idle=False)
-        pose = pose_at(plan, project, np.arange(5.0, 60.0, 0.5))
+        pose = compute_pose_at(plan, project, np.arange(5.0, 60.0, 0.5))
         places = sample.skeleton.globals(pose)[1]
         ahead.append((places[:, roles["head"], 2] - places[:, roles["hips"], 2]).mean())
         breaths.append(len(plan.life.breaths))

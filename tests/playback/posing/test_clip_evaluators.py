@@ -16,7 +16,7 @@ from metagraph.playback.posing.clip_evaluators import (
     MovedEvaluator,
     OverlaidEvaluator,
 )
-from metagraph.playback.posing.overlay import Overlay, clip_overlay
+from metagraph.playback.posing.overlay import Overlay, make_clip_overlay
 
 TIMES = np.array([0.1, 1.4, 0.7, 5.0])
 
@@ -33,7 +33,7 @@ def evaluators(sample: Project, clip: Clip) -> dict[str, Poses]:
     plan = make_plan(sample, 8.0)
 
     def over(time: float) -> Overlay | None:
-        return clip_overlay(sample, clip, np.array([time])) if time < 4.0 else None
+        return make_clip_overlay(sample, clip, np.array([time])) if time < 4.0 else None
 
     return {
         "a clip": ClipEvaluator(sample, clip),

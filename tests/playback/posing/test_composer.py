@@ -50,11 +50,12 @@ def test_offsets_are_multiplied_on_the_right_body_first_then_arms_then_head(
     expected = frame.ground.base.rotations
     for offset in (body, arms, head):
         expected = rotation.multiply(expected, offset[0][0])
-    assert np.all(rotation.angle_between(pose.rotations[0], expected) < 1e-6)
+    assert np.all(rotation.measure_angle_between(pose.rotations[0], expected) < 1e-6)
     assert np.allclose(pose.translations[0], frame.ground.base.translations + 1.2, atol=1e-6)
     swapped = rotation.multiply(rotation.multiply(frame.ground.base.rotations, arms[0][0]), body[0][0])
     assert not np.all(
-        rotation.angle_between(frame.compose({"body": body, "arms": arms}, 1).rotations[0], swapped) < 1e-3
+        rotation.measure_angle_between(frame.compose({"body": body, "arms": arms}, 1).rotations[0], swapped)
+        < 1e-3
     )
 
 
@@ -67,7 +68,9 @@ def test_a_weight_takes_part_of_the_turn_and_of_the_way(project: Project, toy: A
     q, t = turns(toy, [0, 0.6, 0.8], 0.7)
     pose = frame.compose({"arms": (q[:, joints], t[:, joints])}, 1)
     base = frame.ground.base
-    assert np.allclose(rotation.angle_between(base.rotations, pose.rotations[0]), weight * 0.7, atol=1e-5)
+    assert np.allclose(
+        rotation.measure_angle_between(base.rotations, pose.rotations[0]), weight * 0.7, atol=1e-5
+    )
     assert np.allclose(pose.translations[0] - base.translations, weight * 0.7, atol=1e-6)
     assert (len(joints) == 0) == (weight == 0)
 
@@ -90,7 +93,7 @@ def test_a_clip_without_its_base_is_its_offset(toy: Any) -> None:
     for reach in frame.reach.values():
         offsets = frame.ground.offsets(clip, reach)
         back = rotation.multiply(frame.ground.base.rotations[reach.joints], offsets.rotations)
-        assert np.all(rotation.angle_between(back, clip.dense.rotations[:, reach.joints]) < 1e-6)
+        assert np.all(rotation.measure_angle_between(back, clip.dense.rotations[:, reach.joints]) < 1e-6)
         assert frame.ground.offsets(clip, reach) is offsets, "worked out once"
 
 

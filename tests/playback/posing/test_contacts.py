@@ -20,13 +20,13 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.posing.contacts import (
-    contact_depths,
-    goals_at,
-    inside,
+    find_hand_goals,
+    find_inside,
+    find_nearest_between_lines,
     list_capsule_pairs,
-    nearest_between_lines,
+    measure_contact_depths,
 )
-from tests.posing import contact_rig, pose_at
+from tests.posing import compute_pose_at, contact_rig
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
 TIMES = np.arange(0.0, 240.0, 0.41)
@@ -47,18 +47,18 @@ def switched(**changes: bool) -> Project:
 
 
 def plain() -> Pose:
-    return pose_at(plan(), switched(contacts=False, guard=False), TIMES)
+    return compute_pose_at(plan(), switched(contacts=False, guard=False), TIMES)
 
 
 def test_hands_that_are_held_are_where_contacts_say() -> None:
     project = switched(guard=False)
     rig = contact_rig(project)
     assert rig is not None and project.skeleton is not None
-    pose = pose_at(plan(), project, TIMES)
+    pose = compute_pose_at(plan(), project, TIMES)
     turned, at = project.skeleton.globals(pose)
     joints, found = list(rig.joints), 0
     for n, time in enumerate(TIMES.tolist()):
-        for goal in goals_at(plan(), project, rig, time):
+        for goal in find_hand_goals(plan(), project, rig, time):
             if goal.weight < 0.9999:
                 continue
             to, hand = joints[goal.to], joints[rig.arms[goal.arm].hand]
@@ -73,8 +73,8 @@ def test_the_guard_brings_hands_out_of_the_body() -> None:
     rig = contact_rig(sample())
     assert rig is not None
     before, after = (
-        contact_depths(rig, plain()).max(-1),
-        contact_depths(rig, pose_at(plan(), sample(), TIMES)).max(-1),
+        measure_contact_depths(rig, plain()).max(-1),
+        measure_contact_depths(rig, compute_pose_at(plan(), sample(), TIMES)).max(-1),
     )
     assert (after > 0.005).mean() < 0.35 * (before > 0.005).mean()
     assert np.percentile(after, 95) < 0.006 < np.percentile(before, 95)
@@ -85,7 +85,7 @@ def test_nothing_but_arms_moves_and_only_in_their_upper_lower_and_hand_joints() 
     rig = contact_rig(sample())
     assert rig is not None
     arms = {rig.joints[p] for arm in rig.arms for p in (arm.upper, arm.lower, arm.hand)}
-    after, before = pose_at(plan(), sample(), TIMES), plain()
+    after, before = compute_pose_at(plan(), sample(), TIMES), plain()
     others = [j for j in range(after.rotations.shape[1]) if j not in arms]
     assert_array_equal(after.rotations[:, others], before.rotations[:, others])
     assert_array_equal(after.translations, before.translations)
@@ -96,14 +96,14 @@ def test_off_by_its_switches_poses_are_those_of_a_project_without_contacts_to_th
     graph = sample().graphs["arms"]
     bare = graph.with_actions({a.id: replace(a, contacts=()) for a in graph.actions.values()})
     without = replace(sample().with_graph(bare), touch=msgspec.structs.replace(sample().touch, guard=False))
-    assert_array_equal(pose_at(plan(), without, TIMES).rotations, plain().rotations)
+    assert_array_equal(compute_pose_at(plan(), without, TIMES).rotations, plain().rotations)
 
 
 def test_poses_are_the_same_one_by_one_and_all_at_once() -> None:
     some = TIMES[::40]
-    many = pose_at(plan(), sample(), some)
+    many = compute_pose_at(plan(), sample(), some)
     for n, time in enumerate(some.tolist()):
-        assert_allclose(pose_at(plan(), sample(), time).rotations, many.rotations[n], atol=1e-6)
+        assert_allclose(compute_pose_at(plan(), sample(), time).rotations, many.rotations[n], atol=1e-6)
 
 
 @pytest.mark.nightly
@@ -111,14 +111,14 @@ def test_arrays_are_told_to_be_inside_exactly_where_one_pose_after_the_other_wou
     rig = contact_rig(sample())
     assert rig is not None
     pose = plain()
-    told = inside(rig, pose)
+    told = find_inside(rig, pose)
     first, second, _ = list_capsule_pairs(rig)
     for n in range(0, len(TIMES), 7):
         one = _one(rig, pose, n)
-        assert solve_contacts(rig, one, []) == told[n] or contact_depths(rig, pose)[n].max() < 1e-6
+        assert solve_contacts(rig, one, []) == told[n] or measure_contact_depths(rig, pose)[n].max() < 1e-6
         ends = capsule_ends(rig, _one(rig, pose, n))
         a, b, c, d = (np.array([ends[2 * i + k] for i in some]) for some in (first, second) for k in (0, 1))
-        way, _ = nearest_between_lines(a, b, c, d)
+        way, _ = find_nearest_between_lines(a, b, c, d)
         ours = [apart(ends, 2 * i, 2 * k) for i, k in zip(first, second, strict=True)]
         assert_allclose(np.linalg.norm(way, axis=-1), [o[3] for o in ours], atol=1e-6)
         assert_allclose(way, [o[:3] for o in ours], atol=1e-6)
@@ -129,8 +129,8 @@ def test_a_skeleton_without_arms_is_left_alone() -> None:
     assert contact_rig(project) is None
     life = msgspec.structs.replace(sample().life, follow_through=0, shoulder_lift=0)  # nor does a body answer
     stiff = replace(switched(contacts=False, guard=False), life=life)
-    expected = pose_at(plan(), stiff, TIMES[:9]).rotations
-    assert_array_equal(pose_at(plan(), project, TIMES[:9]).rotations, expected)
+    expected = compute_pose_at(plan(), stiff, TIMES[:9]).rotations
+    assert_array_equal(compute_pose_at(plan(), project, TIMES[:9]).rotations, expected)
 
 
 @pytest.mark.parametrize("joint", ["Hips", "LeftUpperArm"])
@@ -141,7 +141,7 @@ def test_contacts_with_a_joint_that_is_gone_are_passed_over(joint: str) -> None:
         for a in graph.actions.values()
     }
     project = sample().with_graph(graph.with_actions(lost))
-    assert np.isfinite(pose_at(plan(), project, TIMES[::20]).rotations).all()
+    assert np.isfinite(compute_pose_at(plan(), project, TIMES[::20]).rotations).all()
 
 
 def _one(rig: Any, pose: Pose, n: int) -> ContactPose:

@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.graph.model import Project
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.composer import find_playable_motion
 from metagraph.playback.posing.foot_slides import (
     RATE,
     SLIDES,
@@ -21,13 +21,13 @@ from metagraph.playback.posing.foot_slides import (
     measure_slide_speeds,
 )
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
-from tests.posing import pose_at
+from tests.posing import compute_pose_at
 
 
 def moved(sample: Project, way) -> FeetSeen:
     """What is seen of the body's loop when its root is moved by `way(times)` `[N, 3]`."""
     loop = next(a for a in sample.graphs["body"].actions.values() if a.kind == "stance")
-    clip = playable(sample, loop)
+    clip = find_playable_motion(sample, loop)
     assert clip is not None and sample.skeleton is not None
     shift = way(np.arange(clip.frames) / clip.fps)
     translations = np.array(clip.translations)
@@ -75,7 +75,7 @@ def test_over_a_performance_nothing_slides_and_what_is_seen_piece_by_piece_is_th
     plan = make_plan(plan_as_in_paper(sample), 30.0, seed=3)
 
     def places(times):
-        return sample.skeleton.globals(pose_at(plan, sample, times))[1]
+        return sample.skeleton.globals(compute_pose_at(plan, sample, times))[1]
 
     whole = FeetWatch(sample, places, 30.0, plan).at(range(int(30 * RATE)))
     assert not whole.sliding().any()

@@ -30,7 +30,7 @@ from metagraph.playback.posing.follow_through import (
     knot_time,
 )
 from metagraph.playback.posing.weight import find_arm_track_rows
-from tests.posing import pose_at, weight_of
+from tests.posing import compute_pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
 TIMES = np.arange(0.0, 40.0, 1 / 15)
@@ -56,7 +56,7 @@ def stiff() -> Project:
 
 @lru_cache(maxsize=2)
 def posed(answers: bool) -> Pose:
-    return pose_at(plan(), sample() if answers else stiff(), TIMES)
+    return compute_pose_at(plan(), sample() if answers else stiff(), TIMES)
 
 
 @lru_cache(maxsize=2)
@@ -73,10 +73,10 @@ def test_hips_give_way_under_gestures_and_feet_stay_where_they_are() -> None:
     hips = roles["hips"]
     travel = np.linalg.norm(at[:, hips] - were[:, hips], axis=-1)
     assert 0.008 < travel.max() < 0.035 * 1.5  # metres
-    assert np.degrees(rotation.angle_between(turned[:, hips], before[:, hips]).max()) > 1
+    assert np.degrees(rotation.measure_angle_between(turned[:, hips], before[:, hips]).max()) > 1
     for foot in ("left_foot", "right_foot", "left_toes", "right_toes"):
         assert np.abs(at[:, roles[foot]] - were[:, roles[foot]]).max() < 2e-6
-        assert rotation.angle_between(turned[:, roles[foot]], before[:, roles[foot]]).max() < 1e-4
+        assert rotation.measure_angle_between(turned[:, roles[foot]], before[:, roles[foot]]).max() < 1e-4
 
 
 def test_the_hips_go_against_the_arms() -> None:
@@ -95,39 +95,44 @@ def test_the_hips_go_against_the_arms() -> None:
 
 @pytest.mark.nightly
 def test_turned_off_poses_are_the_composed_ones_to_the_bit() -> None:
-    layers = pose_at(plan(), with_dials(stiff(), planted_feet=0.0), TIMES)
+    layers = compute_pose_at(plan(), with_dials(stiff(), planted_feet=0.0), TIMES)
     still = with_dials(sample(), stillness=1.0)
     dead = replace(sample(), life=msgspec.structs.replace(sample().life, on=False))
     for project in (with_dials(still, planted_feet=0.0), dead):
         rigid = with_dials(project, follow_through=0.0, shoulder_lift=0.0)
-        a, b = (pose_at(plan(), p, TIMES[:200]) for p in (project, rigid))
+        a, b = (compute_pose_at(plan(), p, TIMES[:200]) for p in (project, rigid))
         assert_array_equal(a.rotations, b.rotations)
         assert_array_equal(a.translations, b.translations)
-    assert_array_equal(pose_at(plan(), sample(), TIMES, alive=False).translations, layers.translations)
+    assert_array_equal(
+        compute_pose_at(plan(), sample(), TIMES, alive=False).translations, layers.translations
+    )
 
 
 def test_a_stance_at_rest_is_answered_by_nothing() -> None:
     resting = make_plan(sample(), 10.0, [], idle=False)
     times = np.linspace(0, 10, 61)
-    a, b = (pose_at(resting, project, times) for project in (sample(), stiff()))
+    a, b = (compute_pose_at(resting, project, times) for project in (sample(), stiff()))
     assert_array_equal(a.rotations, b.rotations)
     assert_array_equal(a.translations, b.translations)
 
 
 def test_each_pose_depends_on_plan_and_time_alone() -> None:
     order = np.random.default_rng(1).permutation(len(TIMES))
-    shuffled = pose_at(plan(), sample(), TIMES[order])
+    shuffled = compute_pose_at(plan(), sample(), TIMES[order])
     assert_allclose(shuffled.rotations, posed(True).rotations[order], atol=2e-7)
     for n in (40, 13, 300, 299):  # to and fro, with nothing remembered of another plan's object
         fresh = improvise(sample(), 60.0, seed=3)
-        one = pose_at(fresh, sample(), float(TIMES[n]))
+        one = compute_pose_at(fresh, sample(), float(TIMES[n]))
         assert_allclose(one.rotations, posed(True).rotations[n], atol=2e-7)
         assert_allclose(one.translations, posed(True).translations[n], atol=2e-7)
 
 
 def test_the_head_keeps_its_direction_and_hands_theirs() -> None:
     roles, (turned, at), (before, were) = anatomy.project_roles(sample()), placed(True), placed(False)
-    assert np.degrees(rotation.angle_between(turned[:, roles["head"]], before[:, roles["head"]])).max() < 1.5
+    assert (
+        np.degrees(rotation.measure_angle_between(turned[:, roles["head"]], before[:, roles["head"]])).max()
+        < 1.5
+    )
     for side in ("left", "right"):
         moved = np.linalg.norm(at[:, roles[f"{side}_hand"]] - were[:, roles[f"{side}_hand"]], axis=-1)
         assert moved.max() < 0.04
@@ -140,7 +145,7 @@ def test_knees_do_not_pop() -> None:
     skeleton = sample().skeleton
     assert skeleton is not None
     for project in (sample(), stiff()):
-        _, at = skeleton.globals(pose_at(plan(), project, times))
+        _, at = skeleton.globals(compute_pose_at(plan(), project, times))
         for side in ("left", "right"):
             hip, knee, foot = (at[:, roles[f"{side}_{p}"]] for p in ("upper_leg", "lower_leg", "foot"))
             a, b = knee - hip, foot - knee
@@ -163,8 +168,8 @@ def test_a_clip_that_the_body_plays_too_brings_its_own_hips() -> None:
     times = np.arange(0, 8, 1 / 15)
     apart = []
     for found in (once, twice):
-        a = pose_at(found, both, times)
-        b = pose_at(found, with_dials(both, follow_through=0.0, shoulder_lift=0.0), times)
+        a = compute_pose_at(found, both, times)
+        b = compute_pose_at(found, with_dials(both, follow_through=0.0, shoulder_lift=0.0), times)
         apart.append(np.abs(a.translations - b.translations).max())
     assert apart[0] > 0.0005
     assert apart[1] < 0.2 * apart[0]
@@ -176,7 +181,7 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
     arms = project.graphs["arms"]
     clip = project.clips[arms.of(arms.start or "", "gesture")[0].clip].motion
     assert clip is not None
-    base = anatomy.base_pose(project).rotations
+    base = anatomy.get_base_pose(project).rotations
     rotations = np.array(clip.rotations)
     upper, collar = roles["left_upper_arm"], roles["left_shoulder"]
     raised = rotation.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(120))
@@ -205,8 +210,8 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
 def test_a_skeleton_that_lacks_what_it_takes_is_left_alone(role: str) -> None:
     project = replace(sample(), roles={role: "nothing"})
     assert weight_of(project).rig is None
-    pose = pose_at(plan(), project, TIMES[:60])
-    rigid = pose_at(plan(), with_dials(project, follow_through=0.0, shoulder_lift=0.0), TIMES[:60])
+    pose = compute_pose_at(plan(), project, TIMES[:60])
+    rigid = compute_pose_at(plan(), with_dials(project, follow_through=0.0, shoulder_lift=0.0), TIMES[:60])
     assert_array_equal(pose.rotations, rigid.rotations)
 
 
@@ -226,7 +231,7 @@ def test_who_sits_does_not_sway() -> None:
         rotations[entry.id] = replace(entry, motion=replace(clip, rotations=turns))
     seated = replace(project, clips={**project.clips, **rotations})
     a, b = (
-        pose_at(found, p, TIMES[:300])
+        compute_pose_at(found, p, TIMES[:300])
         for p in (seated, with_dials(seated, follow_through=0.0, shoulder_lift=0.0))
     )
     assert_array_equal(a.translations, b.translations)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.playback.timing.handles import HANDLES, PHASES, handle_times, move_handle, set_timing_field
-from metagraph.playback.timing.speed_curves import speed_of
+from metagraph.playback.timing.speed_curves import measure_action_speed
 
 
 @pytest.fixture(scope="module")
@@ -110,17 +110,17 @@ def test_numbers_typed_for_many_are_kept_within_each_clip(toy, project):
 
 
 def test_the_plot_shows_the_hand_the_head_or_the_body(toy, project, wave):
-    speeds, words = speed_of(project, wave)
+    speeds, words = measure_action_speed(project, wave)
     assert words == "hand speed"
     assert speeds.shape == (project.clips[wave.clip].frames,)
     assert speeds.max() > 0.1
-    assert speed_of(project, replace(wave, layer="head"))[1] == "head speed"
-    assert speed_of(project, replace(wave, layer="body"))[1] == "body speed"
+    assert measure_action_speed(project, replace(wave, layer="head"))[1] == "head speed"
+    assert measure_action_speed(project, replace(wave, layer="body"))[1] == "body speed"
 
 
 def test_a_missing_file_has_no_speed(project, wave):
     clips = {**project.clips, wave.clip: replace(project.clips[wave.clip], motion=None)}
-    speeds, words = speed_of(replace(project, clips=clips), wave)
+    speeds, words = measure_action_speed(replace(project, clips=clips), wave)
     assert isinstance(speeds, np.ndarray)
     assert len(speeds) == 0
     assert words == ""

@@ -10,10 +10,10 @@ from metagraph.graph import edits
 from metagraph.playback.timing.handles import (
     BLOCKS,
     EDGES,
-    block_moved,
     find_blocks,
     handle_times,
     list_handles,
+    move_block,
     move_handle_by,
     slip_action,
 )
@@ -43,7 +43,7 @@ def test_a_gesture_has_four_phases_end_to_end_and_nothing_else_has_any(toy, proj
     assert [b.name for b in found] == list(BLOCKS)
     assert [(b.first, b.last) for b in found] == [(0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0)]
     assert all(find_blocks(project, a) == () for a in project.actions() if a.kind != "gesture")
-    assert block_moved(project, project.action(toy.id(project, "rest loop")), "hold", 0.1) == {}
+    assert move_block(project, project.action(toy.id(project, "rest loop")), "hold", 0.1) == {}
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_a_gesture_has_four_phases_end_to_end_and_nothing_else_has_any(toy, proj
     ],
 )
 def test_a_dragged_block_keeps_its_length_and_stops_at_its_neighbours(project, wave, block, by, after):
-    changed = edits.update_actions(project, [wave.id], timing=block_moved(project, wave, block, by))
+    changed = edits.update_actions(project, [wave.id], timing=move_block(project, wave, block, by))
     assert edges(changed, wave.id) == pytest.approx(after)
 
 
@@ -70,7 +70,7 @@ def test_whatever_blocks_are_dragged_the_phases_stay_in_order_within_the_clip(to
     ident = toy.id(project, "rest wave rt")
     for block, by in drags:
         action = project.action(ident)
-        project = edits.update_actions(project, [ident], timing=block_moved(project, action, block, by))
+        project = edits.update_actions(project, [ident], timing=move_block(project, action, block, by))
     found = edges(project, ident)
     assert found == sorted(found)
     assert found[0] >= 0 and found[-1] <= round(project.clips[project.action(ident).clip].duration, 3)

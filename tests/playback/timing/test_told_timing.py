@@ -15,8 +15,8 @@ from metagraph.graph import requests as a
 from metagraph.graph.face.names import VISEMES
 from metagraph.graph.model import Project
 from metagraph.playback.life.line_timing import ARKIT, AZURE, OCULUS, POLLY, SETS
-from metagraph.playback.life.lips import mouth
-from metagraph.playback.life.voice import voice_for_speech
+from metagraph.playback.life.lips import compute_mouth_shapes
+from metagraph.playback.life.voice import choose_voice
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import RunningPlan, plan_performance
 from metagraph.playback.timing.told_timing import read_given_timing
@@ -27,13 +27,13 @@ WORDS = [["Hello", 0.1, 0.5], ["there", 1.5, 1.9]]
 
 def shown(plan: Plan, times: Any) -> Any:
     """Return how much of each shape but silence the mouth shows, `[N, 14]`."""
-    found = mouth(plan.track, {}, 0.03, np.asarray(times, float))
+    found = compute_mouth_shapes(plan.track, {}, 0.03, np.asarray(times, float))
     return np.zeros((len(times), len(VISEMES) - 1)) if found is None else found
 
 
 def said(project: Project, **fields: Any) -> Plan:
     return plan_performance(
-        project, [a.request_from({"do": "say", "id": "s", "at": 1.0, **fields})], 10.0, idle=False
+        project, [a.make_request({"do": "say", "id": "s", "at": 1.0, **fields})], 10.0, idle=False
     )
 
 
@@ -65,7 +65,7 @@ def test_words_alone_are_what_is_said(sample: Project) -> None:
     (speech,) = said(sample, words=WORDS).track.speeches
     assert speech.text == "Hello there"
     assert speech.end == pytest.approx(1.0 + 1.9 + 0.065, abs=0.02), "the mouth needs a little to shut"
-    accents = voice_for_speech({}, speech).accents
+    accents = choose_voice({}, speech).accents
     assert 0.1 < accents[0] < 0.5
 
 
@@ -182,12 +182,12 @@ def test_what_is_wrong_is_told_with_its_place_and_a_remedy(
 def test_a_line_is_added_to_while_it_is_said_without_a_jump(sample: Project) -> None:
     words = [["one", 0.1, 0.4], ["two", 0.5, 0.8], ["three", 1.2, 1.6], ["four", 1.8, 2.2]]
     whole = RunningPlan(sample, idle=False)
-    whole.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": words})])
+    whole.hear(1.0, [a.make_request({"do": "say", "id": "s", "words": words})])
     for later in (words[2:], words):  # what is new alone, or all of it again
         growing = RunningPlan(sample, idle=False)
-        growing.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": words[:2]})])
+        growing.hear(1.0, [a.make_request({"do": "say", "id": "s", "words": words[:2]})])
         before = growing.plan
-        growing.hear(1.6, [a.request_from({"do": "say", "id": "s", "words": later})])
+        growing.hear(1.6, [a.make_request({"do": "say", "id": "s", "words": later})])
         (speech,) = growing.plan.track.speeches
         (wanted,) = whole.plan.track.speeches
         assert speech == wanted
@@ -200,10 +200,10 @@ def test_a_line_is_added_to_while_it_is_said_without_a_jump(sample: Project) -> 
 def test_what_has_been_said_stands_whatever_comes_later(sample: Project) -> None:
     running = RunningPlan(sample, idle=False)
     running.hear(
-        1.0, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["two", 0.9, 1.2]]})]
+        1.0, [a.make_request({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["two", 0.9, 1.2]]})]
     )
     running.hear(
-        1.6, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["too", 0.9, 1.3]]})]
+        1.6, [a.make_request({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["too", 0.9, 1.3]]})]
     )
     (speech,) = running.plan.track.speeches
     assert speech.timing is not None and [w.text for w in speech.timing.words] == ["one", "too"]
@@ -212,18 +212,18 @@ def test_what_has_been_said_stands_whatever_comes_later(sample: Project) -> None
 def test_what_comes_too_late_takes_nothing_back(sample: Project) -> None:
     running = RunningPlan(sample, idle=False)
     running.hear(
-        1.0, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["two", 0.9, 1.2]]})]
+        1.0, [a.make_request({"do": "say", "id": "s", "words": [["one", 0.1, 0.4], ["two", 0.9, 1.2]]})]
     )
-    running.hear(1.8, [a.request_from({"do": "say", "id": "s", "words": [["and", 0.45, 0.5]]})])
+    running.hear(1.8, [a.make_request({"do": "say", "id": "s", "words": [["and", 0.45, 0.5]]})])
     (speech,) = running.plan.track.speeches
     assert speech.timing is not None and [w.text for w in speech.timing.words] == ["one", "two"]
 
 
 def test_a_line_that_is_over_is_said_anew_under_its_id(sample: Project) -> None:
     running = RunningPlan(sample, idle=False)
-    running.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": WORDS})])
+    running.hear(1.0, [a.make_request({"do": "say", "id": "s", "words": WORDS})])
     again = [["please", 0.0, 0.4], ["open", 0.5, 0.8], ["both", 0.9, 4.0]]
-    running.hear(5.0, [a.request_from({"do": "say", "id": "s", "words": again})])
+    running.hear(5.0, [a.make_request({"do": "say", "id": "s", "words": again})])
     last = running.plan.track.last_speech("s")
     assert last is not None and last.start == pytest.approx(5.0 + sample.settings.lookahead)
     assert last.text == "please open both"
@@ -235,16 +235,16 @@ def test_words_that_come_after_a_line_has_run_out_still_belong_to_it(
     sample: Project, more: list[Any]
 ) -> None:
     running = RunningPlan(sample, idle=False)
-    running.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": WORDS})])
+    running.hear(1.0, [a.make_request({"do": "say", "id": "s", "words": WORDS})])
     (first,) = running.plan.track.speeches
-    running.hear(first.end + 0.2, [a.request_from({"do": "say", "id": "s", "words": more})])
+    running.hear(first.end + 0.2, [a.make_request({"do": "say", "id": "s", "words": more})])
     last = running.plan.track.last_speech("s")
     assert last is not None and last.start == first.start and last.text == "Hello there again"
 
 
 def hear_words(running: RunningPlan, now: float, *words: list[Any]) -> list[str]:
     """Say words under one id; return all that is said under it, in order, with when it begins."""
-    running.hear(now, [a.request_from({"do": "say", "id": "s", "words": list(words)})])
+    running.hear(now, [a.make_request({"do": "say", "id": "s", "words": list(words)})])
     speech = running.plan.track.last_speech("s")
     assert speech is not None and speech.timing is not None
     return [f"{word.text} {word.start:.1f}" for word in speech.timing.words]
@@ -274,7 +274,7 @@ def test_shapes_that_begin_at_0_again_come_after_those_that_were_told(sample: Pr
     running = RunningPlan(sample, idle=False)
     first, second = [[0.0, "aa"], [0.4, "sil"]], [[0.0, "O"], [0.3, "sil"]]
     for now, marks in ((1.0, first), (1.3, second)):
-        running.hear(now, [a.request_from({"do": "say", "id": "s", "visemes": marks})])
+        running.hear(now, [a.make_request({"do": "say", "id": "s", "visemes": marks})])
     (speech,) = running.plan.track.speeches
     assert speech.timing is not None
     assert [m.viseme for m in speech.timing.marks if m.viseme != "sil"] == ["aa", "O"]
@@ -283,8 +283,8 @@ def test_shapes_that_begin_at_0_again_come_after_those_that_were_told(sample: Pr
 
 def test_another_line_is_another_line(sample: Project) -> None:
     running = RunningPlan(sample, idle=False)
-    running.hear(1.0, [a.request_from({"do": "say", "id": "s", "words": [["one", 0.1, 4.0]]})])
-    running.hear(2.0, [a.request_from({"do": "say", "id": "t", "words": [["two", 0.1, 0.4]]})])
+    running.hear(1.0, [a.make_request({"do": "say", "id": "s", "words": [["one", 0.1, 4.0]]})])
+    running.hear(2.0, [a.make_request({"do": "say", "id": "t", "words": [["two", 0.1, 0.4]]})])
     first, second = running.plan.track.speeches
     assert first.end == second.start == pytest.approx(2.0 + sample.settings.lookahead)
 
@@ -292,8 +292,8 @@ def test_another_line_is_another_line(sample: Project) -> None:
 def test_a_line_that_is_added_to_may_be_taken_back(sample: Project) -> None:
     running = RunningPlan(sample, idle=False)
     for now, start in ((1.0, 0.1), (1.4, 1.0)):
-        running.hear(now, [a.request_from({"do": "say", "id": "s", "words": [["word", start, start + 0.8]]})])
-    running.hear(1.5, [a.request_from({"do": "withdraw", "id": "w", "what": "s"})])
+        running.hear(now, [a.make_request({"do": "say", "id": "s", "words": [["word", start, start + 0.8]]})])
+    running.hear(1.5, [a.make_request({"do": "withdraw", "id": "w", "what": "s"})])
     (speech,) = running.plan.track.speeches
     assert speech.end == pytest.approx(1.5 + sample.settings.lookahead)
 

@@ -15,7 +15,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.default_body.figure import DefaultBody
-from preview.default_body.fit import sculpture
+from preview.default_body.fit import read_sculpture
 from preview.default_body.footing import find_footing
 from preview.figure import StickFigure
 from preview.scene import DARK, LIGHT, Scene
@@ -82,12 +82,12 @@ def opposite() -> np.ndarray:
     """The mirror image of each sculpted point `[V]`."""
     from scipy.spatial import cKDTree
 
-    points = sculpture().character.positions
+    points = read_sculpture().character.positions
     return cKDTree(points).query(points * [-1, 1, 1])[1]
 
 
 def test_the_surface_is_closed_and_alike_on_both_sides():
-    body = sculpture().character
+    body = read_sculpture().character
     edges = np.sort(np.concatenate([body.triangles[:, [k, (k + 1) % 3]] for k in range(3)]), 1)
     _, count = np.unique(edges, axis=0, return_counts=True)
     assert (count == 2).all()

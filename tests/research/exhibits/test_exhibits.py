@@ -19,7 +19,12 @@ from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import Project
 from metagraph.research.exhibits import generated, searching
 from metagraph.research.exhibits import material as materials
-from metagraph.research.exhibits.authoring import exhibit_hours, keep_first_uses, make_figure_1, smaller
+from metagraph.research.exhibits.authoring import (
+    exhibit_hours,
+    keep_first_uses,
+    make_figure_1,
+    make_smaller_project,
+)
 from metagraph.research.exhibits.exhibit import (
     EXHIBITS,
     NUMBERS,
@@ -29,11 +34,11 @@ from metagraph.research.exhibits.exhibit import (
     MadeExhibit,
     choose_exhibits,
 )
-from metagraph.research.exhibits.material import ExhibitMaterial, actors_rates, make_conversations
+from metagraph.research.exhibits.material import ExhibitMaterial, list_actors_rates, make_conversations
 from metagraph.research.exhibits.page import encode_exhibits, exhibit_as_text, format_exhibits
-from metagraph.research.exhibits.planning import fewest
+from metagraph.research.exhibits.planning import find_fewest_transitions
 from metagraph.research.exhibits.published import FIGURE_6, FIGURE_11, TABLE_1, TABLE_2
-from metagraph.research.exhibits.searching import Scarcity, exhibit_competing, scarce
+from metagraph.research.exhibits.searching import Scarcity, exhibit_competing, make_scarce_takes
 
 
 @pytest.fixture(scope="module")
@@ -58,10 +63,10 @@ def test_what_is_printed_agrees_with_its_own_counts() -> None:
 
 
 def test_a_row_of_percentages_comes_of_a_few_counts() -> None:
-    assert fewest((100.0, 0.0)) == 1
-    assert fewest((33.3, 33.3, 33.3)) == 3
-    assert fewest((26.7, 33.3, 6.7, 13.3, 20)) == 15
-    assert fewest((1.2345, 98.7655)) == 0
+    assert find_fewest_transitions((100.0, 0.0)) == 1
+    assert find_fewest_transitions((33.3, 33.3, 33.3)) == 3
+    assert find_fewest_transitions((26.7, 33.3, 6.7, 13.3, 20)) == 15
+    assert find_fewest_transitions((1.2345, 98.7655)) == 0
 
 
 def test_the_graph_that_figure_1_imagines_has_as_many_connections_as_listing_them_gives() -> None:
@@ -72,7 +77,7 @@ def test_the_graph_that_figure_1_imagines_has_as_many_connections_as_listing_the
 
 
 def test_a_smaller_project_keeps_its_stances_first(sample: Project) -> None:
-    few = list(smaller(sample, 9).actions())
+    few = list(make_smaller_project(sample, 9).actions())
     assert len(few) == 9 and {a.kind for a in few} == {"stance"}
 
 
@@ -166,14 +171,14 @@ def test_made_up_conversations_are_the_same_each_time_and_move_at_the_actors_rat
     assert a.conversation == b.conversation
     assert a.clips[0] is not None and b.clips[0] is not None
     assert (a.clips[0].rotations == b.clips[0].rotations).all()
-    assert [s.rates for s in a.conversation.sides] == list(actors_rates())
-    assert actors_rates()[0].clause == pytest.approx(0.7515, abs=1e-4)
+    assert [s.rates for s in a.conversation.sides] == list(list_actors_rates())
+    assert list_actors_rates()[0].clause == pytest.approx(0.7515, abs=1e-4)
 
 
 @pytest.mark.nightly
 def test_where_constraints_compete_some_find_nothing_and_the_best_finds_more(sample: Project) -> None:
     settings = [s for s in searching.SETTINGS if s.name in (searching.ALL, "no constraints")]
-    actor = scarce(sample, Scarcity("few", 4, 30.0, adjoining=True), 1)
+    actor = make_scarce_takes(sample, Scarcity("few", 4, 30.0, adjoining=True), 1)
     done = searching.evaluate_search(actor.clips, actor.speech, settings)
     found = {(r.setting, r.search): r.found for r in done.rows}
     cases = done.rows[0].cases
@@ -183,9 +188,9 @@ def test_where_constraints_compete_some_find_nothing_and_the_best_finds_more(sam
 
 @pytest.mark.nightly
 def test_adjoining_clauses_leave_no_short_gap_and_rare_answers_are_rarer(sample: Project) -> None:
-    plain = scarce(sample, Scarcity("x", 1, 40.0), 1)
-    closed = scarce(sample, Scarcity("x", 1, 40.0, adjoining=True), 1)
-    rare = scarce(sample, Scarcity("x", 1, 40.0, rare=3), 1)
+    plain = make_scarce_takes(sample, Scarcity("x", 1, 40.0), 1)
+    closed = make_scarce_takes(sample, Scarcity("x", 1, 40.0, adjoining=True), 1)
+    rare = make_scarce_takes(sample, Scarcity("x", 1, 40.0, rare=3), 1)
 
     def clauses(actor: materials.ExhibitActor) -> list[tuple[float, float]]:
         return [(s.start, s.end) for s in actor.speech[0] if s.kind == "clause"]

@@ -15,7 +15,7 @@ from metagraph.research.generation.ablation import (
     AblationTraining,
     ablate_features,
     ablate_model,
-    sizes_for,
+    choose_sizes,
 )
 from metagraph.research.generation.evaluation import HeldOut, SamplingManner
 from metagraph.research.generation.planted import Planted, write_planted
@@ -59,7 +59,7 @@ def run(folder, trainer, changes=("whole", "no past", "no activity", "mirrored")
 @pytest.mark.parametrize("size", ["small", "paper"])
 def test_every_change_gives_sizes_that_can_be_or_says_nothing(kind, size):
     sizes = sizes_of(kind, size)
-    wanted = {c.name: sizes_for(c, kind, sizes) for c in CHANGES}
+    wanted = {c.name: choose_sizes(c, kind, sizes) for c in CHANGES}
     assert wanted["whole"] == (kind, sizes)
     for found in wanted.values():
         assert found is None or shapes_of(found[1])

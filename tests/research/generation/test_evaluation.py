@@ -12,10 +12,10 @@ from metagraph.generation.takes import SplitError, Take, TakeMarks, TakeSource, 
 from metagraph.research.generation.evaluation import (
     HeldOut,
     SamplingManner,
-    for_all,
+    find_takes_unseen_by_all,
+    find_unseen_takes,
     generate_poses,
     judge_on_takes,
-    unseen,
 )
 from tests.generation.makers import babble, conversation, moving, rig, untrained
 
@@ -64,26 +64,26 @@ def test_what_is_judged_is_what_a_user_gets(kind):
 
 
 def test_takes_that_were_learned_from_are_left_out():
-    fresh, left = unseen(taught([TAKES[0]], [TAKES[1]]), TAKES)
+    fresh, left = find_unseen_takes(taught([TAKES[0]], [TAKES[1]]), TAKES)
     assert [t.source.name for t in fresh] == ["b"] and left == ("a",)
 
 
 def test_a_sound_that_was_learned_from_is_enough_to_be_left_out():
     other_side = replace(TAKES[1], source=TakeSource("b", ("other motion", "sound of a")))
     with pytest.raises(SplitError, match="learned from"):
-        unseen(taught([TAKES[0]]), [other_side])
+        find_unseen_takes(taught([TAKES[0]]), [other_side])
 
 
 def test_a_model_is_not_judged_on_what_it_knows():
     with pytest.raises(SplitError, match=r"all 2 takes .* says nothing"):
-        unseen(taught(TAKES), TAKES)
+        find_unseen_takes(taught(TAKES), TAKES)
 
 
 @pytest.mark.nightly
 def test_of_one_recording_the_block_that_was_held_out_is_taken():
     long = take("long", 3, 60.0)
     learned, held = split_takes([long])
-    fresh, left = unseen(taught(learned, held), [long])
+    fresh, left = find_unseen_takes(taught(learned, held), [long])
     assert [(t.source.start, t.seconds) for t in fresh] == [(t.source.start, t.seconds) for t in held]
     assert not left
 
@@ -91,10 +91,10 @@ def test_of_one_recording_the_block_that_was_held_out_is_taken():
 def test_several_models_share_what_none_has_seen():
     third = take("c", 4)
     models = {"x": taught([TAKES[0]]), "y": taught([TAKES[1]])}
-    fresh, left = for_all(models, (*TAKES, third))
+    fresh, left = find_takes_unseen_by_all(models, (*TAKES, third))
     assert [t.source.name for t in fresh] == ["c"] and set(left) == {"a", "b"}
     with pytest.raises(SplitError):
-        for_all(models, TAKES)
+        find_takes_unseen_by_all(models, TAKES)
 
 
 def test_the_table_has_the_truth_what_stands_beside_it_and_each_model():

@@ -23,11 +23,11 @@ def performance(seconds: float = 8.0, seed: int = 1) -> MotionSample:
 
 
 def test_whiskers_end_at_values_and_what_is_beyond_stands_alone():
-    low, first, middle, third, high, beyond = figures.tukey(np.array([*range(1, 12), 100.0]))
+    low, first, middle, third, high, beyond = figures.compute_box_plot(np.array([*range(1, 12), 100.0]))
     assert (low, middle, high) == (1, 6.5, 11)
     assert first < middle < third
     assert beyond.tolist() == [100]
-    assert figures.tukey(np.full(5, 3.0))[:5] == (3, 3, 3, 3, 3)
+    assert figures.compute_box_plot(np.full(5, 3.0))[:5] == (3, 3, 3, 3, 3)
 
 
 def test_distances_are_in_centimetres_from_the_mean():

@@ -6,7 +6,7 @@ from metagraph.generation.features import RATE
 from metagraph.generation.statistics import compute_measures, make_motion_sample, mismatch_speech
 from metagraph.generation.take_files import find_takes, read_take_batch
 from metagraph.generation.takes import shares_stretch, split_takes
-from metagraph.graph.conversation.model import segments_heard_by
+from metagraph.graph.conversation.model import list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.research.generation.planted import CARD, Planted, perform_planted, read_planted, write_planted
 from metagraph.research.generation.planted_speech import make_planted_speech
@@ -56,7 +56,7 @@ def test_speech_has_all_that_can_be_answered_and_is_not_cut_off():
     spoken = make_planted_speech(180.0, 1, 1, "talk")
     assert np.abs(spoken.samples).max() < 0.5
     for n in (0, 1):
-        kinds = {s.kind for s in segments_heard_by(spoken.conversation, n)}
+        kinds = {s.kind for s in list_segments_heard_by(spoken.conversation, n)}
         assert kinds == {"clause", "response", "hesitation"}
         assert spoken.conversation.sides[n].segments[-1].end <= 180.0
 

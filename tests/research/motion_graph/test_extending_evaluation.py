@@ -9,7 +9,7 @@ from metagraph.graph.conversation.model import Segment
 from metagraph.research.motion_graph.extending_evaluation import (
     format_rows_as_text,
     hold_out_takes,
-    news_of,
+    list_speech_news,
     score_extending,
     score_paths,
 )
@@ -22,10 +22,13 @@ from tests.synthesis.test_search import graph_of
 
 def test_what_becomes_known_when_it_is_heard_and_when_it_is_announced() -> None:
     said = [Segment("clause", 1.0, 2.0, 1.5), Segment("response", 0.1, 0.4)]
-    assert [(round(at, 2), n.what) for at, n in news_of(said, 0.5)] == [(0.0, "comes"), (0.5, "comes")]
-    heard = [(n.what, n.at) for _, n in news_of(said, None)]
+    assert [(round(at, 2), n.what) for at, n in list_speech_news(said, 0.5)] == [
+        (0.0, "comes"),
+        (0.5, "comes"),
+    ]
+    heard = [(n.what, n.at) for _, n in list_speech_news(said, None)]
     assert heard == [("begins", 0.1), ("ends", 0.4), ("begins", 1.0), ("stress", 1.5), ("ends", 2.0)]
-    assert all(at > n.at for at, n in news_of(said, None))
+    assert all(at > n.at for at, n in list_speech_news(said, None))
 
 
 def test_strokes_are_counted_by_how_much_later_they_come() -> None:

@@ -14,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-from metagraph.formats.project.journal import Journal, journal_path
+from metagraph.formats.project.journal import Journal, make_journal_path
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
 from metagraph.research.study.plan.task_projects import make_task_project, reopen, write_task_project
@@ -38,7 +38,7 @@ def go_through(study_path: Path, participant: str) -> None:
             write_task_project(make_task_project(study, phase.clips, "work"), sitting.file)
             sitting.begin()
         project = reopen(sitting.file)[0].project
-        journal = Journal(journal_path(sitting.file), sitting.file)
+        journal = Journal(make_journal_path(sitting.file), sitting.file)
         while len(project.graphs["arms"].stances) < EDITS:
             before, project = (
                 project,

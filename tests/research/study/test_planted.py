@@ -19,7 +19,7 @@ from metagraph.research.study.analysis.results import analyse_study
 from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.report import format_study_page
 from metagraph.research.study.reports.cells import gather_missing
-from metagraph.research.study.reports.tables import participants
+from metagraph.research.study.reports.tables import tabulate_people
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
 from metagraph.research.study.statistics.sensitivity import PRACTICE, SECOND
@@ -77,7 +77,7 @@ def test_one_person_with_other_sizes_is_left_out_and_the_unit_stays(study: Path)
     assert (found.time.unit, found.time.ratio.n, found.time.left_out) == ("task", 15, ("P05",))
     assert any("P05" in words for words in found.time.cautions)
     assert found.time.means["meta"].value == pytest.approx(before.time.means["meta"].value, rel=0.1)
-    columns, rows = participants(found)
+    columns, rows = tabulate_people(found)
     assert "meta_seconds" in columns and rows[4][columns.index("meta_seconds")] is None
 
 

@@ -10,9 +10,9 @@ from metagraph.research.study.questionnaires import (
     TLX_PAIRS,
     TLX_SCALES,
     TLX_WEIGHTED,
+    compute_sus_score,
     compute_tlx_raw,
-    sus_score,
-    tlx_weighted,
+    compute_weighted_tlx,
 )
 
 
@@ -21,20 +21,20 @@ def sus(*values: int) -> dict[str, int]:
 
 
 def test_the_worst_the_middle_and_the_best_are_0_50_and_100() -> None:
-    assert sus_score(sus(*[1, 5] * 5)) == 0
-    assert sus_score(sus(*[3] * 10)) == 50
-    assert sus_score(sus(*[5, 1] * 5)) == 100
+    assert compute_sus_score(sus(*[1, 5] * 5)) == 0
+    assert compute_sus_score(sus(*[3] * 10)) == 50
+    assert compute_sus_score(sus(*[5, 1] * 5)) == 100
 
 
 def test_brookes_own_example_is_22_contributions_and_55_points() -> None:
-    assert sus_score(sus(5, 4, 2, 1, 2, 3, 2, 4, 5, 2)) == 55
+    assert compute_sus_score(sus(5, 4, 2, 1, 2, 3, 2, 4, 5, 2)) == 55
 
 
 @pytest.mark.parametrize("value", [0, 6, None, "3", True])
 def test_an_answer_that_is_none_is_named(value: object) -> None:
     answers = sus(*[3] * 10) | {"sus7": value}
     with pytest.raises(ValueError, match="'sus7' is"):
-        sus_score(answers)
+        compute_sus_score(answers)
 
 
 def test_raw_load_is_the_mean_of_six_scales() -> None:
@@ -46,11 +46,11 @@ def test_raw_load_is_the_mean_of_six_scales() -> None:
 def test_weighted_load_counts_how_often_a_scale_was_chosen() -> None:
     ratings = dict(zip(TLX_SCALES, (100, 0, 0, 0, 0, 50), strict=True))
     first = {f"{a}-{b}": TLX_SCALES[a][0] for a, b in TLX_PAIRS}  # weights 5, 4, 3, 2, 1, 0
-    assert tlx_weighted(ratings | first) == pytest.approx(500 / 15)
+    assert compute_weighted_tlx(ratings | first) == pytest.approx(500 / 15)
     last = {f"{a}-{b}": TLX_SCALES[b][0] for a, b in TLX_PAIRS}
-    assert tlx_weighted(ratings | last) == pytest.approx(250 / 15)
+    assert compute_weighted_tlx(ratings | last) == pytest.approx(250 / 15)
     with pytest.raises(ValueError, match="pair 'mental-physical'"):
-        tlx_weighted(ratings | first | {"mental-physical": "Effort"})
+        compute_weighted_tlx(ratings | first | {"mental-physical": "Effort"})
 
 
 def test_the_instruments_are_whole() -> None:

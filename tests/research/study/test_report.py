@@ -12,9 +12,14 @@ import pytest
 
 from metagraph.research.study.analysis.reading import collect_study
 from metagraph.research.study.analysis.results import Results, analyse_study
-from metagraph.research.study.report import chance, format_study_page, summarise_study, write_study_report
+from metagraph.research.study.report import (
+    format_p_value,
+    format_study_page,
+    summarise_study,
+    write_study_report,
+)
 from metagraph.research.study.reports import plots
-from metagraph.research.study.reports.tables import cell, study_tables
+from metagraph.research.study.reports.tables import format_cell, study_tables
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
 from metagraph.research.study.statistics.small_samples import Estimate
@@ -96,7 +101,7 @@ def test_tables_have_a_row_for_each(results: Results) -> None:
 
 
 def test_cells_say_what_is_not_known() -> None:
-    assert [cell(v) for v in (None, True, 2.5, 3.0, 0.1234567, "x", 7)] == [
+    assert [format_cell(v) for v in (None, True, 2.5, 3.0, 0.1234567, "x", 7)] == [
         "n/a",
         "yes",
         "2.5",
@@ -114,7 +119,7 @@ def test_the_first_sentence_is_the_finding(results: Results) -> None:
 
 
 def test_chances_are_written_as_journals_do() -> None:
-    assert [chance(p) for p in (None, 0.0004, 0.0125, 1.0)] == [
+    assert [format_p_value(p) for p in (None, 0.0004, 0.0125, 1.0)] == [
         "no p",
         "p &lt; 0.001",
         "p = 0.013",
@@ -123,7 +128,7 @@ def test_chances_are_written_as_journals_do() -> None:
 
 
 def test_times_are_written_as_people_read_them() -> None:
-    assert [plots.seconds(s) for s in (0.5, 42.4, 89.0, 90.0, 600.0, 5400.0, 63 * 3600)] == [
+    assert [plots.format_duration(s) for s in (0.5, 42.4, 89.0, 90.0, 600.0, 5400.0, 63 * 3600)] == [
         "0.5 s",
         "42 s",
         "89 s",
@@ -138,7 +143,7 @@ def test_plots_of_one_person_and_of_equal_values_have_axes() -> None:
     alone = Estimate(5.0, None, None, 1)
     for svg in (
         plots.plot_paired([("P1", 5.0, 5.0)], (alone, alone), ("a", "b")),
-        plots.ratios([("all", alone)]),
+        plots.plot_ratios([("all", alone)]),
         plots.plot_learning({"meta": ([5.0, 5.0, 5.0], 5.0, 0.0)}, {"meta": "a"}),
         plots.plot_stacked({"meta": {"x": 0.0}}, {"meta": "a"}),
         plots.plot_means([("SUS", {"meta": alone})]),

@@ -211,12 +211,12 @@ def test_a_task_begins_with_its_clips_and_the_references_base_and_character(tmp_
 
 
 def test_edits_in_the_journal_are_in_the_file_once_it_was_reopened(tiny):
-    from metagraph.formats.project.journal import Journal, journal_path
+    from metagraph.formats.project.journal import Journal, make_journal_path
 
     study = read_study(tiny)
     path = study.data("P01") / "x.metagraph.yaml"
     project = write_task_project(make_task_project(study, study.plan.tasks[0].clips, "x"), path)
-    journal = Journal(journal_path(path), path)
+    journal = Journal(make_journal_path(path), path)
     journal.edit(project, edits.add_stance(project, "head", "straight"))
     journal.close()
     opened, count = reopen(path)

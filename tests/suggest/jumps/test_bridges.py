@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
-from metagraph.graph.expand import reachable
+from metagraph.graph.expand import find_reachable
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import Play
 from metagraph.motion import rotation
@@ -90,7 +90,9 @@ def test_every_stance_is_led_to_and_led_back_from_and_bridging_again_adds_nothin
     after, made = bridge_all(project)
     graph = after.graphs["arms"]
     for stance in graph.stances:
-        assert stance in reachable(graph, str(graph.start)) and graph.start in reachable(graph, stance)
+        assert stance in find_reachable(graph, str(graph.start)) and graph.start in find_reachable(
+            graph, stance
+        )
     assert find_missing_bridges(after) == [] and bridge_all(after) == (after, ())
     assert bool(find_missing_bridges(project)) == bool(made)
     before = project.graphs["arms"].actions

@@ -13,7 +13,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.suggest.accept import accept
 from metagraph.suggest.jumps import compatibility as c
 from metagraph.suggest.jumps.bridges import bridge_all
-from metagraph.suggest.jumps.found import FEWEST_CLIPS, Measured, jumps, stance_curves
+from metagraph.suggest.jumps.found import FEWEST_CLIPS, Measured, compute_stance_curves, find_jumps
 from metagraph.suggest.propose import propose
 from tests.label_zoo.catalogue import named
 
@@ -30,13 +30,13 @@ def wide(toy: Any) -> Project:
 
 
 def found(project: Project) -> list[Any]:
-    return jumps(project, Measured(project, "arms"))
+    return find_jumps(project, Measured(project, "arms"))
 
 
 def test_an_empty_project_has_no_jumps_and_nothing_to_rest_on() -> None:
     for layer in LAYERS:
         measured = Measured(Project(), layer)
-        assert not measured.reliable and jumps(Project(), measured) == []
+        assert not measured.reliable and find_jumps(Project(), measured) == []
 
 
 def test_few_clips_are_not_judged(toy: Any) -> None:
@@ -44,23 +44,27 @@ def test_few_clips_are_not_judged(toy: Any) -> None:
     kept = [a.id for a in project.actions()][FEWEST_CLIPS - 1 :]
     project = edits.remove_actions(project, kept)
     measured = Measured(project, "arms")
-    assert measured.labelled == FEWEST_CLIPS - 1 and not measured.reliable and jumps(project, measured) == []
+    assert (
+        measured.labelled == FEWEST_CLIPS - 1
+        and not measured.reliable
+        and find_jumps(project, measured) == []
+    )
 
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_the_sample_has_no_jumps(sample: Project, layer: Any) -> None:
     measured = Measured(sample, layer)
-    assert measured.reliable and jumps(sample, measured) == []
+    assert measured.reliable and find_jumps(sample, measured) == []
 
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_no_proposed_timing_jumps(sample: Project, layer: Any) -> None:
     measured, changes = Measured(sample, layer), {}
     for action in sample.graphs[layer].actions.values():
-        p = stance_curves(sample, measured, action).proposed  # type: ignore[union-attr]
+        p = compute_stance_curves(sample, measured, action).proposed  # type: ignore[union-attr]
         timing = {"start": p.start, "end": p.end, "blend_in": p.blend_in, "blend_out": p.blend_out}
         changes[action.id] = {"timing": timing if action.kind != "stance" else {"blend_in": p.blend_in}}
-    assert jumps(edits.update_each(sample, changes), measured) == []
+    assert find_jumps(edits.update_each(sample, changes), measured) == []
 
 
 def test_an_action_cut_short_jumps_at_its_end_and_is_mended_where_it_would_not(
@@ -143,7 +147,7 @@ def test_what_an_action_does_not_move_does_not_count(toy: Any, wide: Project) ->
 def test_only_what_changed_is_measured_again(toy: Any) -> None:
     project = toy.project()
     first = Measured(project, "arms")
-    jumps(project, first)
+    find_jumps(project, first)
     timed = cut(toy, project, "rest wave rt", end=0.6)
     again = Measured(timed, "arms", first)
     assert again.same_as(first) and all(again.frames[s] is first.frames[s] for s in first.frames)
@@ -164,33 +168,33 @@ def test_curves_of_a_loop_are_its_seam_and_of_a_missing_file_nothing(toy: Any, w
     project = wide
     measured = Measured(project, "arms")
     loop = project.action(next(a.id for a in project.actions() if a.name == "rest loop"))
-    seen = stance_curves(project, measured, loop)
+    seen = compute_stance_curves(project, measured, loop)
     assert (
         seen is not None
         and len(seen.times) == len(seen.leave)
         and seen.leave[0] == pytest.approx(0, abs=1e-6)
     )
     wave = project.action(toy.id(project, "wide"))
-    seen = stance_curves(project, measured, wave)
+    seen = compute_stance_curves(project, measured, wave)
     assert seen is not None and seen.leave.max() > 1 > seen.leave[-1] and np.isfinite(seen.enter).all()
     clips = {**project.clips, wave.clip: replace(project.clips[wave.clip], motion=None)}
-    assert stance_curves(replace(project, clips=clips), measured, wave) is None
+    assert compute_stance_curves(replace(project, clips=clips), measured, wave) is None
 
 
 def test_proposed_times_leave_the_part_that_repeats_as_it_is(toy: Any, wide: Project) -> None:
     wave = toy.id(wide, "rest wave rt")
     timing = {"start": 0.3, "end": 0.7, "blend_in": 0.3, "blend_out": 0.2, "repeat": 2.0}
     project = edits.update_actions(wide, [wave], timing=timing)
-    strip = stance_curves(project, Measured(project, "arms"), project.action(wave))  # type: ignore[arg-type]
+    strip = compute_stance_curves(project, Measured(project, "arms"), project.action(wave))  # type: ignore[arg-type]
     assert strip is not None and strip.proposed.good and "repeats" in strip.proposed.reason
     found = strip.proposed
     assert [found.start, found.end, found.blend_in, found.blend_out] == pytest.approx([0.3, 0.7, 0.3, 0.2])
 
 
 def test_a_blend_takes_off_what_the_player_blends() -> None:
-    assert c.visible_difference(2.0, 0.0) == 2.0 and c.visible_difference(2.0, 0.05) == 2.0
-    assert c.visible_difference(2.0, 0.2) == pytest.approx(1.0) and np.allclose(
-        c.visible_difference(np.array([1.0, 3.0]), 0.1), [1.0, 3.0]
+    assert c.measure_visible_difference(2.0, 0.0) == 2.0 and c.measure_visible_difference(2.0, 0.05) == 2.0
+    assert c.measure_visible_difference(2.0, 0.2) == pytest.approx(1.0) and np.allclose(
+        c.measure_visible_difference(np.array([1.0, 3.0]), 0.1), [1.0, 3.0]
     )
 
 
@@ -211,7 +215,7 @@ def test_a_long_slow_blend_over_a_wide_gap_is_no_jump_and_a_short_one_is() -> No
     for blend, edges in ((0.1, ["begins"]), (0.39, ["begins"]), (0.55, [])):
         blended = edits.update_actions(project, [name], timing={"blend_in": blend})
         assert [x.edge for x in found(blended) if x.action == name] == edges, blend
-    strip = stance_curves(project, Measured(project, "arms"), project.action(name))  # type: ignore[arg-type]
+    strip = compute_stance_curves(project, Measured(project, "arms"), project.action(name))  # type: ignore[arg-type]
     assert strip is not None and strip.gaps is not None
     assert strip.gaps[0][0] > 0.3 > 0.05 > strip.gaps[1][0]
 
@@ -224,7 +228,7 @@ def test_proposed_times_leave_no_joint_far_from_a_stance_where_the_present_ones_
     measured = {layer: Measured(project, layer) for layer in LAYERS}
     changes = {}
     for action in project.actions():
-        strip = stance_curves(project, measured[action.layer], action)
+        strip = compute_stance_curves(project, measured[action.layer], action)
         if strip is not None and action.kind != "stance":
             p = strip.proposed
             times = {"start": p.start, "end": p.end, "blend_in": p.blend_in, "blend_out": p.blend_out}

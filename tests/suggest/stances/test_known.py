@@ -13,26 +13,26 @@ from hypothesis import strategies as st
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.clip_measures import layer_of
+from metagraph.suggest.clip_measures import guess_layer
 from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.stances.known import (
     Shape,
     discover,
     discover_stances,
-    distance_from_stance,
-    likely,
     list_known_stances,
+    measure_distance_from_stance,
+    rank_likely_stances,
     rank_stances,
     settle_stances,
     split_stances,
 )
-from metagraph.suggest.traits import Traits, traits, traits_of
+from metagraph.suggest.traits import Traits, measure_all_traits, measure_traits
 from tests.suggest.test_traits import backwards, chain, mirrored, of, one_armed, scaled
 
 
 @pytest.fixture(scope="module")
 def found(sample: Project) -> dict[str, Traits]:
-    return traits_of(sample)
+    return measure_all_traits(sample)
 
 
 def sane(g: MotionGuess) -> None:
@@ -119,17 +119,17 @@ def test_a_transition_backwards_goes_back(sample: Project, found: dict[str, Trai
     for action in transitions:
         motion = sample.clips[action.clip].motion
         assert motion is not None and sample.skeleton is not None
-        g = guess(traits(sample.skeleton, None, backwards(motion)), stances)
+        g = guess(measure_traits(sample.skeleton, None, backwards(motion)), stances)
         assert g.kind.value == "transition" and g.stance is not None and g.end_stance is not None
         assert (g.stance.value.id, g.end_stance.value.id) == (action.end_stance, action.stance)
 
 
 def test_the_toys_stances_are_known_by_their_loops(toy: Any) -> None:
     project = toy.project()
-    stances = list_known_stances(project, traits_of(project))
+    stances = list_known_stances(project, measure_all_traits(project))
     assert {s.name for s in stances["arms"]} == {"rest", "up", "far"} and not stances["head"]
     shape = next(s for s in stances["arms"] if s.name == "up")
-    assert distance_from_stance(shape, shape.names, shape.poses[0]) == 0
+    assert measure_distance_from_stance(shape, shape.names, shape.poses[0]) == 0
     assert rank_stances(stances["arms"], shape.names, shape.poses[0])[0][1].name == "up"
 
 
@@ -142,13 +142,13 @@ def test_a_stance_without_a_loop_is_known_by_where_transitions_end(
     project = sample.with_graph(graph.with_actions(loops))
     shape = next(s for s in list_known_stances(project, found)["arms"] if s.id == stance)
     whole = next(s for s in list_known_stances(sample, found)["arms"] if s.id == stance)
-    assert distance_from_stance(whole, shape.names, shape.poses[0]) < 0.02
+    assert measure_distance_from_stance(whole, shape.names, shape.poses[0]) < 0.02
 
 
 def test_points_that_only_one_of_two_characters_has_are_left_out() -> None:
     shape = Shape("", "x", "arms", ("left_hand", "right_hand"), np.zeros((1, 2, 3)), (), "", 0.0, 1.0)
-    assert distance_from_stance(shape, ("right_hand",), np.array([[0, 0.3, 0]])) == pytest.approx(0.3)
-    assert distance_from_stance(shape, ("head",), np.zeros((1, 3))) == float("inf")
+    assert measure_distance_from_stance(shape, ("right_hand",), np.array([[0, 0.3, 0]])) == pytest.approx(0.3)
+    assert measure_distance_from_stance(shape, ("head",), np.zeros((1, 3))) == float("inf")
     assert rank_stances([shape], ("head",), np.zeros((1, 3))) == []
 
 
@@ -260,7 +260,7 @@ def test_a_character_without_a_head_or_arms_moves_its_body() -> None:
     skeleton: Skeleton = chain(6)
     turn = np.tile([0, 0, 0, 1.0], (30, 6, 1))
     assert (
-        layer_of(of(Clip("x", skeleton, 30, turn, np.random.default_rng(0).normal(size=(30, 1, 3))))).value
+        guess_layer(of(Clip("x", skeleton, 30, turn, np.random.default_rng(0).normal(size=(30, 1, 3))))).value
         == "body"
     )
 
@@ -279,22 +279,25 @@ def test_how_likely_a_pose_is_of_each_stance_adds_up_to_one_at_most_in_any_order
     some: Any, pose: Any, random: Any
 ) -> None:
     shapes = [standing(at, spread, str(n)) for n, (at, spread) in enumerate(some)]
-    found = likely(shapes, HANDS, pose)
+    found = rank_likely_stances(shapes, HANDS, pose)
     chances = [p for p, _ in found]
     assert len(found) == len(shapes) and sum(chances) <= 1 + 1e-9 and all(0 <= p <= 1 for p in chances)
     assert chances == sorted(chances, reverse=True)
     mixed = list(shapes)
     random.shuffle(mixed)
-    other = {shape.name: p for p, shape in likely(mixed, HANDS, pose)}
+    other = {shape.name: p for p, shape in rank_likely_stances(mixed, HANDS, pose)}
     assert other == pytest.approx({shape.name: p for p, shape in found})
 
 
 def test_a_pose_is_of_its_own_stance_and_one_far_from_all_of_none() -> None:
     shapes = [standing(np.zeros(6), name="a"), standing(np.full(6, 0.2), name="b")]
-    assert likely(shapes, HANDS, np.zeros((2, 3)))[0][1].name == "a"
-    assert likely(shapes, HANDS, np.zeros((2, 3)))[0][0] > 0.95
-    assert sum(p for p, _ in likely(shapes, HANDS, np.full((2, 3), 5.0))) < 0.1
-    assert likely([], HANDS, np.zeros((2, 3))) == [] and likely(shapes, ("crown",), np.zeros((1, 3))) == []
+    assert rank_likely_stances(shapes, HANDS, np.zeros((2, 3)))[0][1].name == "a"
+    assert rank_likely_stances(shapes, HANDS, np.zeros((2, 3)))[0][0] > 0.95
+    assert sum(p for p, _ in rank_likely_stances(shapes, HANDS, np.full((2, 3), 5.0))) < 0.1
+    assert (
+        rank_likely_stances([], HANDS, np.zeros((2, 3))) == []
+        and rank_likely_stances(shapes, ("crown",), np.zeros((1, 3))) == []
+    )
 
 
 def test_stances_are_parted_only_where_words_and_poses_part_alike() -> None:
@@ -334,5 +337,5 @@ def test_together_the_clips_of_all_layers_tell_the_stances(toy: Any, found: dict
     assert len(discover(one, "arms", together=True)) <= 1
     apart = {c for s in discover(found, "arms") for c in s.members}
     every = {c for s in discover(found, "arms", together=True) for c in s.members}
-    others = {c for c, t in found.items() if layer_of(t).value != "arms"}
+    others = {c for c, t in found.items() if guess_layer(t).value != "arms"}
     assert not apart & others and every & others

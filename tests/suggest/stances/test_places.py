@@ -13,7 +13,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
-from metagraph.suggest.proposal import plain_stance_name
+from metagraph.suggest.proposal import simplify_stance_name
 from metagraph.suggest.propose import propose
 from metagraph.suggest.stances.known import Shape
 from metagraph.suggest.stances.places import ClipEvidence, StancePlaces
@@ -160,7 +160,7 @@ def test_every_vote_is_for_a_place_names_are_told_apart_and_order_is_nothing(dra
         for what in ("stance", "end_stance"):
             for belief in places.vote(each, what, "arms"):
                 assert belief.value in places.by_key and 0 <= belief.confidence <= 1
-    names = [plain_stance_name(x.name) for x in places.by_key.values()]
+    names = [simplify_stance_name(x.name) for x in places.by_key.values()]
     assert len(names) == len(set(names))
     assert places.count("arms") >= 2
     assert sum(x.shape is not None for x in places.by_key.values()) == len(shapes)

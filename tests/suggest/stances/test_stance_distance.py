@@ -7,7 +7,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.checks import end_gaps
-from metagraph.suggest.jumps.found import Measured, stance_curves
+from metagraph.suggest.jumps.found import Measured, compute_stance_curves
 from metagraph.suggest.jumps.seen_jumps import SeenJumps
 from metagraph.suggest.stances.stance_distance import measure_stance_distances
 
@@ -19,7 +19,7 @@ def wide(toy):
 
 
 def seen_of(project, action):
-    return SeenJumps(action, stance_curves(project, Measured(project, action.layer), action))
+    return SeenJumps(action, compute_stance_curves(project, Measured(project, action.layer), action))
 
 
 @pytest.mark.parametrize("known", [False, True])

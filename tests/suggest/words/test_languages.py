@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from metagraph.suggest.words.cut import Token, cut_tokens
 from metagraph.suggest.words.defaults import DEFAULTS
-from metagraph.suggest.words.files import LanguageFile, sources
-from metagraph.suggest.words.folded import fold_letters, romaji, spellings
+from metagraph.suggest.words.files import LanguageFile, load_language_files
+from metagraph.suggest.words.folded import fold_letters, list_romaji, list_spellings
 from metagraph.suggest.words.languages import MARKS, list_word_languages
 from metagraph.suggest.words.names import Patterns, learn_correction, read_names
 
@@ -294,7 +294,7 @@ def test_corrections_are_remembered_by_the_words_of_the_name() -> None:
 # --- the words
 
 
-@pytest.mark.parametrize("source", sources().values(), ids=sources())
+@pytest.mark.parametrize("source", load_language_files().values(), ids=load_language_files())
 def test_every_word_stands_for_words_that_mean_something(source: LanguageFile) -> None:
     known = {w for name, t in DEFAULTS.items() if name != "synonyms" for p in t for w in p.split()}
     known |= {"chest", "desk", "wall", "table", "bench", "side"}  # parts and places beside a word of posture
@@ -306,8 +306,8 @@ def test_letters_are_folded_and_keep_their_places() -> None:
     assert fold_letters("") == ("", (0,)) and fold_letters("Añ")[0] == "An"
     text = "e\u0301ß"
     assert fold_letters(text) == ("ess", (0, 2, 2, 3))
-    assert spellings("schütteln") == {"schutteln", "schuetteln"}
-    assert {"jesucha", "jesuchaa"} & romaji("じぇすちゃー") and "kitte" in romaji("きって")
+    assert list_spellings("schütteln") == {"schutteln", "schuetteln"}
+    assert {"jesucha", "jesuchaa"} & list_romaji("じぇすちゃー") and "kitte" in list_romaji("きって")
 
 
 def test_names_are_cut_where_writings_change() -> None:
@@ -318,7 +318,8 @@ def test_names_are_cut_where_writings_change() -> None:
 def test_words_are_read_from_their_files_when_names_are_first_read() -> None:
     code = (
         "import sys; import metagraph.suggest.words.names; from metagraph.suggest.words import files; "
-        "sys.exit(files.sources.cache_info().currsize or files.list_english_meanings.cache_info().currsize)"
+        "read = files.load_language_files, files.list_english_meanings; "
+        "sys.exit(sum(each.cache_info().currsize for each in read))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, timeout=300).returncode == 0
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.formats.clips import read_clips
-from metagraph.research.motion_graph.extending_evaluation import extend_by_windows, news_of
+from metagraph.research.motion_graph.extending_evaluation import extend_by_windows, list_speech_news
 from metagraph.synthesis.constraints import HeardStates
 from metagraph.synthesis.extending.path import (
     NODES,
@@ -20,13 +20,13 @@ from metagraph.synthesis.extending.path import (
     DriverGraph,
     ExtendingRules,
     PathExtender,
-    driver_graph,
+    make_driver_graph,
     replay_path,
 )
 from metagraph.synthesis.extending.speech_so_far import MOST, SpeechNews
 from metagraph.synthesis.graph import build_graph
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.search.path_quality import quality
+from metagraph.synthesis.search.path_quality import measure_quality
 from metagraph.synthesis.search.ruled_search import FREE, JumpRules
 from metagraph.synthesis.states import SynthesisError, read_states
 from tests.synthesis.talking import speech, talkers_graph
@@ -114,7 +114,7 @@ def test_speech_that_ends_at_once_leaves_no_gesture_waiting(graph: DriverGraph) 
 
 def test_silence_rests_no_longer_than_the_takes_and_does_not_repeat(graph: DriverGraph) -> None:
     way = np.array(shown(PathExtender(graph), 900))
-    looks = quality(graph.states, Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1))
+    looks = measure_quality(graph.states, Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1))
     assert not looks.stands_still and looks.repeated < 0.1 and looks.jumps < 2
 
 
@@ -128,7 +128,7 @@ def test_a_flood_of_news_is_searched_for_no_more_often_than_it_may_be(graph: Dri
 
 def test_ten_minutes_keep_as_much_as_one(graph: DriverGraph) -> None:
     extender = PathExtender(replace(graph, rules=replace(graph.rules, every=20, work=5_000)))
-    news, place, kept = news_of(speech(600.0, 70), 0.5), 0, 0
+    news, place, kept = list_speech_news(speech(600.0, 70), 0.5), 0, 0
     for frame in range(18_000):
         first = place
         while place < len(news) and news[place][0] * 30 <= frame:
@@ -141,7 +141,7 @@ def test_ten_minutes_keep_as_much_as_one(graph: DriverGraph) -> None:
 
 
 def test_a_take_that_leads_nowhere_goes_on_with_what_is_most_alike() -> None:
-    graph = driver_graph(graph_of(80, [0, 40, 80], {}), silent(80))  # no transitions at all
+    graph = make_driver_graph(graph_of(80, [0, 40, 80], {}), silent(80))  # no transitions at all
     way = shown(PathExtender(graph), 300)
     jumps = [(a, b) for a, b in pairwise(way) if b != a + 1]
     assert jumps and all(a in (39, 79) for a, _ in jumps)
@@ -152,7 +152,7 @@ def test_a_run_that_ends_too_soon_is_left_before_the_least_time() -> None:
     links = {(9, 30): 0.01, (34, 2): 0.01}  # five frames of the second take, less than a run has to last
     graph = graph_of(40, [0, 10, 35, 40], links)
     rules = ExtendingRules(jumps=JumpRules(run=1.0, apart=0.0, price=0.0, recent=0.0, again=0.0))
-    way = shown(PathExtender(driver_graph(graph, silent(40), rules)), 120)
+    way = shown(PathExtender(make_driver_graph(graph, silent(40), rules)), 120)
     assert len(way) == 120 and all(0 <= x < 40 for x in way)
 
 
@@ -161,8 +161,8 @@ def test_somebody_elses_clips_go_on_for_a_minute_without_standing_still() -> Non
     clips = [read_clips(path)[0] for path in sorted(REAL.glob("*Idle*.bvh"))[:8]]
     states = read_states(clips)
     sound = HeardStates(np.ones(len(states), np.uint8), np.zeros(len(states), bool))
-    way = np.array(shown(PathExtender(driver_graph(build_graph(states), sound)), 1800))
-    looks = quality(states, Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1))
+    way = np.array(shown(PathExtender(make_driver_graph(build_graph(states), sound)), 1800))
+    looks = measure_quality(states, Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1))
     assert not looks.stands_still and looks.repeated < 0.2 and (np.diff(way) != 0).all()
 
 
@@ -171,7 +171,7 @@ def test_states_that_were_cut_away_are_not_gone_through(graph: DriverGraph) -> N
     kept[20:30] = False
     links = {(19, 60): 0.01, (99, 5): 0.01, (70, 31): 0.01, (10, 40): 0.01}
     some = replace(graph_of(100, [0, 50, 100], links), kept=kept)
-    way = shown(PathExtender(driver_graph(some, silent(100))), 600)
+    way = shown(PathExtender(make_driver_graph(some, silent(100))), 600)
     assert not set(way) & set(range(20, 30))
 
 
@@ -191,12 +191,12 @@ def test_the_work_of_a_search_is_bounded_and_there_is_an_answer_after_any(graph:
 
 def test_graphs_without_anything_to_go_between_are_refused() -> None:
     with pytest.raises(SynthesisError, match="longer takes"):
-        driver_graph(replace(graph_of(4, [0, 4], {}), kept=np.zeros(4, bool)), silent(4))
+        make_driver_graph(replace(graph_of(4, [0, 4], {}), kept=np.zeros(4, bool)), silent(4))
     with pytest.raises(SynthesisError, match="of 4 frames"):
-        driver_graph(graph_of(4, [0, 4], {}), silent(5))
+        make_driver_graph(graph_of(4, [0, 4], {}), silent(5))
 
 
 def test_without_rules_for_jumps_it_jumps_too() -> None:
     graph = graph_of(60, [0, 60], {(n, (n + 31) % 60): 0.1 for n in range(60)})
-    free = driver_graph(graph, silent(60), ExtendingRules(jumps=FREE))
+    free = make_driver_graph(graph, silent(60), ExtendingRules(jumps=FREE))
     assert len(shown(PathExtender(free), 200)) == 200

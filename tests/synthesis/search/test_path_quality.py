@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.search.path_quality import quality
+from metagraph.synthesis.search.path_quality import measure_quality
 from metagraph.synthesis.states import States
 
 
@@ -24,7 +24,7 @@ def path(*shown: int) -> Path:
 
 def test_a_take_as_it_is_repeats_nothing_and_rests_as_it_does() -> None:
     take = [0.0] * 46 + [0.01 * n for n in range(1, 60)]
-    looks = quality(states(take), path(*range(len(take))))
+    looks = measure_quality(states(take), path(*range(len(take))))
     assert looks.repeated == 0 and looks.jumps == 0 and looks.distinct == 1
     assert looks.frozen == looks.source == pytest.approx(1.5)
     assert not looks.stands_still
@@ -32,7 +32,7 @@ def test_a_take_as_it_is_repeats_nothing_and_rests_as_it_does() -> None:
 
 def test_a_frame_shown_again_and_again_is_repeated_and_at_rest() -> None:
     take = [0.01 * n for n in range(60)]
-    looks = quality(states(take), path(*range(10), *[9] * 80, *range(10, 20)))
+    looks = measure_quality(states(take), path(*range(10), *[9] * 80, *range(10, 20)))
     assert looks.repeated == pytest.approx(80 / 100)
     assert looks.distinct == pytest.approx(20 / 100)
     assert looks.frozen == pytest.approx(80 / 30) and looks.source == 0
@@ -41,11 +41,11 @@ def test_a_frame_shown_again_and_again_is_repeated_and_at_rest() -> None:
 
 def test_a_jump_to_a_pose_farther_off_is_no_rest() -> None:
     take = [0.0] * 30 + [0.5] * 30
-    looks = quality(states(take), path(*range(20), *range(40, 60)))
+    looks = measure_quality(states(take), path(*range(20), *range(40, 60)))
     assert looks.frozen < 0.7 and not looks.stands_still
 
 
 def test_what_comes_back_after_more_than_three_seconds_is_not_shown_again() -> None:
     take = [0.01 * n for n in range(300)]
-    assert quality(states(take), path(*range(100), *range(5))).repeated == 0
-    assert quality(states(take), path(*range(60), *range(6))).repeated == pytest.approx(6 / 66)
+    assert measure_quality(states(take), path(*range(100), *range(5))).repeated == 0
+    assert measure_quality(states(take), path(*range(60), *range(6))).repeated == pytest.approx(6 / 66)

@@ -13,8 +13,8 @@ from metagraph.synthesis.search.relaxing import (
     Constraints,
     answer_speech,
     describe_given_up,
+    find_misses,
     list_relaxations,
-    misses,
 )
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES
 from metagraph.synthesis.states import SynthesisError
@@ -86,7 +86,7 @@ def test_what_was_not_asked_for_is_not_missed() -> None:
     graph = graph_of(90, [0, 90], {})
     spoken = find_heard_at(graph.states, [[]])
     path = Path(graph.keys[:90], 0.0, graph.keys[:0])
-    every = misses(spoken, path, [CLAUSE], Constraints())
+    every = find_misses(spoken, path, [CLAUSE], Constraints())
     assert [m.what for m in every] == ["start", "stress", "end"] and all(m.off is None for m in every)
-    assert [m.what for m in misses(spoken, path, [CLAUSE], Constraints(edges=False))] == ["stress"]
-    assert misses(spoken, path, [CLAUSE], Constraints(use=("response",))) == ()
+    assert [m.what for m in find_misses(spoken, path, [CLAUSE], Constraints(edges=False))] == ["stress"]
+    assert find_misses(spoken, path, [CLAUSE], Constraints(use=("response",))) == ()

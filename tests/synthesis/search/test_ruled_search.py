@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from metagraph.graph.conversation.model import Segment
 from metagraph.synthesis.constraints import ALL, HeardStates, find_heard_at, list_wanted
 from metagraph.synthesis.graph import MotionGraph
-from metagraph.synthesis.search.path_quality import quality
+from metagraph.synthesis.search.path_quality import measure_quality
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, apply_rules, find_path
 from metagraph.synthesis.states import SynthesisError
 from tests.synthesis.test_search import graph_of
@@ -38,10 +38,10 @@ def test_a_path_does_not_stand_still_where_a_frame_resembles_itself() -> None:
     graph = moving(200, [0, 200], links)
     asked = list_wanted([], 12.0, use=())
     frozen = find_path(graph, anything(graph), asked, rules=FREE)
-    looks = quality(graph.states, frozen)
+    looks = measure_quality(graph.states, frozen)
     assert looks.stands_still and looks.frozen > 3 and looks.repeated > 0.3
     path = find_path(graph, anything(graph), asked)
-    looks = quality(graph.states, path)
+    looks = measure_quality(graph.states, path)
     assert not looks.stands_still and looks.repeated == 0.0 and looks.jumps < 0.5
 
 

@@ -31,7 +31,7 @@ class DrawLink(NodeDrag):
         hit: ManualHit = self.host.scene().hit(self.host.view.back(at), self.host.view.scale)
         self.target, self.words = "", ""
         if hit.area in ("node", "edge"):
-            why = manual_edits.link_refusal(
+            why = manual_edits.explain_link_refusal(
                 self.host.document.project, self.host.session.place.layer, self.node, hit.ident
             )
             self.target, self.words = (hit.ident, "") if why is None else ("", tr_phrase(why))

@@ -7,7 +7,7 @@ from PySide6.QtGui import QMouseEvent
 
 from app.features.timeline.drags.host import LanesHost
 from app.features.timeline.drags.lane import LaneDrag
-from app.widgets.lane_geometry import time_of
+from app.widgets.lane_geometry import get_ask_time
 
 
 class RequestDrag(LaneDrag):
@@ -54,7 +54,7 @@ class RequestDrag(LaneDrag):
         """Return when each that is moved stands."""
         performance = self.host.performance
         answers = performance.answers()
-        return {x.id: time_of(x, answers.get(x.id)) for x in performance.asks if x.id in self.idents}
+        return {x.id: get_ask_time(x, answers.get(x.id)) for x in performance.asks if x.id in self.idents}
 
     def finish(self, at: QPointF) -> None:
         requests = self.host.performance.requests

@@ -12,7 +12,7 @@ from app.features.timing_editor.drags.rows import SNAP, RowsDrag
 from app.features.timing_editor.kept_rows import KeptPart, change
 from app.features.timing_editor.track import Facts
 from app.translation import tr
-from app.widgets.vocabulary import vocabulary_word
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.playback.timing.handles import WORDS
 from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap
 
@@ -60,7 +60,7 @@ class KeptDrag(RowsDrag):
 def _snaps(facts: Facts, playhead: float | None) -> Iterator[Snap]:
     for handle in facts.handles:
         if handle.name not in ("in", "out"):
-            yield Snap(handle.at, tr("the action's {handle}", handle=vocabulary_word(WORDS[handle.name])))
+            yield Snap(handle.at, tr("the action's {handle}", handle=get_vocabulary_word(WORDS[handle.name])))
     for stay in facts.stays:
         yield Snap(stay.first, tr("start of the inserted hold"))
         yield Snap(stay.last, tr("end of the inserted hold"))

@@ -15,7 +15,7 @@ from app.translation import tr
 from app.widgets.gesture import Reason
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.playback.timing.handles import block_moved, move_handle_by, slip_action
+from metagraph.playback.timing.handles import move_block, move_handle_by, slip_action
 from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap
 
 MERGE = "timing"
@@ -85,7 +85,7 @@ def handle_change(idents: tuple[str, ...], handle: str) -> Callable[[Project, fl
     return lambda project, by: move_handle_by(project, idents, handle, by)
 
 
-def block_change(idents: tuple[str, ...], block: str) -> Callable[[Project, float], Changes]:
+def make_block_change(idents: tuple[str, ...], block: str) -> Callable[[Project, float], Changes]:
     """Return what dragging a phase changes in some actions; "" stands for all of it at once: another part of
     the clip.
     """
@@ -95,9 +95,7 @@ def block_change(idents: tuple[str, ...], block: str) -> Callable[[Project, floa
         for ident in idents:
             action = project.action(ident)
             if action is not None and action.clip in project.clips:
-                fields = (
-                    block_moved(project, action, block, by) if block else slip_action(project, action, by)
-                )
+                fields = move_block(project, action, block, by) if block else slip_action(project, action, by)
                 out[ident] = {"timing": fields}
         return out
 

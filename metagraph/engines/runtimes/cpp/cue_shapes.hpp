@@ -102,7 +102,7 @@ inline Ref<CueShape> shape_of(
     if (request != nullptr
         && action->kind == "gesture"
         && (request->hold.has_value() || request->stroke.has_value() || !request->prepare)) {
-        Ref<Phases> found = phases::phases(project, action);
+        Ref<Phases> found = phases::find_phases(project, action);
         double latest = found->skip(action->timing->blend_in);
         entry = request->prepare ? start : latest;
         // Wait for the stroke, or catch up with it by cutting the preparation.
@@ -158,7 +158,7 @@ inline double lateness(
     const Ref<CueShape>& shape
 ) {
     if (request->stroke.has_value() && action->kind == "gesture") {
-        Ref<Phases> found = phases::phases(project, action);
+        Ref<Phases> found = phases::find_phases(project, action);
         double until = found->stroke - shape->entry;
         return shape->start + found->stroke - shape->entry + mood::drag(until, shape->tempo) - *request->stroke;
     }
@@ -178,7 +178,7 @@ inline double hurried(const Ref<Project>& project, const Ref<Action>& action, co
     if (action->kind != "gesture" || action->timing->earliest_exit.has_value() || repeats) {
         return shape->shortest;
     }
-    Ref<Phases> found = phases::phases(project, action);
+    Ref<Phases> found = phases::find_phases(project, action);
     double left = found->relax - shape->entry + shape->hold - (shape->hold_to - shape->hold_from);
     double moving = found->relax - shape->entry - (shape->hold_to - shape->hold_from);
     if (shape->hold <= 0) {

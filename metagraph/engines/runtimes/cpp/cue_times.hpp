@@ -43,7 +43,7 @@ struct LoopSpot {
 
 namespace cue_times {
 
-/// Return where a stance's loop is at a time, as `player.loop_seconds` does.
+/// Return where a stance's loop is at a time, as `layers.compute_loop_seconds` does.
 inline Ref<LoopSpot> loop_spot(const Ref<Project>& project, const Ref<Rest>& rest, double time) {
     Ref<Action> action = rest->action;
     auto [start, end] = project->span(action);

@@ -142,7 +142,7 @@ inline Ref<Heard> heard(
     // Who takes everything back still looks at whom it talks with.
     Set<std::string> user;
     for (const auto& x : track->looks) {
-        if (x->start < now && spots::same_spot(x->to, spots::named("user"))) {
+        if (x->start < now && spots::is_same_spot(x->to, spots::named("user"))) {
             user.insert(x->id);
         }
     }

@@ -258,7 +258,7 @@ inline bool alike_looks(const List<Ref<LookAt>>& one, const List<Ref<LookAt>>& o
 }
 
 inline bool _same_look(const Ref<LookAt>& a, const Ref<LookAt>& b) {
-    if (!spots::same_spot(a->to, b->to) || a->amount != b->amount || a->strict != b->strict) {
+    if (!spots::is_same_spot(a->to, b->to) || a->amount != b->amount || a->strict != b->strict) {
         return false;
     }
     return a->id == b->id && a->start == b->start && a->end == b->end && a->priority == b->priority;

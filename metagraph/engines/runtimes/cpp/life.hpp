@@ -88,7 +88,7 @@ inline Ref<Life> read(const Node& json) {
 }
 
 /// What a mode makes of the amounts.
-inline const Ref<Manner>& manner(const Ref<Life>& life, const std::string& mode) {
+inline const Ref<Manner>& get_manner(const Ref<Life>& life, const std::string& mode) {
     return lang::at(life->manners, lang::index(words::MODES, mode));
 }
 
@@ -105,7 +105,7 @@ inline Ref<Manner> scaled(
     return out;
 }
 
-inline bool same_life(const Ref<Life>& one, const Ref<Life>& other) { return one == other; }
+inline bool is_same_life(const Ref<Life>& one, const Ref<Life>& other) { return one == other; }
 
 }  // namespace life
 }  // namespace metagraph

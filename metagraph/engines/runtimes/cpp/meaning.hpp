@@ -315,7 +315,7 @@ inline std::string Meaning::add(
         std::string kind = ask->do_ == "gesture" ? std::string("gesture") : std::string("fidget");
         std::string layer = !ask->layer.has_value() ? std::string("arms") : *ask->layer;
         if (stroke.has_value()) {
-            start = std::max(0.0, *stroke - phases::longest_lead(this->project, this->graph_of(layer), ask->tags));
+            start = std::max(0.0, *stroke - phases::find_longest_lead(this->project, this->graph_of(layer), ask->tags));
         }
         Ref<MetaRequest> request = lang::made<MetaRequest>(
             ident,

@@ -6,7 +6,7 @@
 namespace metagraph {
 namespace phases {
 
-inline Ref<Phases> phases(const Ref<Project>& project, const Ref<Action>& action) { return project->phases.at(action->id); }
+inline Ref<Phases> find_phases(const Ref<Project>& project, const Ref<Action>& action) { return project->phases.at(action->id); }
 
 /// The seconds from an action's start to its stroke.
 inline double lead(const Ref<Project>& project, const Ref<Action>& action) {
@@ -15,7 +15,7 @@ inline double lead(const Ref<Project>& project, const Ref<Action>& action) {
 }
 
 /// How long before its stroke any gesture of a layer with these tags begins.
-inline double longest_lead(const Ref<Project>& project, const Ref<MetaGraph>& graph, const List<std::string>& tags) {
+inline double find_longest_lead(const Ref<Project>& project, const Ref<MetaGraph>& graph, const List<std::string>& tags) {
     double longest = 0;
     for (const auto& [_, action] : graph->actions) {
         const auto& own = action->tags;

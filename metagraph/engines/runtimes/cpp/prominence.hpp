@@ -7,7 +7,7 @@ namespace metagraph {
 namespace prominence {
 
 /// From 0 for hardly to 1 for much.
-inline double prominence(const Ref<Project>&, const Ref<Action>& action) {
+inline double measure_prominence(const Ref<Project>&, const Ref<Action>& action) {
     return action->prominence.value_or(0);
 }
 

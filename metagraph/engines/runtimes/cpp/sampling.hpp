@@ -497,7 +497,7 @@ inline double Performer::_latest(const Ref<MetaRequest>& request) {
             fits = action->id == *request->action;
         }
         if (fits && this->_usable(action)) {
-            Ref<Phases> found = phases::phases(this->project, action);
+            Ref<Phases> found = phases::find_phases(this->project, action);
             double lead = found->stroke - found->skip(action->timing->blend_in);
             double speed = this->_tempo(action, this->_mood(request, *request->stroke));
             least = std::min(least, lead + mood::drag(lead, speed));
@@ -935,7 +935,7 @@ inline Ref<Action> Performer::_draw(
     bool neutral = mood->neutral();
     Map<std::string, double> weights;
     for (const auto& a : left) {
-        double favoured = neutral ? 1.0 : mood::favour(mood, a->tags, vigour::vigour(this->project, a));
+        double favoured = neutral ? 1.0 : mood::favour(mood, a->tags, vigour::measure_vigour(this->project, a));
         double weight = a->likelihood / std::max(this->_count(a->id, now), 1.0) * favoured;
         weights[a->id] = weight * this->_variety(a, now);
     }
@@ -965,7 +965,8 @@ inline double Performer::_variety(const Ref<Action>& action, double now) {
     if (variety <= 0 || action->kind == "transition" || !lang::contains(this->ended, action->id)) {
         return 1.0;
     }
-    double needed = director::repeat_interval(action->kind, prominence::prominence(this->project, action)) * variety;
+    double needed = director::repeat_interval(action->kind, prominence::measure_prominence(this->project, action))
+        * variety;
     return director::freshness(now - this->ended.at(action->id), needed);
 }
 
@@ -1001,7 +1002,7 @@ inline List<Ref<Action>> Performer::_fresh(
     bool reminded = this->_shown(now - director::APART * variety);
     List<Ref<Action>> out;
     for (const auto& action : candidates) {
-        double shows = prominence::prominence(this->project, action);
+        double shows = prominence::measure_prominence(this->project, action);
         if (reminded && shows >= director::STANDS_OUT) {
             continue;
         }
@@ -1030,7 +1031,7 @@ inline bool Performer::_shown(double since) {
         if (action == nullptr || action->kind == "transition" || end < since) {
             continue;
         }
-        if (prominence::prominence(this->project, action) >= director::STANDS_OUT) {
+        if (prominence::measure_prominence(this->project, action) >= director::STANDS_OUT) {
             return true;
         }
     }

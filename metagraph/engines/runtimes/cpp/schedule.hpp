@@ -321,7 +321,7 @@ inline void LifeDraw::begin(double cut) {
         int look = std::max(0, lang::bisect_right(begun, edge) - 1);
         this->edges.push_back(edge);
         List<double> felt = lang::at(this->moods->rows, std::max(0, lang::bisect_right(this->moods->times, edge) - 1));
-        Ref<Manner> ways = life::manner(
+        Ref<Manner> ways = life::get_manner(
             this->life,
             lang::at(words::MODES, static_cast<int>(lang::at(lang::at(this->modes->rows, mode), 0)))
         );
@@ -679,10 +679,10 @@ inline std::string _change(
     const Ref<Voices>& voices,
     std::uint32_t seed
 ) {
-    if (before->track == nullptr || before->seed != seed || !life::same_life(before->life, life)) {
+    if (before->track == nullptr || before->seed != seed || !life::is_same_life(before->life, life)) {
         return "all";
     }
-    if (!voice::same_voices(before->voices, voices)) {
+    if (!voice::are_same_voices(before->voices, voices)) {
         return "all";
     }
     if (before->track == track || before->track->like(track)) {

@@ -27,7 +27,7 @@ inline Ref<Spot> placed(const Map<std::string, List<double>>& places, const Ref<
 }
 
 /// Whether two names or two points are the same.
-inline bool same_spot(const Ref<Spot>& one, const Ref<Spot>& other) {
+inline bool is_same_spot(const Ref<Spot>& one, const Ref<Spot>& other) {
     return one->name == other->name && one->point == other->point;
 }
 

@@ -7,7 +7,7 @@ namespace metagraph {
 namespace vigour {
 
 /// Beside others of its layer and kind, -1..1.
-inline double vigour(const Ref<Project>& project, const Ref<Action>& action) {
+inline double measure_vigour(const Ref<Project>& project, const Ref<Action>& action) {
     const double* found = project->vigours.find(action->id);
     return found == nullptr ? 0 : *found;
 }

@@ -89,7 +89,7 @@ namespace voice {
 /// Times of the stressed syllables of something said.
 inline List<double> stressed(const Ref<Voices>& voices, const Ref<Speech>& speech) { return voices->of(speech)->accents; }
 
-inline bool same_voices(const Ref<Voices>& one, const Ref<Voices>& other) { return one == other; }
+inline bool are_same_voices(const Ref<Voices>& one, const Ref<Voices>& other) { return one == other; }
 
 }  // namespace voice
 }  // namespace metagraph

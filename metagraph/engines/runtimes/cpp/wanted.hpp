@@ -70,7 +70,7 @@ inline bool GazeTarget::like(const Ref<GazeTarget>& other) const {
     if (this->amount != other->amount || this->strict != other->strict || this->asked != other->asked) {
         return false;
     }
-    return spots::same_spot(this->to, other->to);
+    return spots::is_same_spot(this->to, other->to);
 }
 
 namespace wanted {

@@ -9,7 +9,7 @@
 
 import { LONGEST_REPEAT, cycleOf, timesPlayed } from "./repeating.js";
 import { drag } from "./mood.js";
-import { phases } from "./phases.js";
+import { findPhases } from "./phases.js";
 import { but } from "./basics.js";
 
 export const FITS = 1e-06; // seconds by which sums of times may be off
@@ -57,7 +57,7 @@ export function shapeOf(project, action, request, now, speed) {
   if (request !== null
     && action.kind === "gesture"
     && (request.hold !== null || request.stroke !== null || !request.prepare)) {
-    const found = phases(project, action);
+    const found = findPhases(project, action);
     const latest = found.skip(action.timing.blendIn);
     entry = request.prepare ? start : latest;
     // Wait for the stroke, or catch up with it by cutting the preparation.
@@ -120,7 +120,7 @@ export function fitsBefore(shape, limit) {
  */
 export function lateness(project, action, request, shape) {
   if (request.stroke !== null && action.kind === "gesture") {
-    const found = phases(project, action);
+    const found = findPhases(project, action);
     const until = found.stroke - shape.entry;
     return shape.start + found.stroke - shape.entry + drag(until, shape.tempo) - request.stroke;
   }
@@ -149,7 +149,7 @@ export function hurried(project, action, shape) {
   if (action.kind !== "gesture" || action.timing.earliestExit !== null || repeats) {
     return shape.shortest;
   }
-  const found = phases(project, action);
+  const found = findPhases(project, action);
   let left = found.relax - shape.entry + shape.hold - (shape.holdTo - shape.holdFrom);
   let moving = found.relax - shape.entry - (shape.holdTo - shape.holdFrom);
   if (shape.hold <= 0) {

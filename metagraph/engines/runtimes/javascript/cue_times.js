@@ -28,7 +28,7 @@ export class LoopSpot {
 }
 
 /**
- * Return where a stance's loop is at a time, as `player.loop_seconds` does.
+ * Return where a stance's loop is at a time, as `layers.compute_loop_seconds` does.
  * @param {Project} project
  * @param {Rest} rest
  * @param {number} time

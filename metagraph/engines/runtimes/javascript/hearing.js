@@ -6,7 +6,7 @@
 
 import { LAYERS } from "./words.js";
 import { behind, goingOn } from "./items.js";
-import { named, sameSpot } from "./spots.js";
+import { isSameSpot, named } from "./spots.js";
 import { Track } from "./track.js";
 import { MoodFrom } from "./mood.js";
 import { isDigits, partedLast } from "./basics.js";
@@ -110,7 +110,7 @@ export function heard(requests, track, fresh, more, withdrawn, refused, now, tur
   const before = requests.map((r) => r.id);
   before.push(...track.idents());
   // Who takes everything back still looks at whom it talks with.
-  const user = new Set(track.looks.filter((x) => x.start < now && sameSpot(x.to, named("user"))).map((x) => x.id));
+  const user = new Set(track.looks.filter((x) => x.start < now && isSameSpot(x.to, named("user"))).map((x) => x.id));
   const taken = new Set([]);
   const stopped = new Set([]);
   for (const ident of before) {

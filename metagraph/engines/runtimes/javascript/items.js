@@ -6,7 +6,7 @@
  */
 
 import { alikeTimings, extended, placeTold, shifted, tellsOn, timedSeconds, toldText } from "./line_timing.js";
-import { sameSpot } from "./spots.js";
+import { isSameSpot } from "./spots.js";
 import { but, zip } from "./basics.js";
 
 /**
@@ -201,7 +201,7 @@ export function alikeLooks(one, other) {
  * @returns {boolean}
  */
 function _sameLook(a, b) {
-  if (!sameSpot(a.to, b.to) || a.amount !== b.amount || a.strict !== b.strict) {
+  if (!isSameSpot(a.to, b.to) || a.amount !== b.amount || a.strict !== b.strict) {
     return false;
   }
   return a.id === b.id && a.start === b.start && a.end === b.end && a.priority === b.priority;

@@ -33,7 +33,7 @@ export function readLife(data = {}) {
 const camel = (pairs) => Object.fromEntries(pairs.map(([name, value]) => [name.replace(/_(.)/g, (_, c) => c.toUpperCase()), value]));
 
 /** Return what a mode makes of the amounts. */
-export const manner = (life, mode) => life.manners[mode];
+export const getManner = (life, mode) => life.manners[mode];
 
 /** Return whether two are the same settings. */
 /** Return what a mode makes of the amounts, each that a mood changes times a factor. */
@@ -46,4 +46,4 @@ export const scaled = (ways, breathing, breathRate, aversionRate, saccadeRate, b
   blinks: ways.blinks * blinks,
 });
 
-export const sameLife = (a, b) => a === b;
+export const isSameLife = (a, b) => a === b;

@@ -13,7 +13,7 @@ import { Track } from "./track.js";
 import { ASKED, MetaRequest, Report } from "./meta_plan.js";
 import { actionCalled, stanceCalled } from "./finding.js";
 import { MoodFrom } from "./mood.js";
-import { lead, longestLead } from "./phases.js";
+import { findLongestLead, lead } from "./phases.js";
 
 export const FOREVER = 1000000000; // seconds; a look that lasts until the next
 
@@ -220,7 +220,7 @@ export class Meaning {
       const kind = ask.do === "gesture" ? "gesture" : "fidget";
       let layer = ask.layer === null ? "arms" : ask.layer;
       if (stroke !== null) {
-        start = Math.max(0, stroke - longestLead(this.project, this.graphOf(layer), ask.tags));
+        start = Math.max(0, stroke - findLongestLead(this.project, this.graphOf(layer), ask.tags));
       }
       let request = new MetaRequest(
         ident,

@@ -1,2 +1,2 @@
 /** How much an action stands out, as the export tells it, 0..1. @returns {number} */
-export const prominence = (project, action) => action.prominence;
+export const measureProminence = (project, action) => action.prominence;

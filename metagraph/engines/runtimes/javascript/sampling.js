@@ -34,11 +34,11 @@ import {
   repeatInterval,
 } from "./director.js";
 import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./mood.js";
-import { prominence } from "./prominence.js";
+import { measureProminence } from "./prominence.js";
 import { node, remember, rested } from "./remembering.js";
-import { vigour } from "./vigour.js";
+import { measureVigour } from "./vigour.js";
 import { LEAST_BLEND } from "./phase_times.js";
-import { phases } from "./phases.js";
+import { findPhases } from "./phases.js";
 import { but, maxOf, minOf, thousandths } from "./basics.js";
 
 export const LOOP_FADE = 0.6; // seconds of crossfade when a long rest changes from one loop of its stance to another
@@ -294,7 +294,7 @@ export class Performer {
         fits = action.id === request.action;
       }
       if (fits && this.usable(action)) {
-        const found = phases(this.project, action);
+        const found = findPhases(this.project, action);
         const lead = found.stroke - found.skip(action.timing.blendIn);
         const speed = this.tempo(action, this.mood(request, request.stroke));
         least = Math.min(least, lead + drag(lead, speed));
@@ -611,7 +611,7 @@ export class Performer {
     const neutral = mood.neutral;
     const weights = new Map();
     for (const a of left) {
-      const favoured = neutral ? 1 : favour(mood, a.tags, vigour(this.project, a));
+      const favoured = neutral ? 1 : favour(mood, a.tags, measureVigour(this.project, a));
       const weight = a.likelihood / Math.max(this.count(a.id, now), 1) * favoured;
       weights.set(a.id, weight * this.variety(a, now));
     }
@@ -628,7 +628,7 @@ export class Performer {
     if (variety <= 0 || action.kind === "transition" || !this.ended.has(action.id)) {
       return 1;
     }
-    const needed = repeatInterval(action.kind, prominence(this.project, action)) * variety;
+    const needed = repeatInterval(action.kind, measureProminence(this.project, action)) * variety;
     return freshness(now - this.ended.get(action.id), needed);
   }
 
@@ -655,7 +655,7 @@ export class Performer {
     const reminded = this.shown(now - APART * variety);
     const out = [];
     for (const action of candidates) {
-      const shows = prominence(this.project, action);
+      const shows = measureProminence(this.project, action);
       if (reminded && shows >= STANDS_OUT) {
         continue;
       }
@@ -686,7 +686,7 @@ export class Performer {
       if (action === null || action.kind === "transition" || end < since) {
         continue;
       }
-      if (prominence(this.project, action) >= STANDS_OUT) {
+      if (measureProminence(this.project, action) >= STANDS_OUT) {
         return true;
       }
     }

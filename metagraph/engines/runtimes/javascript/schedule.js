@@ -7,11 +7,11 @@
  * Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
  */
 
-import { manner, sameLife } from "./life.js";
+import { getManner, isSameLife } from "./life.js";
 import { MODES } from "./words.js";
 import { emphasesOn, swellsOn } from "./expressions.js";
 import { Lane } from "./lane.js";
-import { sameVoices, stressed } from "./voice.js";
+import { areSameVoices, stressed } from "./voice.js";
 import { modesBetween, moodsBetween, moodsOf, targetsBetween, waysIn } from "./wanted.js";
 import { chanceOf, keyed, logNormal, uniform } from "./choice.js";
 import { Mood } from "./mood.js";
@@ -185,10 +185,10 @@ export function schedule(life, track, voices, seed, end, before, now) {
  * @returns {string}
  */
 function _change(before, life, track, voices, seed) {
-  if (before.track === null || before.seed !== seed || !sameLife(before.life, life)) {
+  if (before.track === null || before.seed !== seed || !isSameLife(before.life, life)) {
     return "all";
   }
-  if (!sameVoices(before.voices, voices)) {
+  if (!areSameVoices(before.voices, voices)) {
     return "all";
   }
   if (before.track === track || before.track.like(track)) {
@@ -259,7 +259,7 @@ export class LifeDraw {
       const look = Math.max(0, bisectRight(begun, edge) - 1);
       this.edges.push(edge);
       const felt = this.moods.rows[Math.max(0, bisectRight(this.moods.times, edge) - 1)];
-      const ways = manner(this.life, MODES[Math.trunc(this.modes.rows[mode][0])]);
+      const ways = getManner(this.life, MODES[Math.trunc(this.modes.rows[mode][0])]);
       this.manners.push(waysIn(ways, new Mood(felt[0], felt[1], felt[2])));
       this.strict.push(this.targets[look].strict ? 1 : 0);
     }

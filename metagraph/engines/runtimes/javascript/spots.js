@@ -7,6 +7,6 @@ export const named = (name) => name;
 export const placed = (places, to) => (typeof to === "string" ? places.get(to) ?? to : to);
 
 /** Return whether two names or two points are the same. */
-export function sameSpot(a, b) {
+export function isSameSpot(a, b) {
   return a === b || (Array.isArray(a) && Array.isArray(b) && a.every((x, n) => x === b[n]));
 }

@@ -1,2 +1,2 @@
 /** How energetic an action is beside others of its layer and kind, as the export tells it, -1..1. @returns {number} */
-export const vigour = (project, action) => action.vigour;
+export const measureVigour = (project, action) => action.vigour;

@@ -62,4 +62,4 @@ export class Voices {
 export const stressed = (voices, speech) => voices.of(speech).accents;
 
 /** Return whether lines sound the same. */
-export const sameVoices = (a, b) => a === b;
+export const areSameVoices = (a, b) => a === b;

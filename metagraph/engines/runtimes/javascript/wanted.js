@@ -6,7 +6,7 @@
 
 import { scaled } from "./life.js";
 import { MODES } from "./words.js";
-import { named, placed, sameSpot } from "./spots.js";
+import { isSameSpot, named, placed } from "./spots.js";
 import { Mood, Moods, lifeOf, moodAt, moodEdges } from "./mood.js";
 import { sorted, sortedBy } from "./basics.js";
 
@@ -39,7 +39,7 @@ export class GazeTarget {
     if (this.amount !== other.amount || this.strict !== other.strict || this.asked !== other.asked) {
       return false;
     }
-    return sameSpot(this.to, other.to);
+    return isSameSpot(this.to, other.to);
   }
 }
 

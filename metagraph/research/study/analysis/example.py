@@ -31,7 +31,7 @@ class PublishedExample:
 
 def compute_example() -> PublishedExample:
     """Return the published figures, recomputed."""
-    ratio = stats.ratio([MANUAL_HOURS], [META_HOURS])
+    ratio = stats.estimate_ratio([MANUAL_HOURS], [META_HOURS])
     tutorial = WEEK * MANUAL_HOURS / MANUAL_DAYS
     needed = {s: stats.count_pairs_needed(log(ratio.value) / s) for s in SCATTERS}
     minutes = META_HOURS * 60 / CLIPS, MANUAL_HOURS * 60 / CLIPS
@@ -53,7 +53,7 @@ def describe_example(found: PublishedExample) -> str:
         "of them.",
         "",
         "What it does not show:",
-        f"- {stats.ratio_cautions(found.ratio, None)[0]}",
+        f"- {stats.list_ratio_cautions(found.ratio, None)[0]}",
         "- The meta-graph came first and the state machine second, so practice with the clips helped the "
         "second.",
         "- Before the state machine there was a week of tutorial and often help, before the meta-graph an "

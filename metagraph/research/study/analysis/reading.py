@@ -15,14 +15,19 @@ from typing import Any, Literal
 from metagraph.errors import FileError
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph.model import Layer, Project
-from metagraph.research.study.logs.engine_import import engine_logs
+from metagraph.research.study.logs.engine_import import list_engine_logs
 from metagraph.research.study.logs.gaps import LogGap, find_log_gaps
 from metagraph.research.study.logs.log import Standing, StudyLog, TaskRun, read_log
 from metagraph.research.study.logs.withdrawal import read_deleted
 from metagraph.research.study.machines.klm import USUAL, OperatorTimes, predict_seconds
-from metagraph.research.study.machines.normal_machine import NormalMachine, normal
+from metagraph.research.study.machines.normal_machine import NormalMachine, normalize_machines
 from metagraph.research.study.plan.freeze import describe_study_differences, find_changed_names, list_people
-from metagraph.research.study.questionnaires import BUILT_IN, compute_tlx_raw, sus_score, tlx_weighted
+from metagraph.research.study.questionnaires import (
+    BUILT_IN,
+    compute_sus_score,
+    compute_tlx_raw,
+    compute_weighted_tlx,
+)
 from metagraph.research.study.scores.jumps import with_jumps
 from metagraph.research.study.scores.machines import TOLERANCE, Score, score
 from metagraph.research.study.scores.tasks import ItemAnswer
@@ -31,9 +36,9 @@ from metagraph.research.study.study_plan import Study, read_study
 
 Progress = Callable[[int, int], None]
 SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
-    "sus": ("SUS", sus_score),
+    "sus": ("SUS", compute_sus_score),
     "tlx": ("NASA-TLX, raw", compute_tlx_raw),
-    "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
+    "tlx_weighted": ("NASA-TLX, weighted", compute_weighted_tlx),
 }
 AFTER = 1000  # what was done in an engine comes after a sitting's phases
 TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
@@ -114,7 +119,7 @@ class StudyParticipant:
     first: str
 
 
-def prediction(run: TaskRun, times: OperatorTimes = USUAL) -> float:
+def predict_task_seconds(run: TaskRun, times: OperatorTimes = USUAL) -> float:
     """Return the seconds the keystroke-level model predicts for a task: its operators, a drag as a pointing
     besides its two button operators, and a thought for every edit and for every step back.
     """
@@ -161,7 +166,7 @@ def collect_study(folder: str | Path, jumps: bool = True, progress: Progress | N
             worked[participant] = log.frozen
         simulated |= any(e["type"] == "begin" and e.get("simulated") for e in log.events)
         rows += _rows(study, log, references, missing)
-        for path in engine_logs(study, participant):
+        for path in list_engine_logs(study, participant):
             rows += _engine_rows(study, path, participant, missing)
         answers += log.answers()
     data = study.folder / "data"
@@ -264,7 +269,9 @@ def _rows(study: Study, log: StudyLog, references: _References, missing: list[st
             clips = len(study.clips(task.clips))
         except FileError:
             clips = len(run.per_clip)
-        row = AnalysisRow(run, order.index(run.condition) + 1, clips, prediction(run, study.plan.times))
+        row = AnalysisRow(
+            run, order.index(run.condition) + 1, clips, predict_task_seconds(run, study.plan.times)
+        )
         if run.timed_out:
             missing.append(f"{who}: was ended by the time limit; the time it would have taken is not known.")
         elif not row.done:
@@ -330,7 +337,7 @@ class _References:
             except FileError as error:
                 self.missing.append(f"{task}: its reference cannot be used: {error}")
                 return None
-            self.known[task] = project, normal(project)
+            self.known[task] = project, normalize_machines(project)
         return self.known[task]
 
     def scored(self, folder: Path, run: TaskRun, who: str) -> Score | None:
@@ -349,7 +356,7 @@ class _References:
         except (FileError, OSError) as error:
             self.missing.append(f"{who}: its project cannot be used: {error}")
             return None
-        attempt = normal(project, run.condition == "manual")
+        attempt = normalize_machines(project, run.condition == "manual")
         found = score(attempt, right[1], self.study.plan.tolerance)
         return with_jumps(found, attempt, right[0]) if self.jumps else found
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from metagraph.research.study.analysis.reading import TOTALS, AnalysisRow, Data
 from metagraph.research.study.logs.gaps import Vanished, count_vanished
-from metagraph.research.study.plan.planning import Equivalence, equivalence
+from metagraph.research.study.plan.planning import Equivalence, judge_equivalence
 from metagraph.research.study.scores.machines import WORDS, Score, What
 from metagraph.research.study.scores.tasks import SPENT
 from metagraph.research.study.scores.uses import USES
@@ -26,7 +26,7 @@ from metagraph.research.study.statistics.comparison import (
     ConditionComparison,
     compare_conditions,
 )
-from metagraph.research.study.statistics.sensitivity import Sensitivity, sensitivity
+from metagraph.research.study.statistics.sensitivity import Sensitivity, analyse_sensitivity
 from metagraph.research.study.statistics.small_samples import Estimate, Test
 
 __all__ = [
@@ -139,20 +139,22 @@ def analyse_study(data: Data) -> Results:
         data,
         time,
         {task: found.ratio for task, found in ratios.items() if found is not None},
-        {c: curve for c, rows in by.items() if (curve := learning(rows)) is not None},
+        {c: curve for c, rows in by.items() if (curve := fit_learning_curve(rows)) is not None},
         {c: _spent(rows) for c, rows in by.items()},
         {c: model for c, rows in by.items() if (model := _predicted(rows)) is not None},
         mistakes,
         ratings,
         tuple(
             (name, test, p)
-            for (name, test), p in zip(asked, stats.holm([t.p for _, t in asked]), strict=True)
+            for (name, test), p in zip(asked, stats.apply_holm([t.p for _, t in asked]), strict=True)
         ),
-        sensitivity(done, time, data.sites) if time is not None else None,
+        analyse_sensitivity(done, time, data.sites) if time is not None else None,
         {c: count_vanished([(r.run.seconds, r.gaps) for r in rows]) for c, rows in by.items()},
         tuple(found for found in others if found is not None),
         {s: e for s in dict.fromkeys(data.sites.values()) if (e := _site(done, data, s)) is not None},
-        equivalence(time.logs, data.smallest) if time is not None and data.smallest is not None else None,
+        judge_equivalence(time.logs, data.smallest)
+        if time is not None and data.smallest is not None
+        else None,
     )
 
 
@@ -164,7 +166,7 @@ def _site(done: Sequence[AnalysisRow], data: Data, site: str) -> Estimate | None
 # --- practice, and what the time went into
 
 
-def learning(rows: Sequence[AnalysisRow]) -> Curve | None:
+def fit_learning_curve(rows: Sequence[AnalysisRow]) -> Curve | None:
     """Return how people got quicker from clip to clip, within one condition; None if nobody had
     three clips.
     """
@@ -206,7 +208,7 @@ def _predicted(rows: Sequence[AnalysisRow]) -> Predicted | None:
     return Predicted(
         stats.compute_geometric_mean(observed),
         stats.compute_geometric_mean(model),
-        stats.ratio(observed, model),
+        stats.estimate_ratio(observed, model),
     )
 
 
@@ -275,7 +277,9 @@ def _measure(
         return StudyMeasure(name, means, None, None)
     a, b = ([each[c][who] for who in both] for c in (ABOVE, BELOW))
     difference = stats.mean([x - y for x, y in zip(a, b, strict=True)])
-    return StudyMeasure(name, means, difference, stats.paired_t(a, b), stats.compute_effect_size(a, b))
+    return StudyMeasure(
+        name, means, difference, stats.compute_paired_t(a, b), stats.compute_effect_size(a, b)
+    )
 
 
 def _within(found: Estimate, least: float, most: float) -> Estimate:

@@ -20,11 +20,17 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_together
 from metagraph.research.study.analysis.reading import Data
 from metagraph.research.study.analysis.results import Results
-from metagraph.research.study.interchange.bids_phenotype import phenotype
+from metagraph.research.study.interchange.bids_phenotype import make_phenotype_tables
 from metagraph.research.study.logs.log import Event, read_log
-from metagraph.research.study.reports.tables import clips, estimates, format_rows, mistakes, participants
-from metagraph.research.study.reports.tables import tasks as task_table
-from metagraph.research.study.scores.tasks import moment
+from metagraph.research.study.reports.tables import (
+    format_rows,
+    tabulate_clips,
+    tabulate_estimates,
+    tabulate_mistakes,
+    tabulate_people,
+)
+from metagraph.research.study.reports.tables import tabulate_tasks as task_table
+from metagraph.research.study.scores.tasks import read_moment
 from metagraph.research.study.study_plan import Study
 
 BIDS = "1.9.0"
@@ -138,7 +144,7 @@ def write_bids(study: Study, results: Results, out: Path) -> list[Path]:
     names = _labels(study, [*study.plan.ids], "participants")
     tasks = _labels(study, [t.id for t in study.plan.tasks], "tasks")
     there = {who: label for who, label in names.items() if study.log(who).is_file() and who not in gone}
-    columns, people = participants(results)
+    columns, people = tabulate_people(results)
     rows = [(f"sub-{names[row[0]]}", *row[1:]) for row in people if row[0] in there]
     content: dict[str, str] = {
         "dataset_description.json": _json(_description(study.plan.title, "raw")),
@@ -155,7 +161,7 @@ def write_bids(study: Study, results: Results, out: Path) -> list[Path]:
                     COLUMNS, sorted(found, key=lambda row: row[0]), "\t"
                 )
                 content |= _summary(study, data, who, task, condition, stem)
-    for name, ((heads, answered), told) in phenotype(study, data, there).items():
+    for name, ((heads, answered), told) in make_phenotype_tables(study, data, there).items():
         content[f"phenotype/{name}.tsv"] = format_rows(heads, answered, "\t")
         content[f"phenotype/{name}.json"] = _json(told)
     content |= _derived(study, results)
@@ -213,9 +219,12 @@ def _derived(study: Study, results: Results) -> dict[str, str]:
     about = _description(f"{study.plan.title}: results", "derivative")
     out = {f"{where}/dataset_description.json": _json(about)}
     described = {
-        "clips": (clips(data), "The clips of a task in the order in which they were first dealt with"),
-        "mistakes": (mistakes(data), "What was wrong beside the reference"),
-        "estimates": (estimates(results), "The ratio of times, as reported and reckoned otherwise"),
+        "clips": (
+            tabulate_clips(data),
+            "The clips of a task in the order in which they were first dealt with",
+        ),
+        "mistakes": (tabulate_mistakes(data), "What was wrong beside the reference"),
+        "estimates": (tabulate_estimates(results), "The ratio of times, as reported and reckoned otherwise"),
     }
     for name, ((columns, rows), words) in described.items():
         out[f"{where}/{name}.tsv"] = format_rows(columns, rows, "\t")
@@ -243,7 +252,10 @@ def _tasks(events: Sequence[Event]) -> dict[tuple[str, str], list[tuple[Any, ...
         if before is not None:
             same = before["run"] == e["run"]
             at += max(
-                0.0, e["mono"] - before["mono"] if same else (moment(e) - moment(before)).total_seconds()
+                0.0,
+                e["mono"] - before["mono"]
+                if same
+                else (read_moment(e) - read_moment(before)).total_seconds(),
             )
         before = e
         if e["type"] == "phase":

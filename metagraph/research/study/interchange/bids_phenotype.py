@@ -20,7 +20,7 @@ SOURCES: Mapping[str, str] = {
 About = tuple[str | None, str | None]  # condition, task
 
 
-def phenotype(
+def make_phenotype_tables(
     study: Study, data: Data, people: Mapping[str, str]
 ) -> dict[str, tuple[Table, Mapping[str, Any]]]:
     """Return questionnaire -> its table and what its columns are. people: participant -> how BIDS calls them,

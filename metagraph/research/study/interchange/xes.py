@@ -10,7 +10,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from metagraph import __version__
-from metagraph.common.xml_text import xml_text
+from metagraph.common.xml_text import clean_xml_text
 from metagraph.formats.atomic import write_atomically
 from metagraph.research.study.logs.log import StudyLog, read_log
 from metagraph.research.study.scores.tasks import Event, list_event_steps
@@ -108,7 +108,9 @@ def _event(trace: ElementTree.Element, event: Event, seconds: float, who: str) -
     node = ElementTree.SubElement(trace, "event")
     what = event.get("what", event.get("state", event.get("name")))
     _string(node, "concept:name", f"{event['type']} {what}" if what else event["type"])
-    ElementTree.SubElement(node, "date", {"key": "time:timestamp", "value": xml_text(str(event["wall"]))})
+    ElementTree.SubElement(
+        node, "date", {"key": "time:timestamp", "value": clean_xml_text(str(event["wall"]))}
+    )
     _string(node, "org:resource", who)
     _string(node, "lifecycle:transition", "complete")
     _string(node, "sort", event["type"])
@@ -122,4 +124,4 @@ def _event(trace: ElementTree.Element, event: Event, seconds: float, who: str) -
 
 
 def _string(node: ElementTree.Element, key: str, value: str) -> None:
-    ElementTree.SubElement(node, "string", {"key": key, "value": xml_text(value)})
+    ElementTree.SubElement(node, "string", {"key": key, "value": clean_xml_text(value)})

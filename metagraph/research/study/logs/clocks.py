@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from metagraph.research.study.scores.tasks import Event, moment
+from metagraph.research.study.scores.tasks import Event, read_moment
 
 STEP = 2.0  # seconds the time of day may be set by without a word
 RATE = 0.002  # of a run, by which the two may go apart
@@ -20,8 +20,11 @@ def find_clock_problems(events: Sequence[Event]) -> list[str]:
         mine = [e for e in events if e["run"] == run]
         first, last = mine[0], mine[-1]
         inner = last["mono"] - first["mono"]
-        outer = (moment(last) - moment(first)).total_seconds()
-        offs = [(moment(b) - moment(a)).total_seconds() - (b["mono"] - a["mono"]) for a, b in pairwise(mine)]
+        outer = (read_moment(last) - read_moment(first)).total_seconds()
+        offs = [
+            (read_moment(b) - read_moment(a)).total_seconds() - (b["mono"] - a["mono"])
+            for a, b in pairwise(mine)
+        ]
         if abs(outer - inner) <= STEP + RATE * max(abs(inner), abs(outer)):
             continue
         worst = max(range(len(offs)), key=lambda n: abs(offs[n]))

@@ -20,7 +20,7 @@ ENGINES = ("unreal", "unity", "godot")
 REMEDY = "Take the file that the script for the engine told of, whole."
 
 
-def engine_logs(study: Study, participant: str) -> list[Path]:
+def list_engine_logs(study: Study, participant: str) -> list[Path]:
     """Return the logs of engines that were imported for a participant."""
     return [p for e in ENGINES if (p := study.data(participant) / f"engine-{e}.jsonl").is_file()]
 

@@ -46,7 +46,7 @@ def place_of(phase: Event) -> int:
     return int(index) if isinstance(index, int | float) else -1
 
 
-def seconds_by_limit(active: float, found: Sequence[LogGap], limit: float) -> float:
+def measure_seconds_by_limit(active: float, found: Sequence[LogGap], limit: float) -> float:
     """Return a task's seconds by another limit. active: by that of AWAY."""
     there = sum(g.seconds for g in found if g.seconds <= AWAY)
     return active - there + sum(g.seconds for g in found if g.seconds <= limit)

@@ -22,7 +22,7 @@ from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.research.study.logs.log import StudyLog
 from metagraph.research.study.reports.tables import Table
-from metagraph.research.study.scores.tasks import Event, moment
+from metagraph.research.study.scores.tasks import Event, read_moment
 
 Array = NDArray[np.float64]
 GAP = 0.1  # seconds between samples beyond which nothing was measured
@@ -130,7 +130,7 @@ def _pupil_cloud(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) 
 # --- on what it lay
 
 
-def offset(log: StudyLog, gaze: GazeRecording, clap: float | None) -> float:
+def find_clock_offset(log: StudyLog, gaze: GazeRecording, clap: float | None) -> float:
     """Return the seconds to add to a recording's times to have those since 1970. clap: when the recording
     shows the sitting's first clap, in its own seconds; None if its times are those since 1970. Raises
     ValueError.
@@ -142,14 +142,14 @@ def offset(log: StudyLog, gaze: GazeRecording, clap: float | None) -> float:
     marks = [e for e in log.events if e["type"] == "marker"]
     if not marks:
         raise ValueError(f"the log of {log.participant} has no clap; set 'claps: true' in the study file")
-    return moment(marks[0]).timestamp() - clap
+    return read_moment(marks[0]).timestamp() - clap
 
 
-def dwelt(log: StudyLog, gaze: GazeRecording, clap: float | None = None) -> Table:
+def tabulate_dwell(log: StudyLog, gaze: GazeRecording, clap: float | None = None) -> Table:
     """Return how long each panel, and each node in it, was looked at in each task: seconds, share of what was
     measured, visits. Raises ValueError if the times cannot be brought together.
     """
-    shift = offset(log, gaze, clap)
+    shift = find_clock_offset(log, gaze, clap)
     size = _screen(log)
     ratio = size.get("ratio") or 1.0
     places = gaze.places / ratio
@@ -207,7 +207,7 @@ def _tasks(log: StudyLog) -> list[tuple[tuple[float, Event], float, list[tuple[f
     layouts: list[tuple[float, Layout]] = []
     begun: tuple[float, Event] | None = None
     for e in log.events:
-        at = moment(e).timestamp()
+        at = read_moment(e).timestamp()
         if e["type"] == "view" and e.get("what") == "layout" and isinstance(e.get("areas"), dict):
             layouts.append((at, e["areas"]))
         if e["type"] == "phase":

@@ -27,7 +27,14 @@ from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.research.study.logs.clocks import find_clock_problems
-from metagraph.research.study.scores.tasks import Event, ItemAnswer, TaskRun, last_answers, moment, task_runs
+from metagraph.research.study.scores.tasks import (
+    Event,
+    ItemAnswer,
+    TaskRun,
+    last_answers,
+    list_task_runs,
+    read_moment,
+)
 
 __all__ = [
     "BOUNDARIES",
@@ -38,8 +45,8 @@ __all__ = [
     "StudyLog",
     "TaskRun",
     "Writer",
+    "format_wall_time",
     "read_log",
-    "wall_time",
 ]
 
 NAME = "log.jsonl"
@@ -121,14 +128,14 @@ class StudyLog:
 
     def tasks(self) -> list[TaskRun]:
         """Return the tasks that were begun, in their order."""
-        return task_runs(self.participant, self.events)
+        return list_task_runs(self.participant, self.events)
 
     def answers(self) -> list[ItemAnswer]:
         """Return the answers to questionnaires; of several to one item the last."""
         return last_answers(self.participant, self.events)
 
 
-def wall_time(now: datetime) -> str:
+def format_wall_time(now: datetime) -> str:
     """Return a time as logs write it: UTC, milliseconds."""
     return now.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
@@ -183,7 +190,7 @@ def _event(line: bytes) -> Event | str:
         if not isinstance(value, kinds) or isinstance(value, bool):
             return f"has no {key}"
     try:
-        if moment(event).tzinfo is None:
+        if read_moment(event).tzinfo is None:
             return "its wall time is of no time zone"
     except ValueError:
         return f"its wall time '{event['wall'][:40]}' is none"
@@ -262,7 +269,7 @@ class Writer:
         if not self.before.events:
             return self.add("begin", **fields)
         last = self.before.events[-1]
-        lost = max(0.0, (self._now() - moment(last)).total_seconds())
+        lost = max(0.0, (self._now() - read_moment(last)).total_seconds())
         return self.add("resumed", after=last["n"], lost=round(lost, 3), **fields)
 
     def add(self, kind: str, **fields: Any) -> Event:
@@ -290,7 +297,7 @@ class Writer:
             "n": self.n,
             "run": self.run,
             "mono": mono,
-            "wall": wall_time(self._now()),
+            "wall": format_wall_time(self._now()),
             "type": kind,
             **fields,
         }

@@ -17,7 +17,7 @@ class MarkersError(ValueError):
     """There is no Lab Streaming Layer here; the message says what to do."""
 
 
-def outlet(participant: str) -> Callable[[Mapping[str, Any]], None]:
+def open_marker_outlet(participant: str) -> Callable[[Mapping[str, Any]], None]:
     """Return what sends an event of the log: a stream `Metagraph` of type `Markers`, one JSON text a sample.
     Raises MarkersError.
     """

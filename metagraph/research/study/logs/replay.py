@@ -79,7 +79,7 @@ def _part(study: Study, begun: Event, events: Sequence[Event], times: Sequence[f
     return SittingPart(str(begun.get("condition", "")), task, title, tuple(events), tuple(times))
 
 
-def first_project(study: Study, part: SittingPart) -> Project:
+def load_first_project(study: Study, part: SittingPart) -> Project:
     """Return the project the work began with, its clips with their motion and absolute paths. Raises
     FileError, also where the study has no such task any more.
     """
@@ -150,10 +150,18 @@ def replay_to(
     study: Study, participant: str, part: SittingPart, seconds: float, first: Project | None = None
 ) -> Project:
     """Return the project as it was at a moment of a part. Raises FileError, DataError."""
-    again = Again(first if first is not None else first_project(study, part), study.data(participant))
+    again = Again(first if first is not None else load_first_project(study, part), study.data(participant))
     for event in part.events[: part.until(seconds)]:
         again.step(event)
     return again.project()
 
 
-__all__ = ["CHANGES", "Again", "DataError", "SittingPart", "first_project", "list_sitting_parts", "replay_to"]
+__all__ = [
+    "CHANGES",
+    "Again",
+    "DataError",
+    "SittingPart",
+    "list_sitting_parts",
+    "load_first_project",
+    "replay_to",
+]

@@ -13,7 +13,7 @@ from typing import Any
 
 from metagraph.errors import FileError
 from metagraph.research.study.logs.log import read_log
-from metagraph.research.study.scores.tasks import moment
+from metagraph.research.study.scores.tasks import read_moment
 from metagraph.research.study.sitting import describe_standing, find_place_in_sitting, list_phases
 from metagraph.research.study.study_plan import Study
 
@@ -56,7 +56,7 @@ def _seen(study: Study, who: str, now: datetime) -> ParticipantView:
         stands = find_place_in_sitting(course, log.events)
     except (FileError, ValueError) as error:
         return ParticipantView(who, str(error), live)
-    quiet = max(0.0, (now - moment(log.events[-1])).total_seconds()) if log.events else None
+    quiet = max(0.0, (now - read_moment(log.events[-1])).total_seconds()) if log.events else None
     pauses = [e.get("state") for e in log.events if e["type"] in ("pause", "resumed", "phase")]
     told: dict[str, Any] = {
         "quiet": quiet,

@@ -18,7 +18,7 @@ from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import append_line
-from metagraph.research.study.logs.log import Writer, read_log, wall_time
+from metagraph.research.study.logs.log import Writer, format_wall_time, read_log
 from metagraph.research.study.logs.watching import LOCK, is_open
 
 DELETIONS = "deletions.jsonl"
@@ -81,7 +81,7 @@ def delete_data(
         raise FileError(folder, "a window has this sitting open", participant, "Close it first.")
     files = [p for p in folder.rglob("*") if p.is_file()]
     note: dict[str, object] = {
-        "deleted": wall_time(now()),
+        "deleted": format_wall_time(now()),
         "participant": participant,
         "files": len(files),
         "version": __version__,
@@ -114,7 +114,7 @@ def read_deleted(study: Keeping) -> frozenset[str]:
     return frozenset(out)
 
 
-def mentions(study: Keeping, participant: str) -> list[Path]:
+def find_mentions(study: Keeping, participant: str) -> list[Path]:
     """Return the files in the study's folder, apart from the plan and the data, that still hold the
     pseudonym: reports and exports written before.
     """

@@ -20,9 +20,9 @@ from metagraph.research.study.machines.covering import (
     Cover,
     Rectangle,
     as_set,
-    bits,
     cover_by_rectangles,
-    target_sets,
+    find_target_sets,
+    list_bits,
 )
 from metagraph.research.study.machines.finding import Finder, Words
 
@@ -62,7 +62,7 @@ class Work:
         self.seconds = tuple(reference.clips[c].duration for c in self.clips)
         at = {a.id: str(n) for n, a in enumerate(actions)}
         pairs = {(at[c.source], at[c.target]) for c in list_connections(reference, graph)}
-        self.rows = target_sets([str(n) for n in range(len(actions))], pairs)
+        self.rows = find_target_sets([str(n) for n in range(len(actions))], pairs)
         self.unasked = as_set(n for n, a in enumerate(actions) if a.kind in ("stance", "fidget"))
         self.loops = as_set(n for n, a in enumerate(actions) if a.kind == "stance")
         self.limbs = {a.clip: a.limb for a in actions}
@@ -138,7 +138,7 @@ class DrawingHand(Protocol):
     def table(self, text: str) -> None: ...
 
 
-def works(reference: Project) -> list[Work]:
+def list_works(reference: Project) -> list[Work]:
     """Return what is to be drawn of a reference, by layer."""
     return [Work(reference, x) for x in LAYERS if reference.graphs[x].actions]
 
@@ -156,7 +156,7 @@ def list_ways(named: bool = True) -> list[Way]:
     return [w for w in out if w.links != "from a table" or (w.pick == "words" and w.settle == "many at once")]
 
 
-def batches(library: dict[str, str], wanted: Sequence[str]) -> list[tuple[list[str], str]]:
+def make_batches(library: dict[str, str], wanted: Sequence[str]) -> list[tuple[list[str], str]]:
     """Return batches of clips with the words that show just them of a library, which they leave; no words if
     nothing else is left. library: clip -> name.
     """
@@ -170,7 +170,7 @@ def batches(library: dict[str, str], wanted: Sequence[str]) -> list[tuple[list[s
             batch, words = list(left), ""
         else:
             found = finder.best(want)
-            one = bits(want)[0]
+            one = list_bits(want)[0]
             words = found.text if found is not None else library[clips[one]]
             batch = list(left) if found is not None else [clips[one]]
         out.append((batch, words))
@@ -223,7 +223,7 @@ class MachineDrawing:
             return
         for clip in work.clips if look else ():
             self.hand.look(clip)
-        for clips, words in batches(self.library, work.clips):
+        for clips, words in make_batches(self.library, work.clips):
             self.hand.drop(work, clips, words)
 
     def _limbs(self, work: Work, guessed: Mapping[str, str]) -> None:
@@ -253,29 +253,29 @@ class MachineDrawing:
             self.select(work, r.sources)
             alias = hand.alias()
             self.select(work, r.targets)
-            hand.link(alias, work.clips[bits(r.targets)[0]], True)
+            hand.link(alias, work.clips[list_bits(r.targets)[0]], True)
             if way.settle == "each":
                 self._unask(work, r.targets)
             return
         if several:
             self.select(work, r.targets)
-            hand.link(ANY, work.clips[bits(r.targets)[0]], True)
+            hand.link(ANY, work.clips[list_bits(r.targets)[0]], True)
             hand.at_end()
             if way.settle == "each":
                 self._unask(work, r.targets)
             return
-        for target in bits(r.targets):
+        for target in list_bits(r.targets):
             sources = r.sources & ~(1 << target)
             if not sources:
                 continue
             if way.links == "one by one":
-                for source in bits(sources):
+                for source in list_bits(sources):
                     hand.link(work.clips[source], work.clips[target], False)
                     if way.settle == "each":
                         self._ask(work, target, 1 << source)
                 continue
             self.select(work, sources)
-            hand.link(work.clips[bits(sources)[0]], work.clips[target], True)
+            hand.link(work.clips[list_bits(sources)[0]], work.clips[target], True)
             if way.settle == "each":
                 self._ask(work, target, sources)
 

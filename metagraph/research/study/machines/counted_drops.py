@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from metagraph.graph import edits
 from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import LAYERS, Action, Kind, MetaGraph, Project
-from metagraph.research.study.machines.by_hand import batches
-from metagraph.research.study.machines.counted_hand import OperatorCounts, bare
+from metagraph.research.study.machines.by_hand import make_batches
+from metagraph.research.study.machines.counted_hand import OperatorCounts, strip_project
 from metagraph.research.study.machines.klm import predict_seconds
-from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.machines.normal_machine import normalize_machines
 from metagraph.research.study.scores.machines import Score, score
 
 
@@ -30,7 +30,7 @@ def label_by_drops(reference: Project) -> Dropped:
     """Label a reference's clips stance by stance, all of a stance's gestures, fidgets and ways to one other
     stance at once: found by the shortest words, all selected, labelled by a key.
     """
-    made, project = OperatorCounts(), bare(reference)
+    made, project = OperatorCounts(), strip_project(reference)
     library = {a.clip: reference.clips[a.clip].name for a in reference.actions()}
     here: dict[str, str] = {}  # the reference's stance -> the one made
     made.think()
@@ -38,7 +38,7 @@ def label_by_drops(reference: Project) -> Dropped:
 
     def find(clips: Sequence[str], drag: bool) -> list[list[str]]:
         out = []
-        for batch, words in batches(library, clips):
+        for batch, words in make_batches(library, clips):
             made.think(1 + words.count(" ") + words.count("|"))
             made.keys(4 + max(1, len(words)) + (2 if len(batch) > 1 else 0) + 1)
             made.drag() if drag else made.keys(1)
@@ -74,7 +74,7 @@ def label_by_drops(reference: Project) -> Dropped:
                     project = edits.place_clips(
                         project, batch, layer, kind, here[stance.id], here[end] if end is not None else None
                     )
-    found = score(normal(project, False), normal(reference, False))
+    found = score(normalize_machines(project, False), normalize_machines(reference, False))
     return Dropped(dict(made.counts), predict_seconds(made.counts), found)
 
 

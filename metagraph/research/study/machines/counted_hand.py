@@ -16,10 +16,10 @@ from metagraph.graph.edits import guess_limb, remove_actions
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.model import Layer, Project
-from metagraph.research.study.machines.by_hand import MachineDrawing, Way, Work, list_ways, works
+from metagraph.research.study.machines.by_hand import MachineDrawing, Way, Work, list_ways, list_works
 from metagraph.research.study.machines.finding import Words
 from metagraph.research.study.machines.klm import predict_seconds
-from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.machines.normal_machine import normalize_machines
 from metagraph.research.study.scores.machines import Score, score
 
 FILE_NAME = 10  # letters typed for a table's file
@@ -211,7 +211,7 @@ class Tried:
     project: Project
 
 
-def bare(reference: Project) -> Project:
+def strip_project(reference: Project) -> Project:
     """Return a reference's clips without what was made of them."""
     out = remove_actions(reference, [a.id for a in reference.actions()])
     return replace(out, manual={})
@@ -219,8 +219,8 @@ def bare(reference: Project) -> Project:
 
 def try_way(way: Way, reference: Project, look: bool = False) -> Tried:
     """Draw a reference by hand in one way."""
-    hand: Any = CountedHand(bare(reference))
-    some = works(reference)
+    hand: Any = CountedHand(strip_project(reference))
+    some = list_works(reference)
     wanted = [c for w in some for c in w.clips]
     library = [(c, reference.clips[c].name) for c in wanted]
     guessed = {
@@ -230,7 +230,7 @@ def try_way(way: Way, reference: Project, look: bool = False) -> Tried:
     }
     MachineDrawing(way, hand, library).draw(some, guessed, look)
     edges = sum(len(m.links) for m in hand.project.manual.values())
-    found = score(normal(hand.project, True), normal(reference, False))
+    found = score(normalize_machines(hand.project, True), normalize_machines(reference, False))
     counts = hand.made.counts
     return Tried(way, counts, predict_seconds(counts), hand.looked, edges, found, hand.project)
 

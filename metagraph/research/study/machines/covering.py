@@ -29,7 +29,7 @@ class Cover:
     least: int
 
 
-def bits(of: int) -> list[int]:
+def list_bits(of: int) -> list[int]:
     """Return the numbers in a set, ascending."""
     out = []
     while of:
@@ -46,7 +46,7 @@ def as_set(numbers: Iterable[int]) -> int:
     return out
 
 
-def target_sets(keys: Collection[str], pairs: Collection[Pair]) -> list[int]:
+def find_target_sets(keys: Collection[str], pairs: Collection[Pair]) -> list[int]:
     """Return for each state, in the order of `keys`, the set it leads to."""
     place = {key: n for n, key in enumerate(keys)}
     out = [0] * len(place)
@@ -77,9 +77,11 @@ def cover_by_rectangles(rows: list[int]) -> Cover:
     left = list(rows)
     chosen: list[Rectangle] = []
     while any(left):
-        best = max(candidates, key=lambda r: sum((left[n] & r.targets).bit_count() for n in bits(r.sources)))
+        best = max(
+            candidates, key=lambda r: sum((left[n] & r.targets).bit_count() for n in list_bits(r.sources))
+        )
         chosen.append(best)
-        for n in bits(best.sources):
+        for n in list_bits(best.sources):
             left[n] &= ~best.targets
     return Cover(tuple(chosen), _apart(rows, count))
 
@@ -95,7 +97,7 @@ def _apart(rows: list[int], count: int) -> int:
         return a == b or bool(rows[a] >> b & 1)
 
     for a in range(count):
-        for b in bits(rows[a]):
+        for b in list_bits(rows[a]):
             if all(not (leads(a, d) and leads(c, b)) for c, d in named):
                 named.append((a, b))
                 break

@@ -17,7 +17,7 @@ from metagraph.graph.expand import find_end_stance
 from metagraph.graph.expand import list_connections as expanded
 from metagraph.graph.manual.machine import Link, Manual, State
 from metagraph.graph.manual.meta import as_meta
-from metagraph.graph.manual.timing import exit_moment, find_state_span
+from metagraph.graph.manual.timing import find_exit_moment, find_state_span
 from metagraph.graph.model import LAYERS, ClipEntry, Kind, Layer, Limb, MetaGraph, Project
 
 AT_ITS_END = 1e-3  # seconds: as near to its end a state is left at its end
@@ -77,11 +77,11 @@ def is_manual(project: Project) -> bool:
     return any(m.states for m in project.manual.values())
 
 
-def normal(project: Project, manual: bool | None = None) -> dict[Layer, NormalMachine]:
+def normalize_machines(project: Project, manual: bool | None = None) -> dict[Layer, NormalMachine]:
     """Return the machines of the layers that have any states. manual: which of both is meant, if not what the
     project has.
     """
-    names = clip_names(project)
+    names = name_clips(project)
     by_hand = is_manual(project) if manual is None else manual
     meant = as_meta(project)[0] if by_hand else project
     out = {}
@@ -97,7 +97,7 @@ def normal(project: Project, manual: bool | None = None) -> dict[Layer, NormalMa
     return out
 
 
-def clip_names(project: Project) -> dict[str, str]:
+def name_clips(project: Project) -> dict[str, str]:
     """Return clip id -> its file's name, with its folder where two files are called alike, and its take where
     it is not the first.
     """
@@ -189,7 +189,7 @@ def _leave(project: Project, state: State, link: Link) -> float | None:
     """Return when a link leaves its source, as a meta-graph counts: where its blend would end with the
     source, at the source's end.
     """
-    at, end = exit_moment(project, state, link), find_state_span(project, state)[1]
+    at, end = find_exit_moment(project, state, link), find_state_span(project, state)[1]
     return end if at is not None and at + link.blend >= end - AT_ITS_END else at
 
 

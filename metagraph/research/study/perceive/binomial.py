@@ -21,7 +21,7 @@ STEADY = 100  # more answers with which the power must hold, since it goes up an
 CLOSE = 1 + 1e-7  # what counts as just as likely
 
 
-def probability_at_most(k: int, n: int, share: float) -> float:
+def compute_probability_at_most(k: int, n: int, share: float) -> float:
     """Return how likely k of n, or fewer, are where each is with probability `share`, 0..1."""
     if k < 0:
         return 0.0
@@ -30,7 +30,7 @@ def probability_at_most(k: int, n: int, share: float) -> float:
     return compute_incomplete_beta(n - k, k + 1, 1 - share)
 
 
-def two_sided_p(k: int, n: int, share: float = 0.5) -> float | None:
+def compute_two_sided_p(k: int, n: int, share: float = 0.5) -> float | None:
     """Return the p value of k of n against a share, 0 < share < 1; None of nothing. Raises ValueError."""
     _checked(k, n)
     if not n:
@@ -46,12 +46,12 @@ def estimate_exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
     if not n:
         raise ValueError("nothing has no share")
     tail = (1 - level) / 2
-    low = 0.0 if k == 0 else _solve(lambda p: 1 - probability_at_most(k - 1, n, p) >= tail)
-    high = 1.0 if k == n else _solve(lambda p: probability_at_most(k, n, p) <= tail)
+    low = 0.0 if k == 0 else _solve(lambda p: 1 - compute_probability_at_most(k - 1, n, p) >= tail)
+    high = 1.0 if k == n else _solve(lambda p: compute_probability_at_most(k, n, p) <= tail)
     return Estimate(k / n, low, high, n)
 
 
-def fisher(a: int, n: int, b: int, m: int) -> float | None:
+def compute_fisher_p(a: int, n: int, b: int, m: int) -> float | None:
     """Return the p value of a of n being the same share as b of m; None if either has none."""
     _checked(a, n)
     _checked(b, m)
@@ -73,7 +73,7 @@ def share_power(n: int, share: float, alpha: float = 0.05) -> float:
     if not len(out):
         return 0.0
     edge = int(out[-1])
-    return probability_at_most(edge, n, share) + probability_at_most(edge, n, 1 - share)
+    return compute_probability_at_most(edge, n, share) + compute_probability_at_most(edge, n, 1 - share)
 
 
 def count_needed_answers(share: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
@@ -96,14 +96,17 @@ def share_equivalence_power(n: int, margin: float, share: float = 0.5, alpha: fl
     counts = [
         k
         for k in range(n + 1)
-        if 1 - probability_at_most(k - 1, n, low) < alpha and probability_at_most(k, n, high) < alpha
+        if 1 - compute_probability_at_most(k - 1, n, low) < alpha
+        and compute_probability_at_most(k, n, high) < alpha
     ]
     if not counts:
         return 0.0
-    return probability_at_most(counts[-1], n, share) - probability_at_most(counts[0] - 1, n, share)
+    return compute_probability_at_most(counts[-1], n, share) - compute_probability_at_most(
+        counts[0] - 1, n, share
+    )
 
 
-def equivalence_needed(margin: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
+def count_answers_for_equivalence(margin: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
     """Return with how many answers a true half is shown to be within a margin either way; None beyond MOST.
     Raises ValueError.
     """

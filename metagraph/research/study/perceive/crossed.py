@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import t_quantile, t_two_sided
+from metagraph.research.study.statistics.student_t import compute_t_quantile, compute_t_two_sided
 
 Array = NDArray[np.float64]
 NOTHING = 0.02  # a deviation of log odds below which a group is reported as having none
@@ -74,15 +74,18 @@ def fit_crossed(
     for n, name in enumerate(effects):
         variance, df = model.freedom(x[:, n], float(cover[n, n]), spread)
         error = sqrt(variance)
-        half = t_quantile((1 + level) / 2, df) * error
+        half = compute_t_quantile((1 + level) / 2, df) * error
         value = float(beta[n])
         out[name] = Estimate(value, value - half, value + half, len(y))
-        p[name], dfs[name] = t_two_sided(value / error, df), df
+        p[name], dfs[name] = compute_t_two_sided(value / error, df), df
     first = next(iter(out.values()))
     total = float(np.hypot(*spread))
     assert first.low is not None and first.high is not None
     share = Estimate(
-        overall(first.value, total), overall(first.low, total), overall(first.high, total), len(y)
+        compute_overall_share(first.value, total),
+        compute_overall_share(first.low, total),
+        compute_overall_share(first.high, total),
+        len(y),
     )
     return Crossed(
         out,
@@ -96,7 +99,7 @@ def fit_crossed(
     )
 
 
-def overall(value: float, spread: float) -> float:
+def compute_overall_share(value: float, spread: float) -> float:
     """Return the share of all together where log odds are normal about a value (Gauss and Hermite)."""
     nodes, weights = _nodes()
     return float((weights / (1 + np.exp(-(value + spread * nodes)))).sum() / weights.sum())

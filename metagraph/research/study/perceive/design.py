@@ -18,7 +18,7 @@ import msgspec
 from msgspec import Struct
 
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan
-from metagraph.research.study.plan.allocation import commitment, draw_order_numbers, drawer
+from metagraph.research.study.plan.allocation import compute_commitment, draw_order_numbers, make_drawer
 
 Kind = Literal["training", "choice", "rating", "told", "same"]
 NAME_LENGTH = 20  # hexadecimal digits of a video's or a trial's name
@@ -78,9 +78,9 @@ def name_stimulus(draw: Draw, condition: str, item: str) -> str:
     return f"{draw('video', condition, item):064x}"[:NAME_LENGTH]
 
 
-def design(plan: PerceivePlan, secret: str) -> Design:
+def make_design(plan: PerceivePlan, secret: str) -> Design:
     """Return who sees what: the same for the same plan and secret for ever."""
-    draw = drawer(secret)
+    draw = make_drawer(secret)
     used = list(dict.fromkeys(c for pair in plan.pairs for c in pair)) if plan.rating is None else []
     used = used or list(plan.conditions)
     stimuli = {name_stimulus(draw, c, i.id): (c, i.id) for c in used for i in plan.items}
@@ -101,7 +101,7 @@ def design(plan: PerceivePlan, secret: str) -> Design:
     }
     digest = hashlib.sha256(msgspec.json.encode(public, order="sorted")).hexdigest()
     public["design"] = digest
-    return Design(Key(plan.perceive, commitment(secret), digest, stimuli, sessions), public)
+    return Design(Key(plan.perceive, compute_commitment(secret), digest, stimuli, sessions), public)
 
 
 def _question(item: Any) -> dict[str, Any]:

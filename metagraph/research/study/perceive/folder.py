@@ -24,7 +24,7 @@ from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
-from metagraph.research.study.logs.log import NAME, wall_time
+from metagraph.research.study.logs.log import NAME, format_wall_time
 from metagraph.research.study.perceive.design import Design, Key
 from metagraph.research.study.perceive.perceive_plan import FILE, PerceivePlan, read_perceive_plan
 from metagraph.research.study.perceive.sealed import seal_sessions
@@ -98,7 +98,7 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
             allocation.append_durably(log, note, who)
     digests = perceive_manifest(folder)
     data = {
-        "frozen": wall_time(datetime.now(UTC)),
+        "frozen": format_wall_time(datetime.now(UTC)),
         "version": __version__,
         "seal": seal(digests),
         "digests": digests,

@@ -19,7 +19,7 @@ from metagraph.research.study.perceive.perceive_data import Answers, Rated, Rate
 from metagraph.research.study.statistics import mixed as stats_mixed
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import t_quantile, t_two_sided
+from metagraph.research.study.statistics.student_t import compute_t_quantile, compute_t_two_sided
 
 FEW_PEOPLE, FEW_ITEMS = 12, 8  # below which deviations are hardly known
 MOST_ROWS = 50_000  # of differences, beyond which people's means are compared instead
@@ -97,8 +97,8 @@ def analyse_answers(answers: Answers) -> PerceiveResults:
     pairs = [_compared(answers, pair) for pair in plan.pairs] if plan.choice is not None else []
     rated = _rated(answers)
     asked = [c.alone for c in pairs] + [r.p for r in rated]
-    together = stats.holm(asked)
-    exact = stats.holm([c.p for c in pairs])
+    together = stats.apply_holm(asked)
+    exact = stats.apply_holm([c.p for c in pairs])
     pairs = [
         replace(c, together=p, exact=e, verdict=_verdict(c, p, plan.smallest))
         for c, p, e in zip(pairs, together, exact, strict=False)
@@ -119,7 +119,7 @@ def analyse_answers(answers: Answers) -> PerceiveResults:
 def _share(values: Sequence[bool]) -> tuple[Estimate, float | None] | None:
     if not values:
         return None
-    return binomial.estimate_exact_share(sum(values), len(values)), binomial.two_sided_p(
+    return binomial.estimate_exact_share(sum(values), len(values)), binomial.compute_two_sided_p(
         sum(values), len(values)
     )
 
@@ -146,10 +146,10 @@ def _compared(answers: Answers, pair: tuple[str, str]) -> ComparedPair:
     return ComparedPair(
         pair,
         binomial.estimate_exact_share(k, n),
-        binomial.two_sided_p(k, n),
+        binomial.compute_two_sided_p(k, n),
         people[0] if people is not None else None,
         people[1] if people is not None else None,
-        model_choices(rows),
+        fit_choices(rows),
         by_item=by_item,
         halves=None
         if not early or not late
@@ -157,12 +157,12 @@ def _compared(answers: Answers, pair: tuple[str, str]) -> ComparedPair:
             binomial.estimate_exact_share(sum(early), len(early)),
             binomial.estimate_exact_share(sum(late), len(late)),
         ),
-        halves_p=binomial.fisher(sum(early), len(early), sum(late), len(late)),
+        halves_p=binomial.compute_fisher_p(sum(early), len(early), sum(late), len(late)),
         unfiltered=unfiltered,
     )
 
 
-def model_choices(rows: Sequence[RaterChoice]) -> Crossed | None:
+def fit_choices(rows: Sequence[RaterChoice]) -> Crossed | None:
     """Return the mixed model of choices: a preference, what the left side gains, people and items."""
     if len(rows) < 4:
         return None
@@ -230,15 +230,15 @@ def _difference(question: str, pair: tuple[str, str], rows: Sequence[Rated]) -> 
             return RatedPair(question, pair, e, "mixed model", _p_of(e, df), deviations=found.deviations)
     people = {w: [g for g, (v, _) in zip(gaps, both, strict=True) if v == w] for w, _ in both}
     means = [float(np.mean(v)) for v in people.values()]
-    test = stats.paired_t(means, [0.0] * len(means))
+    test = stats.compute_paired_t(means, [0.0] * len(means))
     return RatedPair(question, pair, stats.mean(means), "people's means", test.p)
 
 
 def _p_of(found: Estimate, df: float) -> float | None:
     if found.low is None or found.high is None or df <= 0:
         return None
-    error = (found.high - found.low) / 2 / t_quantile((1 + LEVEL) / 2, df)
-    return t_two_sided(found.value / error, df) if error > 0 else None
+    error = (found.high - found.low) / 2 / compute_t_quantile((1 + LEVEL) / 2, df)
+    return compute_t_two_sided(found.value / error, df) if error > 0 else None
 
 
 def _means(answers: Answers) -> dict[str, dict[str, Estimate]]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from metagraph.common.svg import draw_svg_dot, svg_drawing, svg_line, svg_text
+from metagraph.common.svg import draw_svg_dot, draw_svg_line, draw_svg_text, make_svg_drawing
 from metagraph.research.study.perceive.perceive_analysis import PerceiveResults
 from metagraph.research.study.reports import plots
-from metagraph.research.study.reports.plots_flow import flow
+from metagraph.research.study.reports.plots_flow import plot_flow
 from metagraph.research.study.statistics.small_samples import Estimate
 
 MOST_ROWS = 60  # of one drawing
@@ -67,20 +67,20 @@ def draw_shares(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
 
     parts = []
     for t in (0.0, 0.25, 0.5, 0.75, 1.0):
-        parts.append(svg_line(x(t), 12, x(t), bottom, "one" if t == 0.5 else "grid"))
-        parts.append(svg_text(x(t), bottom + 18, f"{t:.0%}", "dim", "middle"))
-    parts.append(svg_text((left + right) / 2, bottom + 38, title, "dim", "middle"))
+        parts.append(draw_svg_line(x(t), 12, x(t), bottom, "one" if t == 0.5 else "grid"))
+        parts.append(draw_svg_text(x(t), bottom + 18, f"{t:.0%}", "dim", "middle"))
+    parts.append(draw_svg_text((left + right) / 2, bottom + 38, title, "dim", "middle"))
     for n, (name, e) in enumerate(rows):
         at = 18 + row * (n + 0.5)
-        parts.append(svg_text(left - 14, at + 4, shorten_condition(name), "label", "end"))
+        parts.append(draw_svg_text(left - 14, at + 4, shorten_condition(name), "label", "end"))
         words = f"{e.value:.0%}"
         bar = ""
         if e.low is not None and e.high is not None:
-            bar = svg_line(x(e.low), at, x(e.high), at, "wide")
+            bar = draw_svg_line(x(e.low), at, x(e.high), at, "wide")
             words += f"  [{e.low:.0%}, {e.high:.0%}]"
         parts.append(f"<g class='manual'>{bar}{draw_svg_dot(x(e.value), at, 5)}</g>")
-        parts.append(svg_text(right + 12, at + 4, words, "label", "start"))
-    return svg_drawing(bottom + 48, parts, title)
+        parts.append(draw_svg_text(right + 12, at + 4, words, "label", "start"))
+    return make_svg_drawing(bottom + 48, parts, title)
 
 
 def _flow(results: PerceiveResults) -> str:
@@ -92,7 +92,7 @@ def _flow(results: PerceiveResults) -> str:
             left[p.why] = left.get(p.why, 0) + 1
     whole = [p for p in begun if p.why in ("", "missed checks")]
     missed = len(whole) - len(results.answers.counting)
-    return flow(
+    return plot_flow(
         [
             (
                 "codes",

@@ -41,7 +41,7 @@ class Expected:
         spread, low, high = float(np.hypot(self.people, self.items)), -20.0, 20.0
         for _ in range(60):
             middle = (low + high) / 2
-            below = crossed.overall(middle, spread) < self.share
+            below = crossed.compute_overall_share(middle, spread) < self.share
             low, high = (middle, high) if below else (low, middle)
         return (low + high) / 2
 
@@ -84,7 +84,7 @@ def simulate_power(
         found = crossed.fit_crossed(chosen, {"preference": [1.0] * len(chosen)}, who, what)
         if found is None:  # everybody agreed: the exact test is what is left
             k, n = round(sum(chosen)), len(chosen)
-            p, up = binomial.two_sided_p(k, n) or 1.0, 2 * k > n
+            p, up = binomial.compute_two_sided_p(k, n) or 1.0, 2 * k > n
         else:
             p, up = found.p["preference"], found.effects["preference"].value > 0
         hits += p < alpha and (up == (expected.share > 0.5) or expected.share == 0.5)
@@ -139,7 +139,7 @@ def count_raters_needed(
     return None, found
 
 
-def design_effect(expected: Expected, each: int) -> float:
+def compute_design_effect(expected: Expected, each: int) -> float:
     """Return how many times as many answers people who differ make necessary, whatever items do."""
     if expected.people < NOTHING:
         return 1.0

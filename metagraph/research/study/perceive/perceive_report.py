@@ -11,8 +11,14 @@ from metagraph.common.xml_text import escape
 from metagraph.formats.atomic import write_together
 from metagraph.research.study.perceive.perceive_analysis import ComparedPair, PerceiveResults
 from metagraph.research.study.perceive.perceive_figures import draw_perceive_figures
-from metagraph.research.study.reports.cells import chance, figure, format_cells, format_two_digits, interval
-from metagraph.research.study.reports.figure_files import standalone
+from metagraph.research.study.reports.cells import (
+    format_cells,
+    format_interval,
+    format_p_value,
+    format_two_digits,
+    make_figure,
+)
+from metagraph.research.study.reports.figure_files import make_standalone_svg
 from metagraph.research.study.reports.style import STYLE
 from metagraph.research.study.reports.tables import Table
 from metagraph.research.study.reports.tables import format_rows as csv_of
@@ -47,7 +53,7 @@ def write_perceive_report(results: PerceiveResults, folder: Path) -> list[Path]:
     drawn = draw_perceive_figures(results)
     content = {NAME: format_perceive_page(results).encode()}
     content |= {name: csv_of(*rows).encode() for name, rows in perceive_tables(results).items()}
-    content |= {f"figures/{name}.svg": standalone(d).encode() for name, (d, _) in drawn.items()}
+    content |= {f"figures/{name}.svg": make_standalone_svg(d).encode() for name, (d, _) in drawn.items()}
     return write_together(folder, content)
 
 
@@ -81,7 +87,7 @@ def _said(c: ComparedPair, a: str, b: str, smallest: float | None) -> str:
 
 
 def _plain(p: float | None) -> str:
-    return chance(p).replace("&lt;", "<")
+    return format_p_value(p).replace("&lt;", "<")
 
 
 def _between(e: Estimate) -> str:
@@ -98,7 +104,7 @@ def _points(e: Estimate) -> str:
 def format_perceive_page(results: PerceiveResults) -> str:
     """Return the page."""
     plan = results.answers.study.plan
-    drawn = {n: figure(n, d, words, {}) for n, (d, words) in draw_perceive_figures(results).items()}
+    drawn = {n: make_figure(n, d, words, {}) for n, (d, words) in draw_perceive_figures(results).items()}
     parts = [
         f"<h1>{escape(plan.title)}</h1>",
         "<p class='warn'>Nobody took part: these answers were simulated.</p>"
@@ -148,11 +154,11 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
         rows.append(
             [
                 names,
-                interval(c.model.share if c.model else None, _percent),
-                chance(c.alone),
-                chance(c.together),
-                f"{count} {interval(c.share, _percent)}",
-                f"{chance(c.p)}; {chance(c.exact)} together",
+                format_interval(c.model.share if c.model else None, _percent),
+                format_p_value(c.alone),
+                format_p_value(c.together),
+                f"{count} {format_interval(c.share, _percent)}",
+                f"{format_p_value(c.p)}; {format_p_value(c.exact)} together",
             ]
         )
         spread = "no model"
@@ -163,18 +169,20 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
         people.append(
             [
                 names,
-                interval(c.people, _percent)
-                + (f" of {c.people.n}, {chance(c.people_p)}" if c.people else ""),
-                f"{c.halves[0].value:.0%}, {c.halves[1].value:.0%}; {chance(c.halves_p)}" if c.halves else "",
-                interval(c.unfiltered, _percent),
+                format_interval(c.people, _percent)
+                + (f" of {c.people.n}, {format_p_value(c.people_p)}" if c.people else ""),
+                f"{c.halves[0].value:.0%}, {c.halves[1].value:.0%}; {format_p_value(c.halves_p)}"
+                if c.halves
+                else "",
+                format_interval(c.unfiltered, _percent),
             ]
         )
         models.append(
             [
                 names,
-                interval(c.model.effects["preference"] if c.model else None, format_two_digits),
+                format_interval(c.model.effects["preference"] if c.model else None, format_two_digits),
                 spread,
-                interval(side, format_two_digits),
+                format_interval(side, format_two_digits),
             ]
         )
         items.append(drawn.get(f"items-{n + 1}", ""))
@@ -206,9 +214,9 @@ def _ratings(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
         [
             escape(r.question),
             escape(" less ".join(plan.name(x) for x in r.pair)),
-            interval(r.difference, lambda v: f"{v:.2f}"),
-            chance(r.p),
-            chance(r.together),
+            format_interval(r.difference, lambda v: f"{v:.2f}"),
+            format_p_value(r.p),
+            format_p_value(r.together),
             r.by,
         ]
         for r in results.rated
@@ -221,7 +229,9 @@ def _sides(results: PerceiveResults) -> str:
     for name, found in (("all choices", results.left), ("pairs of the same video", results.same)):
         if found is not None:
             e, p = found
-            rows.append([name, interval(e, _percent), f"{round(e.value * e.n)} of {e.n}", chance(p)])
+            rows.append(
+                [name, format_interval(e, _percent), f"{round(e.value * e.n)} of {e.n}", format_p_value(p)]
+            )
     return "<h2>Sides</h2>" + format_cells(("", "left", "answers", "against a half"), rows) if rows else ""
 
 

@@ -25,7 +25,7 @@ def seal_sessions(sessions: Mapping[str, Any], salt: str) -> dict[str, Any]:
     with ThreadPoolExecutor() as pool:  # deriving lets other threads run
         derived = pool.map(lambda code: derive(code, salt), sessions)
         rows = zip(sessions.items(), derived, strict=True)
-        found = {sealed_name(key): _sealed([code, session], key) for (code, session), key in rows}
+        found = {make_sealed_name(key): _sealed([code, session], key) for (code, session), key in rows}
     return {"salt": salt, "rounds": ROUNDS, "sealed": dict(sorted(found.items()))}
 
 
@@ -34,7 +34,7 @@ def derive(code: str, salt: str) -> bytes:
     return hashlib.pbkdf2_hmac("sha256", code.strip().lower().encode(), salt.encode(), ROUNDS)
 
 
-def sealed_name(key: bytes) -> str:
+def make_sealed_name(key: bytes) -> str:
     """Return what a session is called in the page, which tells nothing of its key."""
     return hashlib.sha256(key + b"name").hexdigest()[:NAME]
 

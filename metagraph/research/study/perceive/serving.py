@@ -80,7 +80,7 @@ class _Answering(Quiet):
         self.wfile.write(content)
 
 
-def page_of(study: Perceived) -> Path:
+def find_page(study: Perceived) -> Path:
     """Return the page. Raises FileError if it is not there, or a video is not."""
     page = study.show / "index.html"
     missing = [n for n in study.key.stimuli if not study.video(n).is_file()]

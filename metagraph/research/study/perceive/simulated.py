@@ -14,7 +14,7 @@ import numpy as np
 
 from metagraph.research.study.perceive.answers import PageEvent, Sheet, keep_sheet
 from metagraph.research.study.perceive.binomial import logistic
-from metagraph.research.study.perceive.design import Trial, design
+from metagraph.research.study.perceive.design import Trial, make_design
 from metagraph.research.study.perceive.folder import Perceived, write_folder
 from metagraph.research.study.perceive.perceive_data import SIMULATED
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan
@@ -125,7 +125,7 @@ def _answer(
 
 def write_simulated(folder: Path, plan: PerceivePlan, text: bytes, secret: str, raters: Raters) -> Perceived:
     """Write a study without videos and answer it. text: the plan's file. Raises ValueError, FileError."""
-    study = write_folder(folder, plan, text, design(plan, secret))
+    study = write_folder(folder, plan, text, make_design(plan, secret))
     (folder / SIMULATED).write_text("Nobody gave these answers.\n", encoding="utf-8")
     simulate_raters(study, raters)
     return study

@@ -21,7 +21,7 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import append_line, write_atomically
 from metagraph.formats.project.kernel_lock import wait_for_turn
 from metagraph.research.study.plan.drawn_orders import LOG, read_drawn_orders
-from metagraph.research.study.plan.order import williams
+from metagraph.research.study.plan.order import make_williams_design
 from metagraph.research.study.study_plan import Study
 
 SECRET = "allocation.secret"
@@ -29,7 +29,7 @@ SECRET = "allocation.secret"
 
 def prepare_allocation(study: Study) -> str:
     """Make the secret, unless there is one; return its digest, to be made known before anybody begins."""
-    return commitment(make_secret(study.folder))
+    return compute_commitment(make_secret(study.folder))
 
 
 def make_secret(folder: Path) -> str:
@@ -50,12 +50,12 @@ def read_secret(folder: Path) -> str:
     return read_file(folder / SECRET, LOG_FILE).decode("ascii", "replace").strip()
 
 
-def commitment(secret: str) -> str:
+def compute_commitment(secret: str) -> str:
     """Return the digest of a secret, SHA-256."""
     return hashlib.sha256(secret.encode()).hexdigest()
 
 
-def drawer(secret: str) -> Callable[..., int]:
+def make_drawer(secret: str) -> Callable[..., int]:
     """Return what draws a number, 0..2^256 - 1, from the secret and any words: the same ones for ever."""
     key = secret.encode()
 
@@ -70,7 +70,7 @@ def draw_order_numbers(secret: str, orders: int, most: int = 2) -> Iterator[int]
     of all orders, how many that is drawn, too, so that the last of a block cannot be foreseen. most: rounds
     of a block; 1 if nobody sees who comes next anyway.
     """
-    draw = drawer(secret)
+    draw = make_drawer(secret)
     start = block = 0
     while True:
         size = orders * (1 + draw(block, 0) % most)
@@ -78,9 +78,9 @@ def draw_order_numbers(secret: str, orders: int, most: int = 2) -> Iterator[int]
         start, block = start + size, block + 1
 
 
-def orders(study: Study) -> int:
+def count_orders(study: Study) -> int:
     """Return how many counterbalanced orders of conditions there are."""
-    return len(williams(len(study.plan.conditions)))
+    return len(make_williams_design(len(study.plan.conditions)))
 
 
 def allocate(study: Study, participant: str) -> int:
@@ -99,7 +99,7 @@ def allocate(study: Study, participant: str) -> int:
         known = read_drawn_orders(study.folder)
         if participant in known:
             return known[participant]
-        source = draw_order_numbers(read_secret(study.folder), orders(study))
+        source = draw_order_numbers(read_secret(study.folder), count_orders(study))
         number = next(n for place, n in enumerate(source) if place == len(known))
         note = {
             "place": len(known),
@@ -127,10 +127,10 @@ def append_durably(path: Path, note: dict[str, Any], where: str = "") -> None:
         ) from None
 
 
-def problems(study: Study) -> list[str]:
+def find_allocation_problems(study: Study) -> list[str]:
     """Return in words where the log of the allocation is not what the secret gives."""
     try:
-        source = draw_order_numbers(read_secret(study.folder), orders(study))
+        source = draw_order_numbers(read_secret(study.folder), count_orders(study))
     except FileError:
         return ["the secret of the allocation is not there: nobody can see whether it was followed"]
     out = []

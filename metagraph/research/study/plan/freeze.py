@@ -19,7 +19,7 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.store import read_project
-from metagraph.research.study.logs.log import wall_time
+from metagraph.research.study.logs.log import format_wall_time
 from metagraph.research.study.plan.study_fields import Task, Training
 from metagraph.research.study.study_plan import Study
 
@@ -100,7 +100,7 @@ def freeze_files(study: Study, force: bool = False) -> Path:
     path = study.folder / LOCK
     earlier: list[dict[str, object]] = []
     if path.is_file():
-        differ = find_changed_names(frozen(study) or {}, digests) if not force else []
+        differ = find_changed_names(read_frozen(study) or {}, digests) if not force else []
         if differ:
             raise FileError(
                 path,
@@ -118,7 +118,7 @@ def freeze_files(study: Study, force: bool = False) -> Path:
         except (msgspec.DecodeError, KeyError, AttributeError):
             earlier = [{"frozen": "", "seal": digest(path)}]
     data = {
-        "frozen": wall_time(datetime.now(UTC)),
+        "frozen": format_wall_time(datetime.now(UTC)),
         "version": __version__,
         "study": study.digest,
         "seal": seal(digests),
@@ -129,7 +129,7 @@ def freeze_files(study: Study, force: bool = False) -> Path:
     return path
 
 
-def frozen(study: Study) -> dict[str, str] | None:
+def read_frozen(study: Study) -> dict[str, str] | None:
     """Return what was frozen, None if nothing was. Raises FileError."""
     path = study.folder / LOCK
     if not path.is_file():

@@ -15,7 +15,7 @@ T = TypeVar("T")
 _MASK = 0xFFFFFFFF
 
 
-def williams(count: int) -> tuple[tuple[int, ...], ...]:
+def make_williams_design(count: int) -> tuple[tuple[int, ...], ...]:
     """Return a Williams design for `count` treatments 0..count-1: `count` rows, twice as many where `count`
     is odd (and above 1).
 
@@ -30,7 +30,7 @@ def williams(count: int) -> tuple[tuple[int, ...], ...]:
     return tuple(rows if count % 2 == 0 or count == 1 else [*rows, *(row[::-1] for row in rows)])
 
 
-def latin(
+def order_conditions(
     conditions: Sequence[T], tasks: Sequence[T], number: int, seed: int
 ) -> tuple[tuple[T, tuple[T, ...]], ...]:
     """Return a participant's conditions in order, each with its tasks in order. number: 0, 1, 2 ... of the
@@ -41,7 +41,7 @@ def latin(
     """
     tried = tuple(shuffle_by_seed(conditions, seed))
     worked = tuple(shuffle_by_seed(tasks, seed ^ 0x5BD1E995))
-    rows, orders = williams(len(tried)), williams(len(worked))
+    rows, orders = make_williams_design(len(tried)), make_williams_design(len(worked))
     blocks = [tried[x] for x in rows[number % len(rows)]]
     turn = number // len(rows)
     return tuple(

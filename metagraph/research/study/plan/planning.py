@@ -18,7 +18,7 @@ import numpy as np
 
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.small_samples import MOST_PEOPLE, Estimate, Test
-from metagraph.research.study.statistics.student_t import compute_t_cdf, t_quantile
+from metagraph.research.study.statistics.student_t import compute_t_cdf, compute_t_quantile
 
 Verdict = Literal["larger", "equivalent", "smaller", "not told"]
 
@@ -66,7 +66,7 @@ def from_pilot(ratios: Sequence[float], source: str = "a pilot") -> Assumed:
     """
     if len(ratios) < 3:
         raise ValueError(f"a pilot needs 3 people at least, who did both, not {len(ratios)}")
-    logs = stats.logs(ratios)
+    logs = stats.take_logs(ratios)
     spread = stdev(logs)
     if spread <= 0:
         raise ValueError("the people of the pilot do not differ at all; assume a deviation")
@@ -97,8 +97,8 @@ def sample_size(
     return SampleSize(
         stats.count_pairs_needed(log(found.ratio) / spread, chance, share),
         stats.count_pairs_needed(bound / spread, chance, share),
-        _fewest(lambda n: precision_chance(n, spread, log(within), alpha) >= chance),
-        _fewest(lambda n: ratio_equivalence_power(n, 0.0, spread, -bound, bound, alpha) >= chance),
+        _fewest(lambda n: compute_precision_chance(n, spread, log(within), alpha) >= chance),
+        _fewest(lambda n: compute_ratio_equivalence_power(n, 0.0, spread, -bound, bound, alpha) >= chance),
     )
 
 
@@ -117,23 +117,23 @@ def _fewest(enough: Callable[[int], bool]) -> int | None:
 
 def compute_half_width(n: int, spread: float, alpha: float = 0.05) -> float:
     """Return the half width of the interval of a mean of n logs, where their deviation is as assumed."""
-    return t_quantile(1 - alpha / 2, n - 1) * spread / sqrt(n)
+    return compute_t_quantile(1 - alpha / 2, n - 1) * spread / sqrt(n)
 
 
-def precision_chance(n: int, spread: float, half: float, alpha: float = 0.05) -> float:
+def compute_precision_chance(n: int, spread: float, half: float, alpha: float = 0.05) -> float:
     """Return how likely the interval of n logs is no wider than `half` either way, deviation and all
     drawn.
     """
     if n < 2:
         return 0.0
-    edge = half * sqrt(n) / t_quantile(1 - alpha / 2, n - 1) / spread
+    edge = half * sqrt(n) / compute_t_quantile(1 - alpha / 2, n - 1) / spread
     return compute_chi_squared_cdf((n - 1) * edge * edge, n - 1)
 
 
 # --- equivalence
 
 
-def ratio_equivalence_power(
+def compute_ratio_equivalence_power(
     n: int,
     effect: float,
     spread: float,
@@ -149,7 +149,7 @@ def ratio_equivalence_power(
     if n < 2 or freedom <= 0 or low >= high:
         return 0.0
     error = spread / sqrt(n)
-    t = t_quantile(1 - alpha, freedom)
+    t = compute_t_quantile(1 - alpha, freedom)
     most = (
         (high - low) / 2 / (t * error)
     )  # of the drawn deviation beside the true one; beyond, nothing is shown
@@ -188,14 +188,14 @@ class Equivalence:
     verdict: Verdict
 
 
-def equivalence(logs: Sequence[float], smallest: float, alpha: float = 0.05) -> Equivalence | None:
+def judge_equivalence(logs: Sequence[float], smallest: float, alpha: float = 0.05) -> Equivalence | None:
     """Return what people's log ratios say of a smallest ratio that matters, > 1. None for fewer than 2."""
     if len(logs) < 2:
         return None
     found = stats.mean(logs, 1 - 2 * alpha)
     assert found.low is not None and found.high is not None
     bound, n = log(smallest), len(logs)
-    error = (found.high - found.low) / 2 / t_quantile(1 - alpha, n - 1)
+    error = (found.high - found.low) / 2 / compute_t_quantile(1 - alpha, n - 1)
     above, below = found.value + bound, bound - found.value  # how far inside of either end
     t = min(above, below) / error if error > 0 else (inf if min(above, below) > 0 else -inf)
     p = 1 - compute_t_cdf(t, n - 1) if isfinite(t) else float(t < 0)

@@ -20,7 +20,7 @@ from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.research.study.analysis.results import TITLES
-from metagraph.research.study.logs.log import wall_time
+from metagraph.research.study.logs.log import format_wall_time
 from metagraph.research.study.plan.freeze import seal, study_manifest
 from metagraph.research.study.plan.planning import Assumed, SampleSize
 from metagraph.research.study.scores.tasks import AWAY
@@ -51,7 +51,7 @@ def preregister(study: Study, aims: Aims, secret: str | None, force: bool = Fals
     folder = study.folder / FOLDER
     digests = study_manifest(study)
     forms = {
-        "osf.md": osf(study, aims, secret, seal(digests)),
+        "osf.md": write_osf_form(study, aims, secret, seal(digests)),
         "aspredicted.md": as_predicted(study, aims, secret, seal(digests)),
     }
     told = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in forms.items()}
@@ -66,7 +66,7 @@ def preregister(study: Study, aims: Aims, secret: str | None, force: bool = Fals
             "Keep it, or write anew with --force, and register the new one, too.",
         )
     data = {
-        "written": wall_time(datetime.now(UTC)),
+        "written": format_wall_time(datetime.now(UTC)),
         "version": __version__,
         "study": seal(digests),
         "forms": told,
@@ -90,7 +90,7 @@ def _record(path: Path) -> Mapping[str, object]:
         return {}
 
 
-def unlike(study: Study) -> list[str]:
+def list_departures(study: Study) -> list[str]:
     """Return in words what is not as it was preregistered; nothing if nothing was."""
     folder = study.folder / FOLDER
     if not (folder / RECORD).is_file():
@@ -207,7 +207,7 @@ EXCLUDED = (
 )
 
 
-def osf(study: Study, aims: Aims, secret: str | None, sealed: str) -> str:
+def write_osf_form(study: Study, aims: Aims, secret: str | None, sealed: str) -> str:
     """Return the form of OSF's preregistration."""
     return _form(
         f"{study.plan.title}: OSF Preregistration",

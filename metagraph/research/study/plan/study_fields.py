@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct
 
 from metagraph.research.study.machines.klm import OperatorTimes
-from metagraph.research.study.plan.order import latin
+from metagraph.research.study.plan.order import order_conditions
 from metagraph.research.study.questionnaires import BUILT_IN, Name, Questionnaire, When
 
 MOST = 1000  # participants
@@ -126,7 +126,7 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError(f"the order of '{participant}' is concealed, and drawn when they begin")
         if isinstance(self.order, str):
             number = self.ids.index(participant) if drawn is None else drawn
-            return latin(self.conditions, tasks, number, self.seed)
+            return order_conditions(self.conditions, tasks, number, self.seed)
         out: list[tuple[str, tuple[str, ...]]] = []
         for step in self.order.given[participant]:
             condition, _, task = step.partition("/")

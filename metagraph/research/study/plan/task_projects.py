@@ -10,7 +10,7 @@ from pathlib import Path
 from metagraph.errors import FileError
 from metagraph.formats.imports import import_files
 from metagraph.formats.recovery import find_left_journals, recover, retire
-from metagraph.formats.store import Opened, load_motions, read_project, relative, save_project
+from metagraph.formats.store import Opened, load_motions, make_path_relative, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.research.study.study_plan import Study
@@ -64,8 +64,8 @@ def write_task_project(project: Project, path: Path) -> Project:
     saved. Raises FileError.
     """
     folder = path.parent
-    clips = {i: replace(c, path=relative(Path(c.path), folder)) for i, c in project.clips.items()}
-    character = relative(Path(project.character), folder) if project.character else None
+    clips = {i: replace(c, path=make_path_relative(Path(c.path), folder)) for i, c in project.clips.items()}
+    character = make_path_relative(Path(project.character), folder) if project.character else None
     return save_project(replace(project, clips=clips, character=character), path)
 
 

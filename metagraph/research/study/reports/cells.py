@@ -8,8 +8,8 @@ from math import isfinite
 
 from metagraph.common.xml_text import escape
 from metagraph.research.study.analysis.results import TITLES, ConditionComparison
-from metagraph.research.study.reports.figure_files import standalone
-from metagraph.research.study.reports.plots import seconds
+from metagraph.research.study.reports.figure_files import make_standalone_svg
+from metagraph.research.study.reports.plots import format_duration
 from metagraph.research.study.statistics.small_samples import Estimate, Test
 
 Say = Callable[[float], str]
@@ -24,7 +24,7 @@ def format_two_digits(value: float) -> str:
     return f"{value:.2f}" if isfinite(value) else "not bounded"
 
 
-def chance(p: float | None) -> str:
+def format_p_value(p: float | None) -> str:
     """Return a p value as journals write it."""
     if p is None:
         return "no p"
@@ -34,7 +34,7 @@ def chance(p: float | None) -> str:
 def format_test(test: Test) -> str:
     if test.p is None or test.statistic is None or test.df is None:
         return "too few for a test"
-    return f"t({test.df:.4g}) = {test.statistic:.2f}, {chance(test.p)}"
+    return f"t({test.df:.4g}) = {test.statistic:.2f}, {format_p_value(test.p)}"
 
 
 def format_spread(found: Estimate) -> str:
@@ -43,7 +43,7 @@ def format_spread(found: Estimate) -> str:
     return f"95 % interval {format_two_digits(found.low)} to {format_two_digits(found.high)}"
 
 
-def interval(found: Estimate | None, words: Say) -> str:
+def format_interval(found: Estimate | None, words: Say) -> str:
     """Return a cell: a value, and what it lies between."""
     if found is None:
         return ""
@@ -53,7 +53,8 @@ def interval(found: Estimate | None, words: Say) -> str:
     return f"<b>{words(found.value)}</b> <span class='dim'>{words(found.low)} to {high}</span>"
 
 
-def who(time: ConditionComparison) -> str:
+def describe_who(time: ConditionComparison) -> str:
+    """Return the interval of the ratio of times and how many people it comes from, in words."""
     people = f"{time.ratio.n} {'person' if time.ratio.n == 1 else 'people'}"
     if time.ratio.low is None:
         return f"no interval, {people}"
@@ -62,9 +63,9 @@ def who(time: ConditionComparison) -> str:
     )
 
 
-def figure(name: str, drawing: str, caption: str, papers: Mapping[str, bytes]) -> str:
+def make_figure(name: str, drawing: str, caption: str, papers: Mapping[str, bytes]) -> str:
     """Return a figure with links that save it. papers: name -> the same as PDF, where there is one."""
-    kinds = {"SVG": ("svg", "image/svg+xml", standalone(drawing).encode())}
+    kinds = {"SVG": ("svg", "image/svg+xml", make_standalone_svg(drawing).encode())}
     if name in papers:
         kinds["PDF"] = ("pdf", "application/pdf", papers[name])
     links = "".join(
@@ -85,16 +86,16 @@ def format_cells(columns: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 # --- for a paper
 
 
-def apa(time: ConditionComparison) -> str:
+def write_apa_sentence(time: ConditionComparison) -> str:
     """Return the result as a sentence in the form of the American Psychological Association (7th edition),
     HTML.
     """
     above, below = time.pair
     a, b = time.means[above], time.means[below]
     said = (
-        f"Working on the {TITLES[above]} took longer (geometric <i>M</i> = {seconds(a.value)} a {time.unit}"
-        f"{_apa_range(a, seconds)}) than with the {TITLES[below]} (geometric <i>M</i> = {seconds(b.value)}"
-        f"{_apa_range(b, seconds)}), "
+        f"Working on the {TITLES[above]} took longer (geometric <i>M</i> = {format_duration(a.value)} "
+        f"a {time.unit}{_apa_range(a, format_duration)}) than with the {TITLES[below]} "
+        f"(geometric <i>M</i> = {format_duration(b.value)}{_apa_range(b, format_duration)}), "
     )
     if time.ratio.value < 1:
         said = said.replace("took longer", "took less time", 1)

@@ -5,9 +5,14 @@ from __future__ import annotations
 from metagraph.common.xml_text import escape
 from metagraph.research.study.analysis.results import TITLES, Results
 from metagraph.research.study.reports import plots
-from metagraph.research.study.reports.cells import format_cells, format_two_digits, gather_missing, interval
-from metagraph.research.study.reports.plots import seconds
-from metagraph.research.study.reports.plots_flow import flow
+from metagraph.research.study.reports.cells import (
+    format_cells,
+    format_interval,
+    format_two_digits,
+    gather_missing,
+)
+from metagraph.research.study.reports.plots import format_duration
+from metagraph.research.study.reports.plots_flow import plot_flow
 from metagraph.research.study.statistics.sensitivity import BY_HAND, PRACTICE, SECOND
 
 LEFT = {
@@ -18,7 +23,7 @@ LEFT = {
 }
 
 
-def flow_figure(results: Results) -> str | None:
+def draw_flow_figure(results: Results) -> str | None:
     """Return who took part as a drawing; None if the data do not tell."""
     data = results.data
     if not data.people:
@@ -45,7 +50,7 @@ def flow_figure(results: Results) -> str | None:
                 [("began", len(mine)), ("came to the end", done), ("in the ratio", len(used & set(mine)))],
             )
         )
-    return flow([("Planned", len(data.people), left), ("Took part", len(began), {})], arms)
+    return plot_flow([("Planned", len(data.people), left), ("Took part", len(began), {})], arms)
 
 
 def draw_alternatives(results: Results) -> str | None:
@@ -53,7 +58,7 @@ def draw_alternatives(results: Results) -> str | None:
     found, time = results.sensitivity, results.time
     if found is None or time is None or not found.ways:
         return None
-    return plots.ratios([("as reported", time.ratio), *((w.name, w.ratio) for w in found.ways)])
+    return plots.plot_ratios([("as reported", time.ratio), *((w.name, w.ratio) for w in found.ways)])
 
 
 def describe_alternatives(results: Results, drawing: str) -> str:
@@ -70,7 +75,7 @@ def describe_alternatives(results: Results, drawing: str) -> str:
             "<p>No task, and nobody's ratio, is far from the others', and none is longer than its limit.</p>"
         )
     out += drawing
-    rows = [[escape(w.name), interval(w.ratio, format_two_digits), escape(w.how)] for w in found.ways]
+    rows = [[escape(w.name), format_interval(w.ratio, format_two_digits), escape(w.how)] for w in found.ways]
     out += format_cells(("", "ratio, 95 % interval", "how"), rows)
     if found.correct:
         said = [
@@ -85,7 +90,11 @@ def describe_alternatives(results: Results, drawing: str) -> str:
             PRACTICE: "practice, slope of log seconds over log clips",
         }
         body = [
-            [names[k], interval(e if k == PRACTICE else e.exp(), format_two_digits), f"{model.df[k]:.1f}"]
+            [
+                names[k],
+                format_interval(e if k == PRACTICE else e.exp(), format_two_digits),
+                f"{model.df[k]:.1f}",
+            ]
             for k, e in model.effects.items()
             if k in names
         ]
@@ -111,9 +120,9 @@ def describe_gaps(results: Results) -> str:
         [
             TITLES[c],
             str(v.count),
-            seconds(v.seconds) if v.count else "none",
+            format_duration(v.seconds) if v.count else "none",
             f"{v.share:.0%}",
-            seconds(v.longest) if v.count else "",
+            format_duration(v.longest) if v.count else "",
             f"{v.playing:.0%}" if v.count else "",
         ]
         for c, v in results.vanished.items()
@@ -150,8 +159,8 @@ def describe_other_conditions(results: Results) -> str:
     rows = [
         [
             escape(TITLES[c.pair[0]]),
-            interval(c.means[c.pair[0]], seconds),
-            interval(c.ratio, format_two_digits),
+            format_interval(c.means[c.pair[0]], format_duration),
+            format_interval(c.ratio, format_two_digits),
             str(c.ratio.n),
         ]
         for c in results.others
@@ -165,7 +174,7 @@ def describe_sites(results: Results) -> str:
     """Return the ratio at each site, where there are several."""
     if len(results.by_site) < 2:
         return ""
-    rows = [[escape(s), interval(e, format_two_digits), str(e.n)] for s, e in results.by_site.items()]
+    rows = [[escape(s), format_interval(e, format_two_digits), str(e.n)] for s, e in results.by_site.items()]
     return "<h3>Sites</h3>" + format_cells(("", "ratio, 95 % interval", "people"), rows)
 
 

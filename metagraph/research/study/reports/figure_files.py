@@ -14,7 +14,7 @@ TEXT, DIM, GRID = "#1d2126", "#59616b", "#d5d9de"
 FONT = "Helvetica, Arial, 'Liberation Sans', sans-serif"
 
 
-def standalone(drawing: str, width_mm: float = 170.0) -> str:
+def make_standalone_svg(drawing: str, width_mm: float = 170.0) -> str:
     """Return a report's drawing as an SVG file of its own. width_mm: on paper, as wide as a page's text."""
     ElementTree.register_namespace("", SPACE)
     root = ElementTree.fromstring(drawing)

@@ -72,7 +72,7 @@ def _enclosing(low: float, high: float, nice: Sequence[Sequence[float]]) -> list
     return best[::every] if best[::every][-1] >= high else [*best[::every], best[-1]]
 
 
-def plain_axis(
+def make_plain_axis(
     low: float, high: float, start: float, end: float, nice: Sequence[float] = (25.0,)
 ) -> tuple[Place, list[float]]:
     """Return where a value lies between start and end on a plain axis, and the values to mark: in the finest
@@ -98,6 +98,6 @@ PLAIN_TIMES = (
 )
 
 
-def finite(values: Sequence[float | None]) -> list[float]:
+def list_finite(values: Sequence[float | None]) -> list[float]:
     """Return those that a logarithmic axis can show."""
     return [v for v in values if v is not None and isfinite(v) and v > 0]

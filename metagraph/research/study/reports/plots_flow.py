@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from metagraph.common.svg import WIDTH, format_px, svg_drawing, svg_line
+from metagraph.common.svg import WIDTH, draw_svg_line, format_px, make_svg_drawing
 from metagraph.common.xml_text import escape
 
 WIDE, HIGH, GAP = 250, 44, 26
 
 
-def flow(
+def plot_flow(
     steps: Sequence[tuple[str, int, Mapping[str, int]]], arms: Sequence[tuple[str, Sequence[tuple[str, int]]]]
 ) -> str:
-    """Boxes from above to below, then side by side. steps: (words, people, why people left here -> how many);
+    """Draw boxes from above to below, then side by side. steps: (words, people, why people left here -> how
+    many);
     arms: (title, its boxes from above to below).
     """
     parts: list[str] = []
@@ -23,13 +24,13 @@ def flow(
         lines = [f"{why}: {n}" for why, n in left.items()]
         parts += _box(centre, y, WIDE, [f"{words}: {count}"])
         if last is not None:
-            parts.append(svg_line(centre, last, centre, y, "edge"))
+            parts.append(draw_svg_line(centre, last, centre, y, "edge"))
         last = y + HIGH
         if lines:
             high = 14 + 17 * len(lines)
             middle = last + GAP / 2 + high / 2 - 6
             parts += _box(WIDTH - 140, middle - high / 2, WIDE, lines, high)
-            parts.append(svg_line(centre, middle, WIDTH - 140 - WIDE / 2, middle, "edge"))
+            parts.append(draw_svg_line(centre, middle, WIDTH - 140 - WIDE / 2, middle, "edge"))
             y = middle + high / 2 + GAP / 2
         else:
             y = last + GAP
@@ -37,18 +38,20 @@ def flow(
     bottom = y
     if arms and last is not None:
         spots = [WIDTH * (n + 0.5) / len(arms) for n in range(len(arms))]
-        parts.append(svg_line(centre, last, centre, y - GAP / 4, "edge"))
-        parts.append(svg_line(min(*spots, centre), y - GAP / 4, max(*spots, centre), y - GAP / 4, "edge"))
+        parts.append(draw_svg_line(centre, last, centre, y - GAP / 4, "edge"))
+        parts.append(
+            draw_svg_line(min(*spots, centre), y - GAP / 4, max(*spots, centre), y - GAP / 4, "edge")
+        )
         for x, (title, boxes) in zip(spots, arms, strict=True):
             at = y
             for n, (words, count) in enumerate(boxes):
                 lines = [title, f"{words}: {count}"] if n == 0 else [f"{words}: {count}"]
-                parts.append(svg_line(x, at - (GAP / 4 if n == 0 else GAP), x, at, "edge"))
+                parts.append(draw_svg_line(x, at - (GAP / 4 if n == 0 else GAP), x, at, "edge"))
                 high = 14 + 17 * len(lines)
                 parts += _box(x, at, wide, lines, high)
                 at += high + GAP
             bottom = max(bottom, at - GAP + 10)
-    return svg_drawing(bottom + 4, parts, "Who took part")
+    return make_svg_drawing(bottom + 4, parts, "Who took part")
 
 
 def _box(x: float, y: float, wide: float, lines: Sequence[str], high: float = HIGH) -> list[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
-from metagraph.common.csv_text import csv_text
+from metagraph.common.csv_text import format_csv
 from metagraph.research.study.analysis.reading import Data
 from metagraph.research.study.analysis.results import Results
 from metagraph.research.study.scores.machines import WORDS, Score
@@ -22,22 +22,25 @@ def study_tables(results: Results) -> dict[str, str]:
     """Return file name -> content."""
     data = results.data
     return {
-        "participants.csv": format_rows(*participants(results)),
-        "tasks.csv": format_rows(*tasks(data)),
-        "clips.csv": format_rows(*clips(data)),
-        "mistakes.csv": format_rows(*mistakes(data)),
-        "questionnaires.csv": format_rows(*questionnaires(data)),
-        "estimates.csv": format_rows(*estimates(results)),
+        "participants.csv": format_rows(*tabulate_people(results)),
+        "tasks.csv": format_rows(*tabulate_tasks(data)),
+        "clips.csv": format_rows(*tabulate_clips(data)),
+        "mistakes.csv": format_rows(*tabulate_mistakes(data)),
+        "questionnaires.csv": format_rows(*tabulate_questionnaires(data)),
+        "estimates.csv": format_rows(*tabulate_estimates(results)),
         "spent.csv": format_rows(*tabulate_spent(data)),
     }
 
 
 def format_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
     """Return rows as text; None is written as MISSING, numbers to six digits at most."""
-    return csv_text([columns, *([cell(v) for v in row] for row in rows)], separator)
+    return format_csv([columns, *([format_cell(v) for v in row] for row in rows)], separator)
 
 
-def cell(value: Any) -> str:
+def format_cell(value: Any) -> str:
+    """Return a value as text: MISSING for None and for what is not finite, yes or no, numbers to six
+    digits.
+    """
     if value is None:
         return MISSING
     if isinstance(value, bool):
@@ -52,7 +55,8 @@ def cell(value: Any) -> str:
 Table = tuple[tuple[str, ...], list[tuple[Any, ...]]]
 
 
-def participants(results: Results) -> Table:
+def tabulate_people(results: Results) -> Table:
+    """Return a row for each participant: how far they came, their order, and their times."""
     data = results.data
     time = {p.participant: p for p in results.time.people} if results.time is not None else {}
     out: list[tuple[Any, ...]] = []
@@ -120,7 +124,8 @@ SCORES = (
 )
 
 
-def tasks(data: Data) -> Table:
+def tabulate_tasks(data: Data) -> Table:
+    """Return a row for each task that a participant did."""
     columns = (
         "participant",
         "condition",
@@ -183,7 +188,8 @@ def _scores(score: Score | None) -> tuple[Any, ...]:
     return tuple(None if score is None else getattr(score, name) for name in SCORES)
 
 
-def clips(data: Data) -> Table:
+def tabulate_clips(data: Data) -> Table:
+    """Return a row for each clip of each task, with the seconds it took."""
     rows: list[tuple[Any, ...]] = [
         (r.run.participant, r.run.condition, r.run.task, n, clip, seconds)
         for r in data.rows
@@ -192,7 +198,8 @@ def clips(data: Data) -> Table:
     return ("participant", "condition", "task", "number", "clip", "seconds"), rows
 
 
-def mistakes(data: Data) -> Table:
+def tabulate_mistakes(data: Data) -> Table:
+    """Return a row for each kind of mistake in each task."""
     rows: list[tuple[Any, ...]] = [
         (r.run.participant, r.run.condition, r.run.task, WORDS[m.what], m.layer, m.clip, m.count, m.words)
         for r in data.rows
@@ -201,7 +208,8 @@ def mistakes(data: Data) -> Table:
     return ("participant", "condition", "task", "mistake", "layer", "clip", "count", "words"), rows
 
 
-def questionnaires(data: Data) -> Table:
+def tabulate_questionnaires(data: Data) -> Table:
+    """Return a row for each answer, and below them one for each score of a questionnaire."""
     rows: list[tuple[Any, ...]] = [
         (a.participant, a.condition, a.task, a.questionnaire, a.item, a.value) for a in data.answers
     ]
@@ -214,8 +222,8 @@ def questionnaires(data: Data) -> Table:
     return ("participant", "condition", "task", "questionnaire", "item", "value"), rows
 
 
-def estimates(results: Results) -> Table:
-    """The ratio as it is reported, by task, and computed otherwise."""
+def tabulate_estimates(results: Results) -> Table:
+    """Return the ratio as it is reported, by task, and computed otherwise."""
     rows: list[tuple[Any, ...]] = []
 
     def add(sort: str, name: str, e: Estimate, title: str | None = None) -> None:

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.motion.clip import Clip
-from metagraph.research.study.machines.normal_machine import NormalMachine, NormalState, clip_names
+from metagraph.research.study.machines.normal_machine import NormalMachine, NormalState, name_clips
 from metagraph.research.study.scores.machines import Mistake, Score, name_some
-from metagraph.suggest.jumps.compatibility import MOST_FRAMES, visible_difference
+from metagraph.suggest.jumps.compatibility import MOST_FRAMES, measure_visible_difference
 from metagraph.suggest.jumps.found import Measured
-from metagraph.suggest.tracks import RATE, joint_track, track_rig, velocity_of
+from metagraph.suggest.tracks import RATE, make_joint_track, measure_velocity, track_rig
 
 Array = NDArray[Any]
 Frames = tuple[Array, Array]  # positions and velocities `[G, J, 3]`
@@ -63,7 +63,7 @@ class _Judge:
             if e.motion is not None and e.motion.skeleton == reference.skeleton
         }
         self.motions: dict[str, Clip] = {
-            name: own[i] for i, name in clip_names(reference).items() if i in own
+            name: own[i] for i, name in name_clips(reference).items() if i in own
         }
         self._weights: dict[Any, Array] = {}
 
@@ -86,7 +86,7 @@ class _Judge:
             # A loop is left and entered where it fits best; what may be left at any time, at no moment in
             # particular.
             cost = float(far.min()) if source.loop or leave is not None else float(np.median(far.min(axis=1)))
-            out[a, b] = float(visible_difference(cost, c.blend))
+            out[a, b] = float(measure_visible_difference(cost, c.blend))
         return out
 
     def _far(self, left: Frames, entered: Frames, moved: Array) -> Array:
@@ -107,7 +107,7 @@ class _Judge:
         motion = self.motions.get(state.clip)
         if motion is None:
             return None
-        track = joint_track(track_rig(motion, self.measured.roles), motion)
+        track = make_joint_track(track_rig(motion, self.measured.roles), motion)
         last = len(track) - 1
         first, final = (min(round(t * RATE), last) for t in (state.start, state.end))
         chosen = (
@@ -115,7 +115,7 @@ class _Judge:
             if at is not None
             else np.unique(np.linspace(first, final, MOST_FRAMES).astype(int))
         )
-        return track[chosen], velocity_of(track)[chosen]
+        return track[chosen], measure_velocity(track)[chosen]
 
     def _moved(self, state: NormalState) -> Array:
         """Return `[J]` how far, 0..1, a state moves each of the counted joints."""
@@ -132,7 +132,7 @@ class _Judge:
                 joints=state.joints,
                 joint_weights=state.joint_weights,
             )
-            moved = anatomy.action_mask(self.project, action)
+            moved = anatomy.make_action_mask(self.project, action)
             rig = track_rig(next(iter(self.motions.values())), self.measured.roles)
             ones = np.ones(len(rig.joints))
             self._weights[key] = ones if moved is None else moved[rig.keep[rig.joints]] * ones

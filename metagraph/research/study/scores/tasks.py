@@ -79,7 +79,7 @@ class ItemAnswer:
     index: int
 
 
-def task_runs(participant: str, events: Sequence[Event]) -> list[TaskRun]:
+def list_task_runs(participant: str, events: Sequence[Event]) -> list[TaskRun]:
     """Return the tasks that were begun, in their order."""
     out: list[TaskRun] = []
     tally: _Tally | None = None
@@ -194,7 +194,7 @@ class _Tally:
             str(self.begin.get("task", "")),
             _index(self.begin),
             self.seconds["active"],
-            max(0.0, (moment(self.last) - moment(self.begin)).total_seconds()),
+            max(0.0, (read_moment(self.last) - read_moment(self.begin)).total_seconds()),
             self.operators,
             self.drag_s,
             self.counts["edit"],
@@ -220,6 +220,6 @@ def _index(phase: Event) -> int:
     return int(_number(phase.get("index", -1)))
 
 
-def moment(event: Event) -> datetime:
+def read_moment(event: Event) -> datetime:
     """Return when it was, by the clock on the wall."""
     return datetime.fromisoformat(event["wall"])

@@ -22,7 +22,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.research.study.logs.log import wall_time
+from metagraph.research.study.logs.log import format_wall_time
 from metagraph.research.study.machines.klm import USUAL
 from metagraph.research.study.plan.freeze import study_manifest
 from metagraph.research.study.questionnaires import SUS, TLX
@@ -49,7 +49,7 @@ GESTURES = {
 TASKS: Mapping[str, tuple[str, ...]] = {"small": ("sides", "hips"), "large": ("sides", "hips", "crossed")}
 
 
-def clips_of(task: str) -> tuple[str, ...]:
+def list_task_clips(task: str) -> tuple[str, ...]:
     """Return the names of a task's clips, without endings, in the order in which they are worked on."""
     stances = TASKS[task]
     idles = [f"{s}_idle" for s in stances]
@@ -65,7 +65,7 @@ def write_study(folder: Path, truth: Truth) -> Study:
         raise FileError(
             folder, "is not empty", "on writing the simulated study", "Give a folder that is not there yet."
         )
-    for name in clips_of("large"):
+    for name in list_task_clips("large"):
         (folder / "clips").mkdir(parents=True, exist_ok=True)
         write_bvh(_clip(name), folder / "clips" / f"{name}.bvh")
     references = {task: _reference(folder, task) for task in TASKS}
@@ -79,7 +79,7 @@ def write_study(folder: Path, truth: Truth) -> Study:
         for c in ("meta", "manual")
     }
     digests = study_manifest(study)
-    for number, person in enumerate(simulate_participants(truth, {t: clips_of(t) for t in TASKS})):
+    for number, person in enumerate(simulate_participants(truth, {t: list_task_clips(t) for t in TASKS})):
         _Sitting(study, person, right, truth, number).write(digests)
     return study
 
@@ -90,8 +90,8 @@ def _plan(truth: Truth) -> str:
         for name in ("ratio", "learning", "order", "pace", "spread", "chance")
     )
     tasks = "".join(
-        f"- id: {task}\n  title: {len(clips_of(task))} clips\n  clips: "
-        f"[{', '.join(f'clips/{n}.bvh' for n in clips_of(task))}]\n"
+        f"- id: {task}\n  title: {len(list_task_clips(task))} clips\n  clips: "
+        f"[{', '.join(f'clips/{n}.bvh' for n in list_task_clips(task))}]\n"
         f"  reference: {task}.metagraph.yaml\n  instructions: Make them play without a jump.\n"
         for task in TASKS
     )
@@ -143,7 +143,7 @@ def _clip(name: str) -> Clip:
 
 def _reference(folder: Path, task: str) -> Project:
     """Return the right answer, its paths relative to the study's folder."""
-    paths = [folder / "clips" / f"{n}.bvh" for n in clips_of(task)]
+    paths = [folder / "clips" / f"{n}.bvh" for n in list_task_clips(task)]
     project = edits.add_clips(
         Project(task), [(f"clips/{p.name}", 0, digest(p), read_clips(p)[0]) for p in paths]
     )
@@ -186,7 +186,7 @@ class _Sitting:
 
     def add(self, kind: str, after: float = 0.0, **fields: Any) -> None:
         self.mono += after
-        wall = wall_time(self.start + timedelta(seconds=self.mono))
+        wall = format_wall_time(self.start + timedelta(seconds=self.mono))
         self.events.append(
             {
                 "n": len(self.events),

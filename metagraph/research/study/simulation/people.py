@@ -15,7 +15,7 @@ from math import exp, log
 import numpy as np
 
 from metagraph.research.study.analysis.reading import AnalysisRow, Data, StudyRating
-from metagraph.research.study.plan.order import latin
+from metagraph.research.study.plan.order import order_conditions
 from metagraph.research.study.scores.tasks import SPENT, TaskRun
 
 CONDITIONS = ("meta", "manual")
@@ -89,7 +89,9 @@ def simulate_participants(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) ->
         rng = np.random.default_rng((truth.seed, number))
         pace, own = rng.normal(0, truth.pace), rng.normal(log(truth.ratio), truth.spread)
         works = []
-        for sitting, (condition, order) in enumerate(latin(CONDITIONS, tuple(tasks), number, truth.seed)):
+        for sitting, (condition, order) in enumerate(
+            order_conditions(CONDITIONS, tuple(tasks), number, truth.seed)
+        ):
             by_hand = condition == "manual"
             n = 0
             for task in order:

@@ -45,7 +45,7 @@ def draw_every_connection(project: Project) -> Project:
         }
         links: dict[str, Link] = {}
         for c in list_connections(project, project.graphs[layer]):
-            ident = ids.new_id(out, "l", layer, c.source, c.target, more=links)
+            ident = ids.make_id(out, "l", layer, c.source, c.target, more=links)
             leave = c.leave
             if leave is not None and leave >= project.span(actions[c.source])[1]:
                 leave = max(

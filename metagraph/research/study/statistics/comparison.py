@@ -87,12 +87,12 @@ def compare_conditions(
         return None
     people = [_person(p, c, unit, pair) for p, c in both.items() if p not in unlike]
     a, b = [p.above for p in people], [p.below for p in people]
-    log_a, log_b = stats.logs(a), stats.logs(b)
-    ratio = stats.ratio(a, b)
+    log_a, log_b = stats.take_logs(a), stats.take_logs(b)
+    ratio = stats.estimate_ratio(a, b)
     effect = stats.compute_effect_size(log_a, log_b)
-    raw = effect.value / stats.correction(len(people) - 1) if effect is not None else None
+    raw = effect.value / stats.compute_hedges_correction(len(people) - 1) if effect is not None else None
     began = {first: [(p.above, p.below) for p in people if p.above_first is first] for first in (True, False)}
-    cautions = stats.ratio_cautions(ratio, raw)
+    cautions = stats.list_ratio_cautions(ratio, raw)
     if unlike:
         cautions.append(
             f"{_names(unlike)} finished other tasks in the one condition than in the other and "
@@ -123,7 +123,7 @@ def compare_conditions(
         pair,
         {above: stats.compute_geometric_mean(a), below: stats.compute_geometric_mean(b)},
         ratio,
-        stats.paired_t(log_a, log_b),
+        stats.compute_paired_t(log_a, log_b),
         tuple(people),
         effect,
         raw,
@@ -177,7 +177,7 @@ def _unpaired(
     if not all(used.values()):
         return None
     took = {c: [mean_seconds(rows, unit) for rows in group.values()] for c, group in used.items()}
-    found, test = stats.welch(stats.logs(took[above]), stats.logs(took[below]))
+    found, test = stats.compute_welch(stats.take_logs(took[above]), stats.take_logs(took[below]))
     ratio = found.exp()
     words = [
         "No one did both, so people are compared with other people: it takes many more of them than when "

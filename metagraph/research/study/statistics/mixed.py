@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import t_quantile
+from metagraph.research.study.statistics.student_t import compute_t_quantile
 
 Array = NDArray[np.float64]
 EXACTLY = 1e-12  # of all variance, what is left below which rows fit exactly, and nothing can be estimated
@@ -72,7 +72,7 @@ def fit_mixed(
     found: dict[str, Estimate] = {}
     for n, name in enumerate(kept):
         value, error = float(beta[n]), sqrt(float(cover[n, n]))
-        half = t_quantile((1 + level) / 2, freedom[n]) * error if freedom[n] > 0 else None
+        half = compute_t_quantile((1 + level) / 2, freedom[n]) * error if freedom[n] > 0 else None
         found[name] = (
             Estimate(value, None, None, len(values))
             if half is None

@@ -15,7 +15,7 @@ from statistics import NormalDist, median
 import numpy as np
 
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate, mean
-from metagraph.research.study.statistics.student_t import t_quantile
+from metagraph.research.study.statistics.student_t import compute_t_quantile
 
 EXACT = 25  # values up to which every way to give ranks signs is counted
 MAD = 1.4826  # what makes the median deviation from the median a standard deviation, of normal values
@@ -76,7 +76,7 @@ def find_odd_ones(values: Sequence[float]) -> list[int]:
 # --- values of which only a bound is known
 
 
-def censored_mean(
+def estimate_censored_mean(
     exact: Sequence[float], above: Sequence[float] = (), below: Sequence[float] = (), level: float = LEVEL
 ) -> Estimate | None:
     """Return the mean of normal values, some known only to lie above, or below, a bound. Its interval is that
@@ -112,7 +112,7 @@ def censored_mean(
         return mean(exact, level)
     low, high = float(x.min()) - 20 * reach, float(x.max()) + 20 * reach
     mu, least = _lowest(best, low, high)
-    t = t_quantile((1 + level) / 2, n - 1)
+    t = compute_t_quantile((1 + level) / 2, n - 1)
     edge = least + n * log1p(t * t / (n - 1))
     return Estimate(mu, _crossing(best, mu, -reach, edge), _crossing(best, mu, reach, edge), n)
 

@@ -13,14 +13,14 @@ from math import isinf, log
 import numpy as np
 
 from metagraph.research.study.analysis.reading import AnalysisRow
-from metagraph.research.study.logs.gaps import LIMITS, seconds_by_limit
+from metagraph.research.study.logs.gaps import LIMITS, measure_seconds_by_limit
 from metagraph.research.study.scores.tasks import AWAY
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.comparison import ConditionComparison, compare_conditions
 from metagraph.research.study.statistics.mixed import Mixed, fit_mixed
 from metagraph.research.study.statistics.robust import (
-    censored_mean,
     compute_hodges_lehmann,
+    estimate_censored_mean,
     find_odd_ones,
     leave_one_out,
 )
@@ -50,7 +50,7 @@ class Sensitivity:
     correct: Mapping[str, tuple[int, int]]
 
 
-def sensitivity(
+def analyse_sensitivity(
     rows: Sequence[AnalysisRow], found: ConditionComparison, sites: Mapping[str, str] | None = None
 ) -> Sensitivity:
     """Return what the ratio hangs on. rows: the tasks that were done. sites: participant -> where."""
@@ -75,7 +75,7 @@ def sensitivity(
         if found.order is not None:
             how = "Both orders weigh the same, however many people had each."
             ways.append(Otherwise("both orders alike", found.order.adjusted, how))
-        mixed = mixed_model(done, found, sites or {})
+        mixed = fit_mixed_model(done, found, sites or {})
         if mixed is not None:
             how = (
                 "A mixed model of all tasks with sitting, practice and task, people differing in "
@@ -94,7 +94,7 @@ def sensitivity(
 
 
 def _within(row: AnalysisRow, limit: float) -> AnalysisRow:
-    seconds = max(1e-3, seconds_by_limit(row.run.seconds, row.gaps, limit))
+    seconds = max(1e-3, measure_seconds_by_limit(row.run.seconds, row.gaps, limit))
     return replace(row, run=replace(row.run, seconds=seconds))
 
 
@@ -157,7 +157,7 @@ def _bounded(known: Sequence[tuple[float, bool, bool]]) -> Estimate | None:
     exact = [v for v, a, b in known if not a and not b]
     above = [v for v, a, b in known if a and not b]
     below = [v for v, a, b in known if b and not a]
-    return censored_mean(exact, above, below)
+    return estimate_censored_mean(exact, above, below)
 
 
 def _censored(found: ConditionComparison) -> list[Otherwise]:
@@ -200,7 +200,7 @@ def _to_correct(rows: Sequence[AnalysisRow], found: ConditionComparison) -> list
 BY_HAND, SECOND, PRACTICE = "by hand", "second sitting", "practice"
 
 
-def mixed_model(
+def fit_mixed_model(
     rows: Sequence[AnalysisRow], found: ConditionComparison, sites: Mapping[str, str]
 ) -> Mixed | None:
     """Return a model of log seconds of each task by condition, sitting, practice (the mean log of the clips'

@@ -14,7 +14,11 @@ from math import exp, inf, isfinite, lgamma, log, sqrt
 
 import numpy as np
 
-from metagraph.research.study.statistics.student_t import compute_t_noncentral, t_quantile, t_two_sided
+from metagraph.research.study.statistics.student_t import (
+    compute_t_noncentral,
+    compute_t_quantile,
+    compute_t_two_sided,
+)
 
 LEVEL = 0.95
 FEWEST_RANKED = 6  # pairs below which signed ranks give no interval of 95 %: 2 / 2^5 = 0.0625
@@ -71,21 +75,21 @@ def mean(values: Sequence[float], level: float = LEVEL) -> Estimate:
     m = float(x.mean())
     if len(x) < 2:
         return Estimate(m, None, None, len(x))
-    half = t_quantile((1 + level) / 2, len(x) - 1) * float(x.std(ddof=1)) / sqrt(len(x))
+    half = compute_t_quantile((1 + level) / 2, len(x) - 1) * float(x.std(ddof=1)) / sqrt(len(x))
     return Estimate(m, m - half, m + half, len(x))
 
 
 def compute_geometric_mean(values: Sequence[float], level: float = LEVEL) -> Estimate:
     """Return the geometric mean with the interval of its logs. Raises ValueError for what is not > 0."""
-    return mean(logs(values), level).exp()
+    return mean(take_logs(values), level).exp()
 
 
-def ratio(above: Sequence[float], below: Sequence[float], level: float = LEVEL) -> Estimate:
+def estimate_ratio(above: Sequence[float], below: Sequence[float], level: float = LEVEL) -> Estimate:
     """Return the ratio of geometric means of pairs with its interval: the mean of the logs' differences."""
-    return mean(_paired(logs(above), logs(below)), level).exp()
+    return mean(_paired(take_logs(above), take_logs(below)), level).exp()
 
 
-def paired_t(a: Sequence[float], b: Sequence[float]) -> Test:
+def compute_paired_t(a: Sequence[float], b: Sequence[float]) -> Test:
     """Return Student's test that the differences a - b are 0 on average."""
     d = np.array(_paired(a, b))
     n = len(d)
@@ -98,10 +102,10 @@ def paired_t(a: Sequence[float], b: Sequence[float]) -> Test:
             "paired t", 0.0 if same else float(np.sign(d.mean())) * inf, n - 1, 1.0 if same else 0.0, n
         )
     t = float(d.mean()) / spread * sqrt(n)
-    return Test("paired t", t, n - 1, t_two_sided(t, n - 1), n)
+    return Test("paired t", t, n - 1, compute_t_two_sided(t, n - 1), n)
 
 
-def welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple[Estimate, Test]:
+def compute_welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple[Estimate, Test]:
     """Return the difference of two groups' means, a - b, with its interval, and Welch's test that it is 0."""
     x, y = _array(a), _array(b)
     d, n = float(x.mean() - y.mean()), len(x) + len(y)
@@ -114,8 +118,10 @@ def welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple
             "Welch's t", 0.0 if d == 0 else float(np.sign(d)) * inf, float(n - 2), 1.0 if d == 0 else 0.0, n
         )
     df = (va + vb) ** 2 / (va**2 / (len(x) - 1) + vb**2 / (len(y) - 1))
-    half = t_quantile((1 + level) / 2, df) * error
-    return Estimate(d, d - half, d + half, n), Test("Welch's t", d / error, df, t_two_sided(d / error, df), n)
+    half = compute_t_quantile((1 + level) / 2, df) * error
+    return Estimate(d, d - half, d + half, n), Test(
+        "Welch's t", d / error, df, compute_t_two_sided(d / error, df), n
+    )
 
 
 # --- sizes of effects, and of studies
@@ -131,13 +137,13 @@ def compute_effect_size(a: Sequence[float], b: Sequence[float], level: float = L
     spread = float(d.std(ddof=1)) if n > 1 else 0.0
     if n < 3 or spread < 1e-12:
         return None
-    dz, less = float(d.mean()) / spread, correction(n - 1)
+    dz, less = float(d.mean()) / spread, compute_hedges_correction(n - 1)
     t = dz * sqrt(n)
     low, high = (_shift(t, n - 1, (1 + sign * level) / 2) / sqrt(n) for sign in (1, -1))
     return Estimate(less * dz, low, high, n)
 
 
-def correction(df: float) -> float:
+def compute_hedges_correction(df: float) -> float:
     """Return Hedges' factor J, that takes the bias from a standardised difference; df > 1."""
     return exp(lgamma(df / 2) - lgamma((df - 1) / 2)) / sqrt(df / 2)
 
@@ -146,7 +152,7 @@ def compute_paired_power(n: int, effect: float, alpha: float = 0.05) -> float:
     """Return how likely a paired t test of n pairs finds an effect d_z."""
     if n < 2:
         return 0.0
-    edge = t_quantile(1 - alpha / 2, n - 1)
+    edge = compute_t_quantile(1 - alpha / 2, n - 1)
     shift = abs(effect) * sqrt(n)
     return 1 - compute_t_noncentral(edge, n - 1, shift) + compute_t_noncentral(-edge, n - 1, shift)
 
@@ -168,7 +174,7 @@ def count_pairs_needed(effect: float, wanted: float = 0.8, alpha: float = 0.05) 
     return high
 
 
-def holm(chances: Sequence[float | None]) -> list[float | None]:
+def apply_holm(chances: Sequence[float | None]) -> list[float | None]:
     """Return p values corrected for how many there are (Holm 1979), in their order; None stays None and is
     not counted.
     """
@@ -188,7 +194,7 @@ def fit_power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estim
     """Return the slope of log seconds over log of the how-many-eth, with its interval, and the seconds of the
     first on that line: seconds = first * n^slope (Newell and Rosenbloom 1981). None for fewer than 3.
     """
-    y = np.array(logs(seconds))
+    y = np.array(take_logs(seconds))
     n = len(y)
     if n < 3:
         return None
@@ -197,7 +203,7 @@ def fit_power_law(seconds: Sequence[float], level: float = LEVEL) -> tuple[Estim
     slope = float(xc @ y / (xc @ xc))
     first = float(np.mean(y) - slope * x.mean())
     error = sqrt(float(((y - first - slope * x) ** 2).sum()) / (n - 2) / float(xc @ xc))
-    half = t_quantile((1 + level) / 2, n - 2) * error
+    half = compute_t_quantile((1 + level) / 2, n - 2) * error
     return Estimate(slope, slope - half, slope + half, n), exp(first)
 
 
@@ -234,17 +240,17 @@ def order_effects(
     d_one, d_other = [a - b for a, b in one], [a - b for a, b in other]
     # Those who began with `above` have it in their first sitting: their difference is that of the conditions
     # less that of the sittings.
-    gap, gap_test = welch(d_other, d_one, level)
-    both, _ = welch(d_one, [-d for d in d_other], level)
-    sums, sums_test = welch([(a + b) / 2 for a, b in one], [(a + b) / 2 for a, b in other], level)
-    first, _ = welch([a for a, _ in one], [b for _, b in other], level)
+    gap, gap_test = compute_welch(d_other, d_one, level)
+    both, _ = compute_welch(d_one, [-d for d in d_other], level)
+    sums, sums_test = compute_welch([(a + b) / 2 for a, b in one], [(a + b) / 2 for a, b in other], level)
+    first, _ = compute_welch([a for a, _ in one], [b for _, b in other], level)
     return PeriodOrder(_half(both).exp(), _half(gap).exp(), sums.exp(), first.exp(), gap_test, sums_test)
 
 
 # --- words
 
 
-def ratio_cautions(found: Estimate, effect: float | None) -> list[str]:
+def list_ratio_cautions(found: Estimate, effect: float | None) -> list[str]:
     """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None if it is not
     known.
     """
@@ -274,7 +280,7 @@ def ratio_cautions(found: Estimate, effect: float | None) -> list[str]:
 # --- small ones
 
 
-def logs(values: Sequence[float]) -> list[float]:
+def take_logs(values: Sequence[float]) -> list[float]:
     """Return natural logs. Raises ValueError for what is not a number > 0."""
     bad = [v for v in values if not (isfinite(v) and v > 0)]
     if bad:

@@ -46,7 +46,7 @@ def _fraction(a: float, b: float, x: float) -> float:
     return out
 
 
-def t_two_sided(t: float, df: float) -> float:
+def compute_t_two_sided(t: float, df: float) -> float:
     """Return how likely a t at least as far from 0 is; df > 0."""
     if abs(t) == inf:
         return 0.0
@@ -60,12 +60,12 @@ def t_two_sided(t: float, df: float) -> float:
 
 def compute_t_cdf(t: float, df: float) -> float:
     """Return the share of Student's distribution up to t."""
-    tail = t_two_sided(t, df) / 2
+    tail = compute_t_two_sided(t, df) / 2
     return tail if t < 0 else 1 - tail
 
 
 @lru_cache(maxsize=4096)
-def t_quantile(share: float, df: float) -> float:
+def compute_t_quantile(share: float, df: float) -> float:
     """Return the t that a share of Student's distribution does not exceed. Raises ValueError unless 0 < share
     < 1 and df > 0.
     """
@@ -75,12 +75,12 @@ def t_quantile(share: float, df: float) -> float:
         return 0.0
     tail = 2 * min(share, 1 - share)
     low, high = 0.0, max(1.0, -NormalDist().inv_cdf(tail / 2))
-    while t_two_sided(high, df) > tail:
+    while compute_t_two_sided(high, df) > tail:
         low, high = high, 2 * high
     t = (low + high) / 2
     scale = exp(lgamma((df + 1) / 2) - lgamma(df / 2)) / sqrt(pi * df)
     for _ in range(200):
-        off = t_two_sided(t, df) - tail
+        off = compute_t_two_sided(t, df) - tail
         low, high = (t, high) if off > 0 else (low, t)
         step = t + off / (2 * scale * exp(-(df + 1) / 2 * log1p(t * t / df)))
         after = step if low < step < high else (low + high) / 2

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 
 from app.features.character.foot_marks import FootState, describe_slide, find_foot_states
 from app.stage.watch import Watch
-from metagraph.playback.posing.contacts import goals_at
+from metagraph.playback.posing.contacts import find_hand_goals
 from metagraph.playback.posing.foot_slides import RATE
 from tests.posing import contact_rig
 
@@ -74,7 +74,7 @@ def touching(drive, weight: float):
     times = np.arange(0.0, shown.length, 0.05)
 
     def touches(at: float) -> bool:
-        return any(g.weight >= weight for g in goals_at(shown.moving, shown.project, rig, at))
+        return any(g.weight >= weight for g in find_hand_goals(shown.moving, shown.project, rig, at))
 
     drive.session.transport.seek(next(float(t) for t in times if touches(float(t))))
     marks = drive.preview.overlays.hands

@@ -123,10 +123,10 @@ def test_only_new_clips_are_compared_again(toy, monkeypatch):
     project = toy.project()
     first = extend_matrix(project, "arms", None)
     asked = []
-    real = compatibility.compatibility_matrix
+    real = compatibility.make_compatibility_matrix
     monkeypatch.setattr(
         compatibility,
-        "compatibility_matrix",
+        "make_compatibility_matrix",
         lambda *a, **k: (asked.append(list(k["clips"])), real(*a, **k))[1],
     )
     more = edits.add_clips(project, [("free.glb", 0, "", toy.clip("free", 1.0, 1.4))])

@@ -17,7 +17,7 @@ from app.features.conversation.conversation_settings import SideRatesDialog
 from app.features.render.render_dialog import RenderDialog
 from app.project.files import SAMPLE
 from metagraph.graph.requests import Blink, Gesture, Play
-from metagraph.speech.drive import strokes
+from metagraph.speech.drive import find_stroke_times
 from tests.speech.talk import make_conversation
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -39,7 +39,7 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     nods = 0
     for one in drive.performance.shown.everyone:
         peaks = [s.peak for s in talk.sides[one.side].segments if s.kind == "clause"]
-        found = strokes(one.project, one.plan)
+        found = find_stroke_times(one.project, one.plan)
         asked = [a for a in one.asks if isinstance(a, Gesture | Play)]
         assert len(asked) >= 2
         assert all(a.stroke in peaks and abs(found[a.id] - a.stroke) <= 0.1 for a in asked)

@@ -12,7 +12,7 @@ from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 
 from app.features.conversation.segment_hits import find_word_edges
-from app.look.theme import theme
+from app.look.theme import get_theme
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import SPOKEN
 
@@ -209,7 +209,7 @@ def test_waves_pitch_and_segments_are_painted_and_the_playhead_alone_paints_noth
     silence = loud.start / 2
     assert len(colours((loud.start + loud.end) / 2, "wave")) > 12, "a waveform with a pitch over it"
     assert len(colours(silence, "wave")) < 8, "nothing is heard before anybody speaks"
-    assert any(near(c, theme("dark").sounds["clause"]) for c in colours(loud.end - 0.05, "segments"))
+    assert any(near(c, get_theme("dark").sounds["clause"]) for c in colours(loud.end - 0.05, "segments"))
     painted = talk.view.painted
     for n in range(5):
         talk.drive.session.transport.seek(0.3 + 0.1 * n)

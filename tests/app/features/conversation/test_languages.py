@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.word_lists import WordsDialog, name_language
-from metagraph.graph.conversation.model import lists_of
+from metagraph.graph.conversation.model import get_word_lists
 from metagraph.speech.language_packs import list_language_packs
 from tests.speech import talk as maker
 from tests.speech.dialogues import TALKS, spoken
@@ -103,7 +103,7 @@ def test_two_who_speak_different_languages_have_lists_each(drive: Any, tmp_path:
     assert dialog.others.lists()[0] == ("yeah",) and dialog.lists.lists()[0] == DE.responses
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     ident, made = next(iter(drive.document.project.conversations.items()))
-    assert [lists_of(made, n)[0] for n in (0, 1)] == [DE.responses, ("yeah",)]
+    assert [get_word_lists(made, n)[0] for n in (0, 1)] == [DE.responses, ("yeah",)]
     drive.session.onstage.set_conversation(ident)
     drive.actions.refresh()
     drive.actions["word_lists"].trigger()
@@ -118,5 +118,5 @@ def test_two_who_speak_different_languages_have_lists_each(drive: Any, tmp_path:
     choose(words.rows[0][1], "de")
     QTest.mouseClick(words.go, Qt.MouseButton.LeftButton)
     after = drive.document.project.conversations[ident]
-    assert [lists_of(after, n)[0] for n in (0, 1)] == [DE.responses] * 2
+    assert [get_word_lists(after, n)[0] for n in (0, 1)] == [DE.responses] * 2
     assert [s.language for s in after.sides] == ["de", "de"] and after.sides[1].responses is None

@@ -18,9 +18,9 @@ from app.features.conversation.segment_hits import (
     snap_time,
 )
 from app.features.conversation.segment_lanes import (
+    find_least_scale,
     find_visible_segments,
     find_words_between,
-    least_scale,
     measure_least_lane_height,
     measure_pitch_y,
     place_segment_lanes,
@@ -131,9 +131,9 @@ def test_pitch_stands_higher_the_higher_it_is_and_stays_in_its_lane() -> None:
 
 
 def test_all_of_it_can_be_seen_at_once() -> None:
-    each = least_scale(1000, 1800.0)
+    each = find_least_scale(1000, 1800.0)
     assert LaneScale(0, each).x(1800.0) <= 1000
-    assert least_scale(1000, 10.0) == 2.0
+    assert find_least_scale(1000, 10.0) == 2.0
 
 
 def test_a_time_is_caught_only_near_and_only_when_wanted() -> None:

@@ -28,9 +28,9 @@ def opened(drive):
 def pick(drive, dialog, name: str) -> None:
     """Click a target in the list."""
     from app.features.export.export_dialog import NAME
-    from app.widgets.tree_items import items_below, top_items
+    from app.widgets.tree_items import list_items_below, list_top_items
 
-    items = [item for group in top_items(dialog.targets) for item in items_below(group)]
+    items = [item for group in list_top_items(dialog.targets) for item in list_items_below(group)]
     item = next(i for i in items if i.data(0, NAME) == name)
     dialog.targets.scrollToItem(item)  # as one would by the wheel: the list is longer than its view
     spot = dialog.targets.visualItemRect(item).center()
@@ -49,11 +49,11 @@ def put(dialog, folder: str) -> None:
 def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
     drive = toys
     dialog = opened(drive)
-    for name, target in registry.targets().items():
+    for name, target in registry.list_targets().items():
         pick(drive, dialog, name)
         assert dialog.target.name == name
         assert target.files[:20] in dialog.words.text()
-        for words in registry.losses(drive.document.project, name):
+        for words in registry.describe_losses(drive.document.project, name):
             assert words[:25] in dialog.losses.text().replace("&#x27;", "'")
         assert ("Experimental" in dialog.losses.text()) == bool(target.untried)
         assert dialog.vectors.isHidden() == (target.group != "Same playback as the preview")
@@ -66,9 +66,9 @@ def test_a_group_cannot_be_chosen(toys):
     drive = toys
     dialog = opened(drive)
     before = dialog.target
-    from app.widgets.tree_items import top_items
+    from app.widgets.tree_items import list_top_items
 
-    spot = dialog.targets.visualItemRect(top_items(dialog.targets)[-1]).center()
+    spot = dialog.targets.visualItemRect(list_top_items(dialog.targets)[-1]).center()
     QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=spot)
     assert dialog.target is before
     dialog.reject()
@@ -183,7 +183,7 @@ def test_each_target_has_a_folder_of_its_own_and_its_own_result(toys, tmp_path, 
     drive.document.save(tmp_path / "toy.metagraph.yaml")
     dialog = opened(drive)
     folders = {}
-    for name in registry.targets():
+    for name in registry.list_targets():
         pick(drive, dialog, name)
         folders[name] = dialog.folder.text()
     assert len(set(folders.values())) == len(folders)
@@ -227,7 +227,7 @@ def test_every_target_is_written_by_a_click(toys, tmp_path):
     dialog = opened(drive)
     refused, written = {}, []
     told = drive.document.exported.connect(lambda: written.append(dialog.target.name))
-    for name in registry.targets():
+    for name in registry.list_targets():
         pick(drive, dialog, name)
         put(dialog, str(tmp_path / name))
         QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)

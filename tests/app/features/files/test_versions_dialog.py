@@ -9,9 +9,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.features.files.versions_dialog import VersionsDialog, find_versions
-from app.project.version_count import version_count
+from app.project.version_count import count_kept_versions
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.project.versions import earlier_versions, make_version_path
+from metagraph.formats.project.versions import list_earlier_versions, make_version_path
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -75,7 +75,7 @@ def test_return_opens_the_chosen_one_as_a_copy_that_replaces_nothing(
     assert project.name.startswith("other ") and [e.motion is not None for e in project.clips.values()] == [
         True
     ]
-    assert path.read_bytes() == before and len(earlier_versions(path)) == 2
+    assert path.read_bytes() == before and len(list_earlier_versions(path)) == 2
     assert not path.with_name(f".{path.name}.lock").exists()
 
 
@@ -97,7 +97,7 @@ def test_how_many_are_kept_is_set_there_and_none_is_said_in_words(drive, path: P
     dialog = VersionsDialog(path.name, (), lambda _: None, drive.window)
     assert dialog.count.value() == 3 and dialog.current is None and not dialog.go.isEnabled()
     dialog.count.setValue(1)
-    assert version_count() == 1
+    assert count_kept_versions() == 1
     dialog.count.setValue(0)
     assert dialog.count.text() == "none"
     dialog.deleteLater()

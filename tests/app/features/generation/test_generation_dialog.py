@@ -23,13 +23,13 @@ from app.features.generation import learn_page
 from app.features.generation.generation_dialog import GenerationDialog
 from app.features.generation.generation_jobs import FOLDER
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.store import absolute, open_project, save_project
+from metagraph.formats.store import make_paths_absolute, open_project, save_project
 from metagraph.generation import offered
 from metagraph.generation.features import RATE
 from metagraph.generation.standing import hold
 from metagraph.generation.stored import read_card, write_model
 from metagraph.generation.train_plan import folder_of
-from metagraph.graph.generated import origin
+from metagraph.graph.generated import describe_origin
 from tests.generation.makers import babble, conversation, moving, untrained
 
 ROOT = Path(__file__).parents[4]
@@ -46,7 +46,7 @@ def model(tmp_path_factory) -> Path:
 @pytest.fixture
 def shown(drive, sample, tmp_path, model, monkeypatch):
     """The dialog on a saved project with two stances, a conversation of 20 s, and a model beside it."""
-    whole = absolute(sample, ROOT / "sample_clips")
+    whole = make_paths_absolute(sample, ROOT / "sample_clips")
     talk = conversation(20.0)
     sides = tuple(
         msgspec.structs.replace(s, name=("Ada", "Ben")[n], audio="talk.wav", channel=n)
@@ -99,7 +99,7 @@ def test_a_model_moves_a_side_of_a_conversation_and_one_undo_takes_it_back(shown
     press(dialog.use.move_button)
     drive.wait(lambda: drive.document.project.conversations["v9000"].sides[0].motion is not None, 60)
     made = drive.document.project.clips[drive.document.project.conversations["v9000"].sides[0].motion]
-    assert (made.made_by, made.made_seed) == ("tiny", 7) and "seed 7" in origin(made)
+    assert (made.made_by, made.made_seed) == ("tiny", 7) and "seed 7" in describe_origin(made)
     assert (tmp_path / made.path).parent.name == FOLDER and made.duration == pytest.approx(20.0, abs=0.05)
     drive.wait(lambda: drive.performance.shown.motion == made.id, 60)
     pose = drive.performance.shown.pose(3.0)

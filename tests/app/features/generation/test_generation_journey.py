@@ -17,7 +17,7 @@ from app.features.export.export_dialog import ExportDialog
 from app.features.generation.generation_dialog import GenerationDialog
 from metagraph.engines.reading import read_export
 from metagraph.formats.gltf.reader import read_gltf_clips
-from metagraph.formats.store import absolute, open_project, save_project
+from metagraph.formats.store import make_paths_absolute, open_project, save_project
 from metagraph.generation.features import RATE
 from metagraph.generation.stored import Model, read_card, write_model
 from metagraph.generation.train_process import find_missing_tools
@@ -51,7 +51,7 @@ def speech(folder: Path) -> Conversation:
 def few() -> Project:
     """The sample project with one stance a layer, and little else."""
     sample = ROOT / "sample_clips" / "sample.metagraph.yaml"
-    project = absolute(open_project(sample).project, sample.parent)
+    project = make_paths_absolute(open_project(sample).project, sample.parent)
     for graph in project.graphs.values():
         for ident in graph.stances:
             project = project if ident == graph.start else edits.remove_stance(project, ident)

@@ -211,7 +211,7 @@ def test_a_chip_on_another_merges_them_and_elsewhere_does_nothing(toy, project):
 @pytest.mark.window
 @pytest.mark.gl
 def test_a_stance_dragged_onto_another_is_merged_in_one_step_and_from_its_menu_too(toys):
-    from app.features.graph.graph_menus import menu_of
+    from app.features.graph.graph_menus import make_menu_for
 
     drive = toys
     far, up, rest = (drive.id(name) for name in ("far", "up", "rest"))
@@ -224,7 +224,7 @@ def test_a_stance_dragged_onto_another_is_merged_in_one_step_and_from_its_menu_t
     assert drive.canvas.arrow is None and drive.canvas.drop is None
     drive.document.undo()
     assert list(stances()) == [rest, up, far]
-    menu = menu_of(drive.canvas.acts, GraphHit("chip", far), [])
+    menu = make_menu_for(drive.canvas.acts, GraphHit("chip", far), [])
     merge = next(a.menu() for a in menu.actions() if a.text() == "Merge into")
     assert [a.text() for a in merge.actions()] == ["rest", "up"]
     merge.actions()[0].trigger()

@@ -10,7 +10,7 @@ from PySide6.QtCore import QSizeF
 from app.features.graph.graph_layout import lay_out_canvas
 from app.features.graph.graph_look import GraphLook
 from app.features.graph.graph_parts import find_stale_region, list_graph_parts
-from app.look.theme import theme
+from app.look.theme import get_theme
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -22,7 +22,7 @@ def project(toy) -> Project:
 
 def parts(project: Project, stance: str, size: tuple[int, int] = (900, 700), **look):
     layout = lay_out_canvas(project, "arms", stance, QSizeF(*size))
-    return layout, list_graph_parts(layout, GraphLook(theme(look.pop("theme", "dark")), project, **look))
+    return layout, list_graph_parts(layout, GraphLook(get_theme(look.pop("theme", "dark")), project, **look))
 
 
 def gesture(project: Project, stance: str):

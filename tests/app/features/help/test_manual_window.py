@@ -36,7 +36,7 @@ def read(drive, name: str) -> ManualWindow:
 
 def test_every_panel_has_a_page_that_exists(toys):
     assert set(manual_pages.PAGES) == set(toys.shell.places.panels)
-    listed = {entry.page for entry in manual_pages.contents()}
+    listed = {entry.page for entry in manual_pages.list_manual_entries()}
     assert {*manual_pages.PAGES.values(), manual_pages.FIRST} <= listed
     assert all((manual_pages.DOCS / name).is_file() for name in listed if name)
 
@@ -130,7 +130,7 @@ def files(folder: str) -> list[Path]:
 
 
 def test_admonitions_are_told_by_a_bold_word():
-    text = manual_pages.for_qt(
+    text = manual_pages.format_for_qt(
         'a\n\n!!! note\n    one\n\n    two\n\nb\n!!! warning "Limits"\n    x\n', {"note": "N"}
     )
     assert text == "a\n\n> **N**\n>\n> one\n\n> two\n\nb\n> **Limits**\n>\n> x\n"

@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 
-from metagraph.suggest.flags import chance_wrong
+from metagraph.suggest.flags import estimate_chance_wrong
 from tests.app.features.labelling.test_review_dialog import begun, practice
 
 __all__ = ["practice"]
@@ -47,7 +47,9 @@ def test_a_group_is_accepted_without_what_was_clicked_away_and_taken_back_in_one
     groups.list.setCurrentRow(row)
     group = groups.group
     assert groups.heading.text().startswith(group.title) and len(groups.sheet.cards) == len(group.clips)
-    chances = [chance_wrong(review.work.review.found.proposals[card.clip]) for card in groups.sheet.cards]
+    chances = [
+        estimate_chance_wrong(review.work.review.found.proposals[card.clip]) for card in groups.sheet.cards
+    ]
     assert chances == sorted(chances, reverse=True), "what is likely wrong stands first"
     click(groups.sheet, 1)
     out = group.clips[1]

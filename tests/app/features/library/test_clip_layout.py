@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QPoint, QRect
 
 from app.features.library.clip_layout import HEAD, ClipLayout, Section
-from app.features.library.clip_sizes import SIZES, list_sizes, measure_cell, picture_of
+from app.features.library.clip_sizes import SIZES, list_sizes, measure_cell, place_picture
 
 ONE = (Section("", 0, 7),)
 GROUPS = (Section("a", 0, 4), Section("b", 4, 2, closed=True), Section("c", 6, 5))
@@ -92,5 +92,5 @@ def test_a_picture_is_within_its_place_at_every_size(style):
     for side in list_sizes(style):
         width, height = measure_cell(style, side, 640)
         rect = QRect(0, 0, width or 640, height)
-        assert rect.contains(picture_of(style, side, rect))
+        assert rect.contains(place_picture(style, side, rect))
     assert set(list_sizes(style)) <= set(SIZES)

@@ -13,7 +13,7 @@ from app.features.library.clip_columns import COLUMNS
 from app.features.library.clip_filter import Filter, filter_from_text
 from app.features.library.clip_header import PLACES
 from app.features.library.clip_rows import ENTRY
-from app.features.library.clip_sizes import SIZES, picture_of
+from app.features.library.clip_sizes import SIZES, place_picture
 from app.features.library.library_settings import LibrarySettings
 from app.project.reveal import reveal_command
 from metagraph.graph.clip_mark import ClipMark
@@ -368,7 +368,7 @@ def test_the_pointer_goes_through_a_clip_and_leaves_it_as_it_was(toys, panel, mo
 
     monkeypatch.setattr(panel.thumbnails, "scrub", strip)
     view, index = panel.list, panel.rows.index(1, 0)
-    box = picture_of("cards", view.side, view.visualRect(index))
+    box = place_picture("cards", view.side, view.visualRect(index))
 
     def seen(part: float) -> str:
         at = QPoint(round(box.left() + part * (box.width() - 1)), box.center().y())

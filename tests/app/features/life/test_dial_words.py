@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app import translation
-from app.features.life.dial_words import in_sentence
+from app.features.life.dial_words import put_in_sentence
 from metagraph.graph.life import DIALS, MANNER_DIALS
 from tests.app.catalogue_texts import catalogue_texts
 
@@ -18,7 +18,7 @@ def test_every_dial_can_be_said_in_german() -> None:
 
 
 def test_a_label_is_small_in_an_english_sentence_alone(request: pytest.FixtureRequest) -> None:
-    assert in_sentence(DIALS[0]) == "stillness"
+    assert put_in_sentence(DIALS[0]) == "stillness"
     request.addfinalizer(lambda: translation.choose("en"))
     translation.choose("de")
-    assert in_sentence(DIALS[0]) == "Ruhe"
+    assert put_in_sentence(DIALS[0]) == "Ruhe"

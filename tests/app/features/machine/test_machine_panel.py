@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QRectF
 
-from app.features.machine.machine_panel import places
+from app.features.machine.machine_panel import arrange_states
 from metagraph.graph import edits
 from metagraph.graph.model import MetaGraph
 
@@ -21,14 +21,14 @@ def test_every_state_is_drawn_once_and_inside(toy, sample, area):
     many = edits.place_clips(many, list(many.clips) * 8, "arms", "gesture", toy.id(many, "far"))
     graphs = [toy.project().graphs["arms"], many.graphs["arms"], *sample.graphs.values()]
     for graph in graphs:
-        found = places(graph, rect)
+        found = arrange_states(graph, rect)
         assert set(found) == set(graph.actions)
         for ident, at in found.items():
             assert rect.contains(at), f"{graph.actions[ident].name} at {at} is outside {rect}"
 
 
 def test_nothing_has_no_places():
-    assert places(MetaGraph("arms"), QRectF(0, 0, 400, 400)) == {}
+    assert arrange_states(MetaGraph("arms"), QRectF(0, 0, 400, 400)) == {}
 
 
 def test_a_transition_to_nowhere_or_from_a_stance_without_a_loop_is_left_out(toy):
@@ -37,6 +37,6 @@ def test_a_transition_to_nowhere_or_from_a_stance_without_a_loop_is_left_out(toy
     graph = project.graphs["arms"]
     loops = [a.id for a in graph.actions.values() if a.name == "far loop"]
     project = edits.remove_actions(project, loops)
-    found = places(project.graphs["arms"], QRectF(0, 0, 500, 500))
+    found = arrange_states(project.graphs["arms"], QRectF(0, 0, 500, 500))
     gone = {project.graphs["arms"].actions[i].name for i in project.graphs["arms"].actions if i not in found}
     assert gone == {"up to far", "far to up"}

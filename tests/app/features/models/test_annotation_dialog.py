@@ -10,8 +10,8 @@ from app.features.models.annotation_dialog import (
     REMEMBERED,
     SAMPLE,
     AnnotateDialog,
-    meaning_entries,
-    meaning_words,
+    describe_label_meaning,
+    list_meanings,
     recall_roles,
     remember_roles,
 )
@@ -66,9 +66,9 @@ def rows(table) -> list[tuple[str, ...]]:
 
 
 def test_every_meaning_has_words_of_its_own_and_odd_ones_are_among_what_can_be_chosen():
-    assert len({meaning_words(m) for m in MEANINGS}) == len(MEANINGS)
+    assert len({describe_label_meaning(m) for m in MEANINGS}) == len(MEANINGS)
     for meaning in (*MEANINGS, "gesture positive", "gesture calm and slow", "fidget calm"):
-        values = [value for _, value, _ in meaning_entries(meaning)]
+        values = [value for _, value, _ in list_meanings(meaning)]
         assert meaning in values
         assert sum(not is_meaning(str(v)) for v in values) == 1, "but for the question for tags"
 

@@ -13,11 +13,11 @@ from app.features.models.heatmap import (
     INKS,
     SIDE,
     HeatMap,
-    contrast,
+    choose_ink,
     describe_matrix_cell,
-    grid,
-    ink,
-    percent,
+    fit_grid,
+    format_percent,
+    measure_contrast,
     shade,
 )
 from app.look.theme import DARK, LIGHT
@@ -28,7 +28,7 @@ from metagraph.playback.planning.markov import ARMS, DEFAULTS
 
 @pytest.mark.parametrize("count", [1, 3, 9, 18])
 def test_every_cell_is_found_where_it_is_drawn_and_heads_beside_them(count):
-    cells = grid(count, 700, 300)
+    cells = fit_grid(count, 700, 300)
     for row in range(count):
         assert cells.at(QPointF(SIDE / 2, cells.cell(row, 0).center().y())) == (row, -1)
         assert cells.at(QPointF(cells.cell(0, row).center().x(), HEAD / 2)) == (-1, row)
@@ -40,7 +40,7 @@ def test_every_cell_is_found_where_it_is_drawn_and_heads_beside_them(count):
 
 
 def test_numbers_are_short_and_nothing_is_a_dot():
-    assert [percent(p) for p in (0, 0.001, 0.0049, 0.005, 0.126, 0.5, 0.999, 1)] == [
+    assert [format_percent(p) for p in (0, 0.001, 0.0049, 0.005, 0.126, 0.5, 0.999, 1)] == [
         "·",
         "<1",
         "<1",
@@ -76,11 +76,11 @@ def test_numbers_can_be_read_on_every_shade_of_every_kind(look):
     for kind in KINDS:
         shades = [shade(look.fill(kind), ground, p / 50) for p in range(51)]
         assert shades[0] == ground
-        assert all(contrast(ink(fill), fill) >= 4.5 for fill in shades)
-        steps = [contrast(fill, ground) for fill in shades]
+        assert all(measure_contrast(choose_ink(fill), fill) >= 4.5 for fill in shades)
+        steps = [measure_contrast(fill, ground) for fill in shades]
         assert steps == sorted(steps), "more is more"
-        assert contrast(shades[1], ground) > 1.09, "two percent can be told from nothing"
-    assert {ink(QColor(c)).name() for c in ("#000000", "#ffffff")} == set(INKS)
+        assert measure_contrast(shades[1], ground) > 1.09, "two percent can be told from nothing"
+    assert {choose_ink(QColor(c)).name() for c in ("#000000", "#ffffff")} == set(INKS)
 
 
 @pytest.fixture

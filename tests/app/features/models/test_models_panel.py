@@ -18,7 +18,7 @@ from app.features.models.compare_plot import (
     shorten_state,
 )
 from app.features.models.models_panel import IMPORTED, ModelsPanel
-from app.project.annotation_reading import begin_reading, work_into_project
+from app.project.annotation_reading import apply_reading, begin_reading
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import StageSession
@@ -26,7 +26,7 @@ from metagraph.formats.elan import read_elan
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Markov
 from metagraph.playback.learning.compare import compare_model
-from metagraph.playback.learning.learn import learn_model, model_states
+from metagraph.playback.learning.learn import learn_model, list_model_states
 from metagraph.playback.planning.markov import ARMS, DEFAULTS
 from tests.app.painted_text import faults, seen_in
 
@@ -158,7 +158,7 @@ def test_another_sample_is_another_minute_of_the_same_model(panel):
 
 @pytest.mark.nightly
 def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
-    made = work_into_project(panel.document.project, reading, LAYERS, True, "talk")
+    made = apply_reading(panel.document.project, reading, LAYERS, True, "talk")
     panel.document.edit("Import annotation", lambda _: made.project)
     panel.show_imported(reading.observed, made.performance)
     assert panel.chooser.currentText() == "talk" and not panel.teach.isVisible()
@@ -195,7 +195,7 @@ def test_what_stands_under_bars_does_not_touch_however_narrow_the_plot(panel, qt
 
 
 def test_what_was_read_but_not_kept_can_be_compared_with_until_another_project_comes(panel, reading, toy):
-    made = work_into_project(panel.document.project, reading, ("arms",), False, None)
+    made = apply_reading(panel.document.project, reading, ("arms",), False, None)
     panel.document.edit("Import annotation", lambda _: made.project)
     panel.show_imported(reading.observed, None)
     assert panel.chooser.currentData() == IMPORTED and panel.chooser.currentText() == "the last import"
@@ -225,7 +225,7 @@ def test_both_themes_are_drawn(panel, qtbot):
 
 
 def test_states_are_told_apart_by_short_marks():
-    marks = [shorten_state(state, "arms") for state in model_states(ARMS)]
+    marks = [shorten_state(state, "arms") for state in list_model_states(ARMS)]
     assert marks[:3] == ["▲L", "◆L", "➜L"] and len(set(marks)) == 9
     assert [
         shorten_state(("both", "gesture", tags), "head") for tags in ("", "positive", "negative", "calm")

@@ -16,7 +16,7 @@ from PySide6.QtTest import QTest
 from app.features.motion_graph.cooccurrence_rates import CooccurrenceDialog
 from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
 from app.features.motion_graph.synthesis_jobs import FOLDER, LEAST, MOST
-from metagraph.formats.store import absolute, save_project
+from metagraph.formats.store import make_paths_absolute, save_project
 from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side
 from metagraph.graph.model import Project
 
@@ -28,7 +28,7 @@ def shown(drive, sample, tmp_path):
     """The dialog on a saved project of the sample's stances, with a conversation whose first side has a
     take.
     """
-    whole = absolute(sample, ROOT / "sample_clips")
+    whole = make_paths_absolute(sample, ROOT / "sample_clips")
     some = {i: e for i, e in whole.clips.items() if "stance" in e.name or "arms_crossed__beat" in e.name}
     project = Project(name="some", clips=some, skeleton=whole.skeleton)
     take = next(e.id for e in project.clips.values() if e.name == "hand_to_chin__stance")

@@ -11,13 +11,13 @@ import soundfile
 from app.features.motion_graph.synthesis_jobs import (
     ChosenTakes,
     Wish,
+    choose_takes,
     count_graph_states,
     cut_to_take,
     describe_unusable_clips,
     find_recorded_side,
     list_usable_clips,
     synthesise,
-    takes_of,
 )
 from app.project.new_clips import cut_into_pieces, save
 from metagraph.errors import FileError
@@ -26,7 +26,7 @@ from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.research.motion_graph.search_evaluation import cut_segments
 from metagraph.synthesis.graph import build_graph
-from metagraph.synthesis.iconic_words import word_wish
+from metagraph.synthesis.iconic_words import parse_word_wish
 from metagraph.synthesis.soft_constraints import SoftWish
 from metagraph.synthesis.states import SynthesisError, read_states
 from tests.synthesis.talking import VOICE, WORDS, aloud, speech, talking
@@ -61,10 +61,10 @@ def test_a_take_knows_what_was_heard_during_it_the_partners_hesitations_and_not_
 ) -> None:
     clip, other = stances(sample)[:2]
     project = told(sample, clip)
-    takes = takes_of(project, [other, clip])
+    takes = choose_takes(project, [other, clip])
     assert find_recorded_side(project, clip) == ("v1", 1) and find_recorded_side(project, other) is None
     assert [[s.kind for s in speech] for speech in takes.speech] == [["clause", "hesitation"], []]
-    assert takes.told and not takes_of(project, [other]).told
+    assert takes.told and not choose_takes(project, [other]).told
 
 
 def test_what_goes_on_after_a_takes_end_was_not_heard_during_it(sample: Project) -> None:
@@ -82,7 +82,7 @@ def test_what_goes_on_after_a_takes_end_was_not_heard_during_it(sample: Project)
     project = replace(
         sample, conversations={"v1": Conversation(name="long", length=60.0, sides=(Side(), ben))}
     )
-    assert takes_of(project, [clip]).speech[0][-1].end <= end
+    assert choose_takes(project, [clip]).speech[0][-1].end <= end
 
 
 def test_clips_that_cannot_be_takes_are_told_with_the_reason(sample: Project) -> None:
@@ -110,7 +110,7 @@ def test_clips_that_cannot_be_takes_are_told_with_the_reason(sample: Project) ->
 @pytest.mark.nightly
 def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project) -> None:
     ids = stances(sample)
-    takes = takes_of(told(sample, ids[0]), ids)
+    takes = choose_takes(told(sample, ids[0]), ids)
     from metagraph.synthesis.constraints import find_change_states
     from metagraph.synthesis.states import key_states
 
@@ -135,7 +135,7 @@ def test_where_speech_does_not_constrain_nothing_is_said_of_it(
     def stuck(*_: object, **__: object) -> None:
         raise SynthesisError("no motion goes with this speech beyond 0.0 s: allow more tolerance")
 
-    takes = takes_of(sample, stances(sample)[:2])
+    takes = choose_takes(sample, stances(sample)[:2])
     monkeypatch.setattr(searches, search, stuck)
     with pytest.raises(SynthesisError, match=r"for 9 s .*takes"):
         synthesise(
@@ -147,7 +147,7 @@ def test_where_speech_does_not_constrain_nothing_is_said_of_it(
 
 
 def test_speech_nobody_told_the_takes_about_constrains_nothing(sample: Project) -> None:
-    takes = takes_of(sample, stances(sample))
+    takes = choose_takes(sample, stances(sample))
     from metagraph.synthesis.states import read_states
 
     found = synthesise(
@@ -158,7 +158,7 @@ def test_speech_nobody_told_the_takes_about_constrains_nothing(sample: Project) 
 
 def test_the_table_counts_frames_and_transitions_before_and_after_for_each_k(sample: Project) -> None:
     rows = count_graph_states(
-        takes_of(sample, stances(sample)), (2, 3, 4), 0.95, lambda *_: None, lambda: False
+        choose_takes(sample, stances(sample)), (2, 3, 4), 0.95, lambda *_: None, lambda: False
     )
     assert [rows[k][0] for k in (2, 3, 4)] == [rows[2][0]] * 3
     assert rows[2][1] < rows[3][1] < rows[4][1]
@@ -198,7 +198,7 @@ def test_words_and_sounds_of_the_sides_are_compared(tmp_path: Path) -> None:
     states = read_states([clip])
     graph = build_graph(states)
     takes = ChosenTakes(("c1",), (clip,), (tuple(segments),), (ann,))
-    soft = SoftWish(0.5, 0.5, tuple(word_wish(text) for text in WORDS), retime=0.15)
+    soft = SoftWish(0.5, 0.5, tuple(parse_word_wish(text) for text in WORDS), retime=0.15)
     wish = Wish(
         4.0, tuple(cut_segments(segments, 8.0, 4.0)), soft=soft, side=ann, whole=tuple(segments), start=8.0
     )

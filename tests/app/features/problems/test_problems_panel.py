@@ -12,14 +12,14 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.features.problems.problems_panel import FIX, breakable
+from app.features.problems.problems_panel import FIX, make_breakable
 from app.stage.compatibility_state import describe_jumps, judge_jumps, merge_problems
 from app.stage.fixes import Fix, fix_unreachable
 from app.stage.remedies import fix_clips
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
 from metagraph.graph.editing.retiming import keep_clips_in_place
-from metagraph.graph.expand import reachable
+from metagraph.graph.expand import find_reachable
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
 
@@ -33,7 +33,7 @@ def lines_cut(tree) -> list[str]:
             rect = tree.visualRect(tree.indexFromItem(item, column))
             wide = rect.width() - (26 if column == 0 else 0) - 8
             words = tree.fontMetrics().boundingRect(
-                0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, breakable(item.text(column))
+                0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, make_breakable(item.text(column))
             )
             if words.height() > rect.height() or words.width() > wide:
                 out.append(item.text(column))
@@ -258,7 +258,7 @@ def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toy
     QTest.mouseClick(tree.viewport(), Qt.MouseButton.LeftButton, pos=spot)
     stack, graph = drive.document.undo_stack, drive.document.project.graphs["arms"]
     assert stack.count() == 1 and stack.text(0) == "Bridge by blending"
-    assert up in reachable(graph, graph.start) and graph.start in reachable(graph, up)
+    assert up in find_reachable(graph, graph.start) and graph.start in find_reachable(graph, up)
     drive.wait(lambda: len(panel.fixable()) == 2)
     assert {p.stance for p in drive.problems.problems if p.code in ("unreachable", "dead-end")} == {
         toy.id(parted, "far")
@@ -271,7 +271,7 @@ def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toy
     assert stack.count() == 1 and stack.text(0) == "Fix 5 problems"
     drive.wait(lambda: not panel.fixable())
     graph = drive.document.project.graphs["arms"]
-    assert reachable(graph, graph.start) == set(graph.stances)
+    assert find_reachable(graph, graph.start) == set(graph.stances)
     drive.document.undo()
     assert drive.document.project.graphs == parted.graphs
 

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QApplication
 from app.stage.compatibility_state import compare_proposed_timing
 from metagraph.common.wording import translate_phrase
 from metagraph.graph import edits
-from metagraph.suggest.jumps.found import Measured, stance_curves
+from metagraph.suggest.jumps.found import Measured, compute_stance_curves
 from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, find_far_ends, find_words_at
 from tests.app.catalogue_texts import catalogue_texts
 
@@ -34,7 +34,7 @@ def wide(toy):
 
 def seen_of(toy, project, name):
     action = next(a for a in project.actions() if a.name == name)
-    return action, SeenJumps(action, stance_curves(project, Measured(project, action.layer), action))
+    return action, SeenJumps(action, compute_stance_curves(project, Measured(project, action.layer), action))
 
 
 def test_a_gesture_fits_at_its_ends_and_not_in_its_middle(toy, wide):

@@ -9,7 +9,7 @@ from app.features.properties.variation_rows import ActionRows, PlannerRows
 from metagraph.graph import edits
 from metagraph.graph.model import Settings
 from metagraph.playback.timing.handles import PHASES, handle_times, move_handle
-from metagraph.playback.timing.phases import phases
+from metagraph.playback.timing.phases import find_phases
 
 
 @pytest.fixture
@@ -85,7 +85,7 @@ def test_the_planners_numbers_are_edits(form):
 
 def test_a_phases_handle_stays_between_its_neighbours(project, toy):
     action = some(project, toy, "rest long")[0]
-    found = phases(project, action)
+    found = find_phases(project, action)
     at = handle_times(project, action)
     assert [at[p] for p in PHASES] == [found.ready, found.stroke_end, found.relax]
     assert move_handle(project, action, "ready", -1.0) == {"ready": found.start}

@@ -12,9 +12,9 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.project import watching
-from app.project.autosave import state_folder
+from app.project.autosave import make_state_folder
 from app.project.kept_maps import keep_map, read_joint_maps
-from metagraph.motion.joint_map import JointMap, JointPair, fingerprint
+from metagraph.motion.joint_map import JointMap, JointPair, make_fingerprint
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -79,7 +79,7 @@ def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_st
     press(dialog.go)
     drive.wait(lambda: len(drive.document.project.clips) == 4)
     project = drive.document.project
-    key = fingerprint(sample.skeleton)
+    key = make_fingerprint(sample.skeleton)
     new = [e for e in project.clips.values() if e.brought_from]
     assert [e.name for e in new] == ["other0", "other1"] and set(project.joint_maps) == {key}
     assert all(e.motion.skeleton == project.skeleton for e in new)
@@ -265,7 +265,7 @@ def test_maps_are_kept_latest_last_and_damage_spoils_no_other(qapp):
     for n in (1, 2, 1):
         keep_map(made(n))
     assert [m.source for m in read_joint_maps().values()] == ["s2", "s1"]
-    place = state_folder() / "joint_maps.json"
+    place = make_state_folder() / "joint_maps.json"
     rows = json.loads(place.read_text())
     place.write_text(json.dumps([{"source": 1}, *rows]))
     assert [m.source for m in read_joint_maps().values()] == ["s2", "s1"]

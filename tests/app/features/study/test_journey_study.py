@@ -26,7 +26,7 @@ from metagraph.graph.manual import edits as manual_edits
 from metagraph.research.study.analysis.reading import collect_study
 from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.logs.withdrawal import note_withdrawal
-from metagraph.research.study.questionnaires import sus_score
+from metagraph.research.study.questionnaires import compute_sus_score
 from metagraph.research.study.sitting import Sitting, describe_standing
 from metagraph.research.study.study_plan import read_study
 from tests.processes import started
@@ -177,7 +177,9 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     ]  # fmt: skip
     assert [(e["words"], e["by"]) for e in log.events if e["type"] == "note"] == [("a note", "participant")]
     scores = [
-        sus_score({a.item: a.value for a in log.answers() if a.questionnaire == "sus" and a.condition == c})
+        compute_sus_score(
+            {a.item: a.value for a in log.answers() if a.questionnaire == "sus" and a.condition == c}
+        )
         for c in ("meta", "manual")
     ]
     assert scores == [75, 50]

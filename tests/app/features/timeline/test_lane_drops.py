@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QPoint
 
-from app.features.timeline.lane_drops import GAP, ask_for_drop, lane_drop
+from app.features.timeline.lane_drops import GAP, ask_for_drop, plan_lane_drop
 from app.project.load import Load
 from app.widgets.lane_geometry import place_lanes as places
 from metagraph.graph import edits
@@ -19,7 +19,7 @@ def project(toy):
 def test_actions_are_asked_for_one_after_the_other(toy, project):
     beat, cough = toy.id(project, "rest beat lf"), toy.id(project, "rest cough")
     load = Load(actions=(beat, cough))
-    drop = lane_drop(project, "arms", project.action(beat).stance, 2.0, load)
+    drop = plan_lane_drop(project, "arms", project.action(beat).stance, 2.0, load)
     assert drop.possible and "2 actions" in drop.words and "2.00 s" in drop.words
     same, asked = ask_for_drop(project, drop, load)
     start, end = project.span(project.action(beat))
@@ -30,12 +30,12 @@ def test_actions_are_asked_for_one_after_the_other(toy, project):
 def test_a_clip_that_nothing_plays_is_placed_first(toy, project):
     clip = next(i for i, e in project.clips.items() if e.name == "x")
     stance = project.action(toy.id(project, "rest cough")).stance
-    drop = lane_drop(project, "arms", stance, 1.5, Load(clips=(clip,)))
+    drop = plan_lane_drop(project, "arms", stance, 1.5, Load(clips=(clip,)))
     assert drop.possible and "as a gesture of" in drop.words and drop.words.endswith("at 1.50 s")
     after, (ask,) = ask_for_drop(project, drop, Load(clips=(clip,)))
     made = after.action(ask.action)
     assert (made.clip, made.kind, made.stance, ask.at) == (clip, "gesture", stance, 1.5)
-    again = lane_drop(after, "arms", stance, 1.5, Load(clips=(clip,)))
+    again = plan_lane_drop(after, "arms", stance, 1.5, Load(clips=(clip,)))
     assert (
         again.words.endswith(" x at 1.50 s")
         and "gesture" not in again.words
@@ -53,7 +53,7 @@ def test_what_cannot_be_is_said(toy, project):
         ("arms", "s1", Load(actions=(loop,))),
         ("arms", "s1", Load()),
     ):
-        drop = lane_drop(project, layer, stance, 0.0, load)
+        drop = plan_lane_drop(project, layer, stance, 0.0, load)
         assert not drop.possible and drop.words
 
 

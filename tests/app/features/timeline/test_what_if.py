@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.features.timeline.what_if import SEEDS, plan_with, seed_of
+from app.features.timeline.what_if import SEEDS, get_ghost_seed, plan_with
 from app.widgets.lane_geometry import place_lanes
 
 
@@ -16,8 +16,8 @@ def test_other_seeds_are_shown_and_a_click_takes_one_over(toys):
     before = toys.document.project.settings.seed
     toys.timeline.ghosts.setChecked(True)
     toys.wait(lambda: len(what_if.plans) == SEEDS)
-    names = [n for n in place_lanes(view.height(), view.sizes) if seed_of(n) is not None]
-    assert [seed_of(n) for n in names] == [before + 1, before + 2, before + 3]
+    names = [n for n in place_lanes(view.height(), view.sizes) if get_ghost_seed(n) is not None]
+    assert [get_ghost_seed(n) for n in names] == [before + 1, before + 2, before + 3]
     row = place_lanes(view.height(), view.sizes)[names[1]]
     assert row.bottom() <= view.height() + 1, "rows are not cut off"
     seconds = next(c for c in what_if.plans[before + 2].layers["arms"].cues).start + 0.1

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.features.timeline.what_if import SEEDS, seed_of
+from app.features.timeline.what_if import SEEDS, get_ghost_seed
 from app.widgets.lane_geometry import place_lanes
 from metagraph.graph.requests import Gesture
 from metagraph.live.server import Options
@@ -20,7 +20,7 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 def rows(drive: Any) -> dict[int, Any]:
     """Where the rows of seeds lie, in their order."""
     view = drive.timeline.lanes
-    found = {seed_of(n): r for n, r in place_lanes(view.height(), view.sizes).items()}
+    found = {get_ghost_seed(n): r for n, r in place_lanes(view.height(), view.sizes).items()}
     return {seed: row for seed, row in found.items() if seed is not None}
 
 

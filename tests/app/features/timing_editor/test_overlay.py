@@ -11,7 +11,7 @@ from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.overlay import paint_chip
 from app.features.timing_editor.paint import TimingLook, lay_out_ruler, paint_ruler
 from app.features.timing_editor.rows import GUTTER, RIGHT, RULER
-from app.look.theme import theme
+from app.look.theme import get_theme
 
 WIDTH = 700
 AXIS = Axis.whole(GUTTER, WIDTH - GUTTER - RIGHT, 3.17)
@@ -31,7 +31,7 @@ def drawn(look: TimingLook, words: str = "", middle: float = 0.0) -> tuple[np.nd
 
 @pytest.mark.parametrize("words", ["2.27 s  0.7 m/s", "0.1 s"])
 def test_a_word_of_the_ruler_is_whole_or_gone_wherever_the_playhead_is(qapp, words):
-    look = TimingLook(theme("dark"), QFont(qapp.font()))
+    look = TimingLook(get_theme("dark"), QFont(qapp.font()))
     look.small.setPointSizeF(8)
     plain, _ = drawn(look)
     gone = 0

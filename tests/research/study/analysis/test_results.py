@@ -14,7 +14,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.research.study.analysis.example import compute_example, describe_example
-from metagraph.research.study.analysis.reading import Data, StudyRating, collect_study, prediction
+from metagraph.research.study.analysis.reading import Data, StudyRating, collect_study, predict_task_seconds
 from metagraph.research.study.analysis.results import analyse_study, compare_conditions
 from metagraph.research.study.report import format_study_page, summarise_study
 from metagraph.research.study.scores.machines import Score
@@ -200,7 +200,7 @@ def test_mistakes_and_ratings_are_means_of_people() -> None:
 
 def test_a_prediction_counts_thoughts_and_drags() -> None:
     run = row("P1", "meta", "a", 10.0, 0, operators=Counter(K=10, P=4, B=8, D=2, H=3), edits=5, undos=1).run
-    assert prediction(run) == pytest.approx(2.8 + 6 * 1.1 + 0.8 + 1.2 + 6 * 1.35)
+    assert predict_task_seconds(run) == pytest.approx(2.8 + 6 * 1.1 + 0.8 + 1.2 + 6 * 1.35)
 
 
 def test_the_published_example_has_no_interval() -> None:

@@ -16,7 +16,7 @@ from metagraph.research.study.analysis.results import analyse_study
 from metagraph.research.study.interchange.bids import write_bids
 from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.logs.withdrawal import note_withdrawal
-from metagraph.research.study.questionnaires import sus_score
+from metagraph.research.study.questionnaires import compute_sus_score
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
 from metagraph.research.study.study_plan import FILE, Study, read_study
@@ -97,7 +97,9 @@ def test_questionnaires_have_their_items(study: Study, out: Path) -> None:
     assert len(answers) == 20
     for (condition, item), value in answers.items():
         assert int(found[0][f"{condition}_{item}"]) == value
-    assert float(found[0]["meta_score"]) == sus_score({i: v for (c, i), v in answers.items() if c == "meta"})
+    assert float(found[0]["meta_score"]) == compute_sus_score(
+        {i: v for (c, i), v in answers.items() if c == "meta"}
+    )
     told = json.loads((out / "phenotype" / "sus.json").read_text())
     assert "Brooke" in told["MeasurementToolMetadata"]["Description"]
     assert told["manual_sus1"]["Levels"]["5"] == "Strongly agree"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.logs.gaze import dwelt, read_gaze
+from metagraph.research.study.logs.gaze import read_gaze, tabulate_dwell
 from metagraph.research.study.logs.log import StudyLog, read_log
 
 AREAS = {"library": [0, 0, 400, 1000], "graph": [400, 0, 800, 1000], "graph stance": [700, 300, 200, 200]}
@@ -75,9 +75,9 @@ def test_tobii(log: StudyLog, tmp_path: Path) -> None:
         lines.append(f"{(t + 3.5) * 1e6:.0f}\tMouse\t\t")
     path = tmp_path / "tobii.tsv"
     path.write_text("\n".join(lines), encoding="utf-8-sig")
-    check(dwelt(log, read_gaze(path), clap=3.5)[1])
+    check(tabulate_dwell(log, read_gaze(path), clap=3.5)[1])
     with pytest.raises(ValueError, match="clap"):
-        dwelt(log, read_gaze(path))
+        tabulate_dwell(log, read_gaze(path))
 
 
 def test_pupil_player(log: StudyLog, tmp_path: Path) -> None:
@@ -88,7 +88,7 @@ def test_pupil_player(log: StudyLog, tmp_path: Path) -> None:
         lines.append(f"0,0,{t + 812.25},{place},0,0,{there},{0.9 if there else 0.1}")
     path = tmp_path / "gaze_positions_on_surface_Screen.csv"
     path.write_text("\n".join(lines))
-    check(dwelt(log, read_gaze(path), clap=812.25)[1])
+    check(tabulate_dwell(log, read_gaze(path), clap=812.25)[1])
 
 
 def test_pupil_cloud_has_the_time_of_day(log: StudyLog, tmp_path: Path) -> None:
@@ -100,7 +100,7 @@ def test_pupil_cloud_has_the_time_of_day(log: StudyLog, tmp_path: Path) -> None:
         lines.append(f"a,b,{round((START + 10 + t) * 1e9)},{not np.isnan(x)},{place}")
     path = tmp_path / "gaze.csv"
     path.write_text("\n".join(lines))
-    check(dwelt(log, read_gaze(path))[1])
+    check(tabulate_dwell(log, read_gaze(path))[1])
 
 
 def test_what_is_no_recording_is_told(tmp_path: Path, log: StudyLog) -> None:
@@ -117,4 +117,4 @@ def test_what_is_no_recording_is_told(tmp_path: Path, log: StudyLog) -> None:
     path.write_text("gaze_timestamp,x_norm,y_norm\n1,0,0\n2,0,0\n")
     bare = StudyLog(log.path, tuple(e for e in log.events if e["type"] != "marker"))
     with pytest.raises(ValueError, match="has no clap"):
-        dwelt(bare, read_gaze(path), clap=1.0)
+        tabulate_dwell(bare, read_gaze(path), clap=1.0)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from metagraph.research.study.logs.lsl_markers import MarkersError, outlet
+from metagraph.research.study.logs.lsl_markers import MarkersError, open_marker_outlet
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def sent(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
 
 def test_kinds_and_numbers_are_sent_and_nothing_else(sent: list[Any]) -> None:
-    send = outlet("P07")
+    send = open_marker_outlet("P07")
     send(
         {
             "n": 3,
@@ -46,14 +46,14 @@ def test_kinds_and_numbers_are_sent_and_nothing_else(sent: list[Any]) -> None:
 def test_where_there_is_no_layer_the_remedy_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pylsl", None)
     with pytest.raises(MarkersError, match=r"metagraph-studio\[lab\]"):
-        outlet("P01")
+        open_marker_outlet("P01")
 
 
 def test_markers_reach_a_recorder_on_this_machine() -> None:
     pylsl = pytest.importorskip(
         "pylsl", reason="pylsl is not installed", exc_type=(ImportError, RuntimeError)
     )
-    send = outlet("P01")
+    send = open_marker_outlet("P01")
     (found, *_) = pylsl.resolve_byprop("source_id", "metagraph-P01", timeout=10.0) or pytest.skip(
         "no network here"
     )

@@ -10,10 +10,10 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.graph.name_search import matches_search
-from metagraph.research.study.machines.by_hand import Way, Work, batches, list_ways, works
+from metagraph.research.study.machines.by_hand import Way, Work, list_ways, list_works, make_batches
 from metagraph.research.study.machines.counted_drops import label_by_drops
-from metagraph.research.study.machines.counted_hand import CountedHand, bare, search_ways, try_way
-from metagraph.research.study.machines.covering import as_set, bits, cover_by_rectangles
+from metagraph.research.study.machines.counted_hand import CountedHand, search_ways, strip_project, try_way
+from metagraph.research.study.machines.covering import as_set, cover_by_rectangles, list_bits
 from metagraph.research.study.machines.finding import Finder
 from tests.projects import clip
 
@@ -79,7 +79,7 @@ def test_a_reference_of_one_clip_and_an_empty_one_are_drawn() -> None:
     one = edits.add_clips(Project("one"), [("idle.glb", 0, "", clip("idle"))])
     one = edits.add_stance(one, "arms", "rest", [*one.clips])
     assert all(not t.score.mistakes for t in search_ways(one))
-    assert works(Project()) == [] and not try_way(list_ways()[0], Project()).operators["B"] > 2
+    assert list_works(Project()) == [] and not try_way(list_ways()[0], Project()).operators["B"] > 2
 
 
 def test_clips_that_names_do_not_tell_apart_are_drawn_by_clicks() -> None:
@@ -98,8 +98,8 @@ def test_labelling_without_proposals_is_counted_and_right() -> None:
 
 def test_a_single_link_is_drawn_although_others_are_selected() -> None:
     ref = reference()
-    hand = CountedHand(bare(ref))
-    (work, *_) = [w for w in works(ref) if w.layer == "arms"]
+    hand = CountedHand(strip_project(ref))
+    (work, *_) = [w for w in list_works(ref) if w.layer == "arms"]
     hand.layer(work)
     hand.drop(work, work.clips, "")
     hand.link(work.clips[0], work.clips[1], False)
@@ -115,7 +115,9 @@ def rows(*leads: str) -> list[int]:
 
 
 def made(cover) -> set[tuple[int, int]]:
-    return {(a, b) for r in cover.rectangles for a in bits(r.sources) for b in bits(r.targets) if a != b}
+    return {
+        (a, b) for r in cover.rectangles for a in list_bits(r.sources) for b in list_bits(r.targets) if a != b
+    }
 
 
 @pytest.mark.parametrize(
@@ -132,7 +134,7 @@ def made(cover) -> set[tuple[int, int]]:
 def test_a_cover_makes_just_what_is_wanted_with_the_fewest(leads: tuple[str, ...], fewest: int) -> None:
     wanted = rows(*leads)
     cover = cover_by_rectangles(wanted)
-    assert made(cover) == {(a, b) for a, row in enumerate(wanted) for b in bits(row)}
+    assert made(cover) == {(a, b) for a, row in enumerate(wanted) for b in list_bits(row)}
     assert len(cover.rectangles) == fewest and cover.least <= fewest
 
 
@@ -142,7 +144,7 @@ def test_covers_of_any_machine_are_right_and_never_beat_the_bound() -> None:
         n = draw.randint(2, 9)
         wanted = [draw.getrandbits(n) & ~(1 << a) for a in range(n)]
         cover = cover_by_rectangles(wanted)
-        assert made(cover) == {(a, b) for a, row in enumerate(wanted) for b in bits(row)}
+        assert made(cover) == {(a, b) for a, row in enumerate(wanted) for b in list_bits(row)}
         assert cover.least <= len(cover.rectangles)
 
 
@@ -182,10 +184,10 @@ def test_what_no_words_tell_apart_has_none() -> None:
 def test_clips_are_dropped_in_batches_that_hold_no_other() -> None:
     library = {str(n): name for n, name in enumerate([*NAMES, "wave", "wave"])}
     names = dict(library)
-    out = batches(library, ["1", "2", "8"])
+    out = make_batches(library, ["1", "2", "8"])
     assert sorted(c for some, _ in out for c in some) == ["1", "2", "8"]
     assert set(library) == set(names) - {"1", "2", "8"}
-    assert batches({"a": "x"}, ["a"]) == [(["a"], "")]
+    assert make_batches({"a": "x"}, ["a"]) == [(["a"], "")]
 
 
 @pytest.mark.parametrize(
@@ -201,7 +203,7 @@ def test_searched_words(words: str, name: str, found: bool) -> None:
 
 
 def test_blocks_lie_so_that_bands_are_few() -> None:
-    (work, *_) = [w for w in works(reference()) if w.layer == "arms"]
+    (work, *_) = [w for w in list_works(reference()) if w.layer == "arms"]
     assert sorted(n for block in work.order for n in block) == list(range(len(work.clips)))
     sets = [s for r in work.cover.rectangles for s in (r.sources, r.targets)]
     assert all(len(work.runs(s)) <= 2 for s in sets)

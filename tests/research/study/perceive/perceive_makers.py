@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from metagraph.research.study.perceive.answers import PageEvent, Sheet
-from metagraph.research.study.perceive.design import design
+from metagraph.research.study.perceive.design import make_design
 from metagraph.research.study.perceive.folder import Perceived, write_folder
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan, parse_perceive_plan
 
@@ -40,7 +40,7 @@ def plan(*args: object, **options: object) -> PerceivePlan:
 def study(folder: Path, words: str, secret: str = SECRET) -> Perceived:
     """Write a study without videos."""
     made = parse_perceive_plan(words)
-    return write_folder(folder, made, words.encode(), design(made, secret))
+    return write_folder(folder, made, words.encode(), make_design(made, secret))
 
 
 def shown(folder: Path, words: str, seconds: float = 1.0) -> Perceived:
@@ -48,7 +48,7 @@ def shown(folder: Path, words: str, seconds: float = 1.0) -> Perceived:
     from preview.video import write_video
 
     made = parse_perceive_plan(words)
-    drawn = design(made, SECRET)
+    drawn = make_design(made, SECRET)
     (folder / "show" / "videos").mkdir(parents=True)
     for n, name in enumerate(drawn.key.stimuli):
         frames = [

@@ -15,7 +15,7 @@ def test_p_values_and_intervals_are_those_of_scipy(k: int, n: int, share: float)
     from scipy.stats import binomtest
 
     theirs = binomtest(k, n, share)
-    assert binomial.two_sided_p(k, n, share) == pytest.approx(theirs.pvalue, abs=1e-10)
+    assert binomial.compute_two_sided_p(k, n, share) == pytest.approx(theirs.pvalue, abs=1e-10)
     interval, ours = theirs.proportion_ci(), binomial.estimate_exact_share(k, n)
     assert (ours.low, ours.high) == pytest.approx((interval.low, interval.high), abs=1e-9)
     assert ours.holds(k / n) and ours.n == n
@@ -27,16 +27,16 @@ def test_p_values_and_intervals_are_those_of_scipy(k: int, n: int, share: float)
     [(64, 206, 5.7e-8), (108, 193, 0.113), (94, 201, 0.397), (116, 200, 0.028)],
 )
 def test_the_published_comparisons_have_these_exact_p_values(k: int, n: int, p: float) -> None:
-    assert binomial.two_sided_p(k, n) == pytest.approx(p, rel=0.02)
+    assert binomial.compute_two_sided_p(k, n) == pytest.approx(p, rel=0.02)
 
 
 def test_nothing_has_no_p_and_no_share_and_impossible_counts_are_refused() -> None:
-    assert binomial.two_sided_p(0, 0) is None and binomial.fisher(0, 0, 1, 2) is None
+    assert binomial.compute_two_sided_p(0, 0) is None and binomial.compute_fisher_p(0, 0, 1, 2) is None
     with pytest.raises(ValueError, match="nothing"):
         binomial.estimate_exact_share(0, 0)
     for k, n in ((-1, 3), (4, 3)):
         with pytest.raises(ValueError, match="no count"):
-            binomial.two_sided_p(k, n)
+            binomial.compute_two_sided_p(k, n)
 
 
 @pytest.mark.parametrize("table", [(8, 10, 3, 12), (0, 5, 5, 5), (1, 1, 0, 1), (20, 40, 21, 40)])
@@ -44,7 +44,9 @@ def test_two_shares_are_compared_as_scipy_does(table: tuple[int, int, int, int])
     from scipy.stats import fisher_exact
 
     a, n, b, m = table
-    assert binomial.fisher(*table) == pytest.approx(fisher_exact([[a, n - a], [b, m - b]])[1], abs=1e-12)
+    assert binomial.compute_fisher_p(*table) == pytest.approx(
+        fisher_exact([[a, n - a], [b, m - b]])[1], abs=1e-12
+    )
 
 
 @pytest.mark.parametrize(
@@ -66,14 +68,14 @@ def test_from_the_number_needed_on_the_power_holds_and_below_it_does_not(share: 
 
 def test_a_half_is_never_shown_to_be_another_share_but_can_be_shown_to_be_near_one() -> None:
     assert binomial.count_needed_answers(0.5) is None and binomial.count_needed_answers(0.5005) is None
-    n = binomial.equivalence_needed(0.15)
+    n = binomial.count_answers_for_equivalence(0.15)
     assert n is not None and binomial.share_equivalence_power(
         n, 0.15
     ) >= 0.8 > binomial.share_equivalence_power(n - 1, 0.15)
     assert binomial.share_equivalence_power(5, 0.1) == 0
     for wrong in (0.0, 0.5, -1.0):
         with pytest.raises(ValueError, match="margin"):
-            binomial.equivalence_needed(wrong)
+            binomial.count_answers_for_equivalence(wrong)
     with pytest.raises(ValueError, match="between 0 and 1"):
         binomial.count_needed_answers(0.7, 1.0)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.research.study.perceive.crossed import Crossed, fit_crossed, overall
+from metagraph.research.study.perceive.crossed import Crossed, compute_overall_share, fit_crossed
 from tests.thorough import many
 
 # Contagious bovine pleuropneumonia in 15 herds (Lesnoff et al. 2004, "Within-herd spread of contagious bovine
@@ -130,6 +130,11 @@ def test_people_who_differ_make_an_interval_wider_than_as_many_independent_answe
 
 
 def test_shares_of_all_are_nearer_to_a_half_the_more_people_differ() -> None:
-    assert overall(1.0, 0.0) == pytest.approx(1 / (1 + np.exp(-1)))
-    assert 0.5 < overall(1.0, 2.0) < overall(1.0, 0.5) < overall(1.0, 0.0)
-    assert overall(0.0, 3.0) == pytest.approx(0.5)
+    assert compute_overall_share(1.0, 0.0) == pytest.approx(1 / (1 + np.exp(-1)))
+    assert (
+        0.5
+        < compute_overall_share(1.0, 2.0)
+        < compute_overall_share(1.0, 0.5)
+        < compute_overall_share(1.0, 0.0)
+    )
+    assert compute_overall_share(0.0, 3.0) == pytest.approx(0.5)

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from metagraph.research.study.perceive.design import count_sequences, design
+from metagraph.research.study.perceive.design import count_sequences, make_design
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, SECRET, plan
 
@@ -23,7 +23,7 @@ def wide(**options: object) -> PerceivePlan:
 def test_after_whole_rounds_every_pair_was_on_every_side_as_often(each: int | None) -> None:
     asked = f"choice: {{question: Q{'' if each is None else f', each: {each}'}}}\n"
     rounds = count_sequences(wide(asked=asked))
-    made = design(wide(asked=asked, people=2 * rounds), SECRET)
+    made = make_design(wide(asked=asked, people=2 * rounds), SECRET)
     counts = Counter(
         (t.item, t.a, t.b) for s in made.key.sessions.values() for t in s.trials if t.kind == "choice"
     )
@@ -33,7 +33,7 @@ def test_after_whole_rounds_every_pair_was_on_every_side_as_often(each: int | No
 @pytest.mark.parametrize("each", [None, 4, 9])
 def test_in_each_session_sides_are_balanced_within_each_comparison(each: int | None) -> None:
     asked = f"choice: {{question: Q{'' if each is None else f', each: {each}'}}}\n"
-    for session in design(wide(asked=asked), SECRET).key.sessions.values():
+    for session in make_design(wide(asked=asked), SECRET).key.sessions.values():
         lefts = Counter[tuple[str, str]]()
         for t in session.trials:
             if t.kind == "choice":
@@ -43,7 +43,7 @@ def test_in_each_session_sides_are_balanced_within_each_comparison(each: int | N
 
 
 def test_orders_differ_between_people_and_an_item_hardly_follows_itself() -> None:
-    sessions = design(wide(), SECRET).key.sessions
+    sessions = make_design(wide(), SECRET).key.sessions
     orders = {
         tuple((t.item, *sorted((t.a, t.b))) for t in s.trials if t.kind == "choice")
         for s in sessions.values()
@@ -55,12 +55,12 @@ def test_orders_differ_between_people_and_an_item_hardly_follows_itself() -> Non
 
 
 def test_one_item_is_all_there_is_and_follows_itself() -> None:
-    made = design(wide(items=1), SECRET)
+    made = make_design(wide(items=1), SECRET)
     assert all(len([t for t in s.trials if t.kind == "choice"]) == 3 for s in made.key.sessions.values())
 
 
 def test_checks_and_practice_are_there_and_told_sides_are_balanced() -> None:
-    made = design(wide(more="checks: {told: 4, same: 2}\ntraining: 2\n"), SECRET)
+    made = make_design(wide(more="checks: {told: 4, same: 2}\ntraining: 2\n"), SECRET)
     for session in made.key.sessions.values():
         kinds = Counter(t.kind for t in session.trials)
         assert kinds == {"training": 2, "choice": 18, "told": 4, "same": 2}
@@ -71,7 +71,7 @@ def test_checks_and_practice_are_there_and_told_sides_are_balanced() -> None:
 
 
 def test_ratings_are_of_every_condition_of_an_item_and_told_numbers_are_on_the_scale() -> None:
-    made = design(wide(asked=CHOICE + RATING + "  each: 2\n"), SECRET)
+    made = make_design(wide(asked=CHOICE + RATING + "  each: 2\n"), SECRET)
     items = Counter[str]()
     for session in made.key.sessions.values():
         rated = [t for t in session.trials if t.kind == "rating"]
@@ -84,7 +84,7 @@ def test_ratings_are_of_every_condition_of_an_item_and_told_numbers_are_on_the_s
 
 def test_nothing_that_the_page_is_told_says_what_is_what() -> None:
     words = "{synthesised: {clip: x, title: Ours}, captured: {clip: y, title: Theirs}}"
-    made = design(plan(conditions=words), SECRET)
+    made = make_design(plan(conditions=words), SECRET)
     told = json.dumps(made.public)
     assert not any(w in told for w in ("synthesised", "captured", "Ours", "Theirs", "i0", "i1", SECRET))
     names = {n for s in made.public["sessions"].values() for t in s for n in t[2:4]}
@@ -94,14 +94,14 @@ def test_nothing_that_the_page_is_told_says_what_is_what() -> None:
 
 
 def test_the_same_secret_gives_the_same_for_ever_and_another_one_another_order() -> None:
-    assert design(wide(), SECRET).key == design(wide(), SECRET).key
-    other = design(wide(), "another")
-    assert not set(other.key.stimuli) & set(design(wide(), SECRET).key.stimuli)
-    first = design(plan(people=1, items=1), "x").key.sessions["P01"].trials[-1]
-    assert first.id == design(plan(people=1, items=1), "x").key.sessions["P01"].trials[-1].id
+    assert make_design(wide(), SECRET).key == make_design(wide(), SECRET).key
+    other = make_design(wide(), "another")
+    assert not set(other.key.stimuli) & set(make_design(wide(), SECRET).key.stimuli)
+    first = make_design(plan(people=1, items=1), "x").key.sessions["P01"].trials[-1]
+    assert first.id == make_design(plan(people=1, items=1), "x").key.sessions["P01"].trials[-1].id
 
 
 def test_only_what_is_shown_has_a_video() -> None:
-    made = design(wide(more="compare: [[a, b]]\n"), SECRET)
+    made = make_design(wide(more="compare: [[a, b]]\n"), SECRET)
     assert {c for c, _ in made.key.stimuli.values()} == {"a", "b"}
-    assert {c for c, _ in design(wide(asked=RATING), SECRET).key.stimuli.values()} == {"a", "b", "c"}
+    assert {c for c, _ in make_design(wide(asked=RATING), SECRET).key.stimuli.values()} == {"a", "b", "c"}

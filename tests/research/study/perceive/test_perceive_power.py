@@ -8,8 +8,8 @@ import pytest
 from metagraph.research.study.perceive import binomial
 from metagraph.research.study.perceive.perceive_power import (
     Expected,
+    compute_design_effect,
     count_raters_needed,
-    design_effect,
     draw_study,
     estimate_people,
     simulate_power,
@@ -35,7 +35,7 @@ def test_where_nobody_and_nothing_differs_simulated_power_is_the_exact_one() -> 
 @pytest.mark.nightly
 def test_people_who_differ_need_more_answers() -> None:
     alike, unlike = Expected(0.6, 0, 0.3), Expected(0.6, 1.0, 0.3)
-    assert design_effect(alike, 10) == 1 < 3 < design_effect(unlike, 10)
+    assert compute_design_effect(alike, 10) == 1 < 3 < compute_design_effect(unlike, 10)
     few, many = estimate_people(alike, 20, 10, 0.8, 0.05), estimate_people(unlike, 20, 10, 0.8, 0.05)
     assert few is not None and many is not None and few < many
     assert (

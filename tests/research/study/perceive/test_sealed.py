@@ -6,7 +6,7 @@ import base64
 import hashlib
 import json
 
-from metagraph.research.study.perceive.sealed import derive, seal_content, seal_sessions, sealed_name
+from metagraph.research.study.perceive.sealed import derive, make_sealed_name, seal_content, seal_sessions
 
 SESSIONS = {"Ab3": {"trials": [1, 2]}, "zz9": {"trials": "é" * 100}}
 ROUNDS = 100_000
@@ -21,9 +21,9 @@ def test_a_key_is_derived_as_slowly_as_the_page_is_told() -> None:
 def test_each_session_opens_with_its_code_and_no_other() -> None:
     told = seal_sessions(SESSIONS, "salt")["sealed"]
     keys = {code: derive(code, "salt") for code in SESSIONS}
-    assert list(told) == sorted(sealed_name(key) for key in keys.values())
+    assert list(told) == sorted(make_sealed_name(key) for key in keys.values())
     for code, key in keys.items():
-        content = base64.b64decode(told[sealed_name(key)])
+        content = base64.b64decode(told[make_sealed_name(key)])
         assert json.loads(seal_content(content, key)) == [code, SESSIONS[code]]
         assert b"trials" not in content
         assert all(

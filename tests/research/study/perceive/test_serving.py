@@ -14,7 +14,7 @@ from metagraph.engines.serve import Served
 from metagraph.errors import FileError
 from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.perceive.folder import Perceived
-from metagraph.research.study.perceive.serving import MOST_POSTED, page_of, serve_page
+from metagraph.research.study.perceive.serving import MOST_POSTED, find_page, serve_page
 from tests.research.study.perceive.perceive_makers import sheet, study, text
 
 pytestmark = pytest.mark.usefixtures("quick_codes")
@@ -107,7 +107,7 @@ def test_somebody_else_s_code_is_a_conflict(served: Served, made: Perceived) -> 
 
 def test_a_page_whose_videos_are_missing_is_not_served(made: Perceived) -> None:
     with pytest.raises(FileError, match="6 videos are not there"):
-        page_of(made)
+        find_page(made)
 
 
 def test_an_address_that_is_none_is_told(made: Perceived) -> None:

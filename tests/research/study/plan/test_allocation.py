@@ -13,10 +13,10 @@ from metagraph.errors import FileError
 from metagraph.research.study.plan import allocation
 from metagraph.research.study.plan.allocation import (
     allocate,
-    commitment,
+    compute_commitment,
     draw_order_numbers,
+    find_allocation_problems,
     prepare_allocation,
-    problems,
 )
 from metagraph.research.study.plan.drawn_orders import LOG, read_drawn_orders
 from metagraph.research.study.sitting import Sitting
@@ -64,8 +64,8 @@ def test_an_order_is_drawn_once_and_noted_and_followed(concealed) -> None:
     assert Counter(n["order"][0] for n in notes)["meta"] in (1, 2, 3)
     for n in notes:
         assert [c for c, _ in concealed.blocks(n["participant"])] == n["order"]
-    assert problems(concealed) == []
-    assert commitment((concealed.folder / allocation.SECRET).read_text().strip()) == told
+    assert find_allocation_problems(concealed) == []
+    assert compute_commitment((concealed.folder / allocation.SECRET).read_text().strip()) == told
 
 
 def test_whoever_chose_is_found_out(concealed) -> None:
@@ -76,6 +76,8 @@ def test_whoever_chose_is_found_out(concealed) -> None:
     notes = [json.loads(line) for line in path.read_text().splitlines()]
     notes[1]["number"] += 1
     path.write_text("".join(json.dumps(n) + "\n" for n in notes) + "damaged\n")
-    assert problems(concealed) and problems(concealed)[0].startswith("P02 has order")
+    assert find_allocation_problems(concealed) and find_allocation_problems(concealed)[0].startswith(
+        "P02 has order"
+    )
     (concealed.folder / allocation.SECRET).unlink()
-    assert "not there" in problems(concealed)[0]
+    assert "not there" in find_allocation_problems(concealed)[0]

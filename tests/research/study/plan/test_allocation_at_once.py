@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.research.study.plan.allocation import prepare_allocation, problems
+from metagraph.research.study.plan.allocation import find_allocation_problems, prepare_allocation
 from metagraph.research.study.plan.drawn_orders import LOG
 from metagraph.research.study.study_plan import read_study
 
@@ -88,4 +88,4 @@ def test_eight_who_begin_at_once_have_eight_places(
         notes = [json.loads(line) for line in (folder / LOG).read_text().splitlines()]
         assert sorted(note["place"] for note in notes) == list(range(PEOPLE))
         assert sorted(note["participant"] for note in notes) == sorted(study.plan.ids)
-        assert problems(study) == [] and not lock.exists()
+        assert find_allocation_problems(study) == [] and not lock.exists()

@@ -9,25 +9,25 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.research.study.plan.order import latin, shuffle_by_seed, williams
+from metagraph.research.study.plan.order import make_williams_design, order_conditions, shuffle_by_seed
 
 
 def test_no_treatment_has_no_order() -> None:
     with pytest.raises(ValueError, match="at least one"):
-        williams(0)
+        make_williams_design(0)
 
 
 def test_one_treatment_comes_first() -> None:
-    assert williams(1) == ((0,),)
+    assert make_williams_design(1) == ((0,),)
 
 
 def test_two_treatments_come_in_both_orders() -> None:
-    assert williams(2) == ((0, 1), (1, 0))
+    assert make_williams_design(2) == ((0, 1), (1, 0))
 
 
 @pytest.mark.parametrize("count", range(2, 10))
 def test_each_treatment_is_as_often_in_each_place_and_after_each_other(count: int) -> None:
-    rows = williams(count)
+    rows = make_williams_design(count)
     assert len(rows) == (count if count % 2 == 0 else 2 * count)
     assert all(sorted(row) == list(range(count)) for row in rows)
     places = Counter((place, x) for row in rows for place, x in enumerate(row))
@@ -39,7 +39,7 @@ def test_each_treatment_is_as_often_in_each_place_and_after_each_other(count: in
 
 @given(st.integers(0, 0xFFFFFFFF), st.integers(1, 12))
 def test_an_even_number_of_participants_has_conditions_and_two_tasks_balanced(seed: int, pairs: int) -> None:
-    orders = [latin(["meta", "manual"], ["ten", "twenty"], n, seed) for n in range(2 * pairs)]
+    orders = [order_conditions(["meta", "manual"], ["ten", "twenty"], n, seed) for n in range(2 * pairs)]
     firsts = Counter(order[0][0] for order in orders)
     assert firsts == {"meta": pairs, "manual": pairs}
     for condition in ("meta", "manual"):
@@ -48,13 +48,13 @@ def test_an_even_number_of_participants_has_conditions_and_two_tasks_balanced(se
 
 
 def test_four_participants_see_every_order_of_two_conditions_and_two_tasks() -> None:
-    assert len({latin(["meta", "manual"], ["ten", "twenty"], n, 7) for n in range(4)}) == 4
+    assert len({order_conditions(["meta", "manual"], ["ten", "twenty"], n, 7) for n in range(4)}) == 4
 
 
 def test_orders_are_the_same_for_ever() -> None:
     assert shuffle_by_seed("abcdef", 0) == list("dcbafe")
     assert shuffle_by_seed("abcdef", 1) == list("cfeabd")
-    assert latin(["meta", "manual"], ["a", "b", "c"], 5, 11) == (
+    assert order_conditions(["meta", "manual"], ["a", "b", "c"], 5, 11) == (
         ("meta", ("b", "a", "c")),
         ("manual", ("b", "c", "a")),
     )

@@ -12,10 +12,10 @@ from metagraph.research.study.plan.planning import (
     compute_chi_squared_cdf,
     compute_chi_squared_quantile,
     compute_half_width,
-    equivalence,
+    compute_precision_chance,
+    compute_ratio_equivalence_power,
     from_pilot,
-    precision_chance,
-    ratio_equivalence_power,
+    judge_equivalence,
     sample_size,
 )
 from metagraph.research.study.statistics.small_samples import count_pairs_needed
@@ -54,9 +54,9 @@ def test_equivalence_has_the_power_of_the_published_tables(
     power as PowerTOST computes it.
     """
     spread = sqrt(2) * sqrt(log(cv * cv + 1))
-    found = ratio_equivalence_power(n, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 2)
+    found = compute_ratio_equivalence_power(n, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 2)
     assert found == pytest.approx(power, abs=2e-5)
-    assert ratio_equivalence_power(n - 2, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 4) < 0.8
+    assert compute_ratio_equivalence_power(n - 2, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 4) < 0.8
 
 
 def test_equivalence_happens_as_often_as_its_power_says() -> None:
@@ -65,9 +65,11 @@ def test_equivalence_happens_as_often_as_its_power_says() -> None:
     shown = sum(
         found is not None and found.verdict == "equivalent"
         for _ in range(3000)
-        if (found := equivalence(rng.normal(0.02, spread, n).tolist(), exp(bound))) is not None
+        if (found := judge_equivalence(rng.normal(0.02, spread, n).tolist(), exp(bound))) is not None
     )
-    assert shown / 3000 == pytest.approx(ratio_equivalence_power(n, 0.02, spread, -bound, bound), abs=0.03)
+    assert shown / 3000 == pytest.approx(
+        compute_ratio_equivalence_power(n, 0.02, spread, -bound, bound), abs=0.03
+    )
 
 
 def test_intervals_are_as_narrow_as_planned_as_often_as_planned() -> None:
@@ -78,8 +80,10 @@ def test_intervals_are_as_narrow_as_planned_as_often_as_planned() -> None:
     rng = np.random.default_rng(2)
     drawn = rng.normal(0, 0.4, (4000, n)).std(axis=1, ddof=1)
     narrow = scipy.t.ppf(0.975, n - 1) * drawn / sqrt(n) <= log(1.25)
-    assert narrow.mean() == pytest.approx(precision_chance(n, 0.4, log(1.25)), abs=0.03)
-    assert precision_chance(n, 0.4, log(1.25)) >= 0.8 > precision_chance(n - 1, 0.4, log(1.25))
+    assert narrow.mean() == pytest.approx(compute_precision_chance(n, 0.4, log(1.25)), abs=0.03)
+    assert (
+        compute_precision_chance(n, 0.4, log(1.25)) >= 0.8 > compute_precision_chance(n - 1, 0.4, log(1.25))
+    )
 
 
 def test_a_pilot_is_reckoned_with_as_less_sure_than_it_looks() -> None:
@@ -96,10 +100,10 @@ def test_a_pilot_is_reckoned_with_as_less_sure_than_it_looks() -> None:
 
 def test_verdicts_say_what_the_interval_allows() -> None:
     for mean, verdict in ((0.0, "equivalent"), (0.8, "larger"), (-0.8, "smaller"), (0.2, "not told")):
-        found = equivalence([mean + d for d in (-0.05, 0.0, 0.05, 0.02, -0.02)], 1.25)
+        found = judge_equivalence([mean + d for d in (-0.05, 0.0, 0.05, 0.02, -0.02)], 1.25)
         assert found is not None and found.verdict == verdict, mean
-    assert equivalence([1.0], 1.25) is None
-    flat = equivalence([0.1, 0.1, 0.1], 1.25)
+    assert judge_equivalence([1.0], 1.25) is None
+    flat = judge_equivalence([0.1, 0.1, 0.1], 1.25)
     assert flat is not None and flat.verdict == "equivalent" and flat.test.p == 0
 
 
@@ -107,7 +111,7 @@ def test_the_two_one_sided_tests_are_those_of_scipy() -> None:
     from scipy import stats as scipy
 
     x = [0.05, 0.12, -0.03, 0.2, 0.01, 0.08]
-    found = equivalence(x, 1.25)
+    found = judge_equivalence(x, 1.25)
     theirs = max(
         scipy.ttest_1samp(x, -log(1.25), alternative="greater").pvalue,
         scipy.ttest_1samp(x, log(1.25), alternative="less").pvalue,

@@ -10,7 +10,7 @@ import pytest
 from app.cli.parser import main
 from metagraph.errors import FileError
 from metagraph.research.study.plan.planning import assume_without_pilot, sample_size
-from metagraph.research.study.plan.preregistration import FOLDER, Aims, preregister, unlike
+from metagraph.research.study.plan.preregistration import FOLDER, Aims, list_departures, preregister
 from metagraph.research.study.study_plan import read_study
 
 FOUND = assume_without_pilot(2.3, 0.5)
@@ -19,7 +19,7 @@ AIMS = Aims(FOUND, sample_size(FOUND, 1.25), 1.25, 1.25, 0.8)
 
 def test_both_forms_are_filled_in_and_frozen(tiny: Path) -> None:
     study = read_study(tiny)
-    assert unlike(study) == []
+    assert list_departures(study) == []
     record, osf, predicted = preregister(study, AIMS, None)
     assert preregister(study, AIMS, None)[0] == record, "the same once more changes nothing"
     text = osf.read_text()
@@ -33,17 +33,17 @@ def test_both_forms_are_filled_in_and_frozen(tiny: Path) -> None:
         assert f"### {heading}" in text, heading
     assert "No data " in text and "Two nods (limit 5 minutes)" in text
     assert predicted.read_text().count("### ") == 9
-    assert unlike(study) == []
+    assert list_departures(study) == []
     osf.write_text(text + "And one more hypothesis.")
-    (words,) = unlike(study)
+    (words,) = list_departures(study)
     assert f"'{FOLDER}/osf.md'" in words
     other = Aims(FOUND, sample_size(FOUND, 1.5), 1.5, 1.25, 0.8)
     with pytest.raises(FileError, match="preregistration already"):
         preregister(study, other, None)
     preregister(study, other, None, force=True)
-    assert unlike(study) == []
+    assert list_departures(study) == []
     tiny.write_text(tiny.read_text().replace("own free will", "own will"))
-    (words,) = unlike(read_study(tiny))
+    (words,) = list_departures(read_study(tiny))
     assert "study" in words and FOLDER not in words
 
 

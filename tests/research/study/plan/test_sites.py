@@ -10,7 +10,7 @@ from metagraph.errors import FileError
 from metagraph.research.study.analysis.results import analyse_study
 from metagraph.research.study.plan.sites import merge_site_data
 from metagraph.research.study.report import format_study_page
-from metagraph.research.study.reports.tables import participants
+from metagraph.research.study.reports.tables import tabulate_people
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
 from metagraph.research.study.study_plan import FILE
@@ -37,7 +37,7 @@ def test_people_are_told_apart_and_sites_are_a_random_effect(folders: list[Path]
     assert {"sites", "people", "sites' ratios"} <= found.sensitivity.mixed.deviations.keys()
     assert found.by_site.keys() == {"Ulm", "Bonn", "Kiel"} and all(e.n == 6 for e in found.by_site.values())
     assert "<h3>Sites</h3>" in format_study_page(found)
-    columns, rows = participants(found)
+    columns, rows = tabulate_people(found)
     assert columns[1] == "site" and rows[7][:2] == ("Bonn-P02", "Bonn")
 
 

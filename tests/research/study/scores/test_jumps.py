@@ -12,11 +12,11 @@ from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.model import Project
-from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.machines.normal_machine import normalize_machines
 from metagraph.research.study.scores.jumps import with_jumps
 from metagraph.research.study.scores.machines import Score
 from metagraph.research.study.simulation.work import draw_every_connection
-from metagraph.suggest.jumps.found import Measured, jumps
+from metagraph.suggest.jumps.found import Measured, find_jumps
 from tests.research.study.makers import small
 
 SAMPLE = Path(__file__).resolve().parents[4] / "sample_clips" / "sample.metagraph.yaml"
@@ -28,7 +28,7 @@ def sample() -> Project:
 
 
 def judged(attempt: Project, reference: Project | None = None) -> Score:
-    return with_jumps(Score(), normal(attempt), reference or sample())
+    return with_jumps(Score(), normalize_machines(attempt), reference or sample())
 
 
 def named(project: Project, layer: str, name: str) -> str:
@@ -49,7 +49,7 @@ def test_clips_that_the_reference_has_not_are_left_out() -> None:
 @pytest.mark.nightly
 def test_a_good_machine_does_not_jump_in_either_condition() -> None:
     assert judged(sample()).jumps == judged(draw_every_connection(sample())).jumps == 0
-    assert not any(jumps(sample(), Measured(sample(), layer)) for layer in sample().graphs)
+    assert not any(find_jumps(sample(), Measured(sample(), layer)) for layer in sample().graphs)
 
 
 def test_a_clip_on_the_wrong_stance_jumps_to_and_from_what_it_does_not_fit() -> None:
@@ -63,7 +63,7 @@ def test_a_clip_on_the_wrong_stance_jumps_to_and_from_what_it_does_not_fit() -> 
     hips = next(s.id for s in graph.stances.values() if s.name == "on hips")
     found = judged(edits.move_actions(project, [gesture.id], "gesture", hips))
     assert found.jumps is not None and found.jumps > 2
-    key = normal(project)["arms"].states
+    key = normalize_machines(project)["arms"].states
     clip = next(k for k, s in key.items() if project.clips[gesture.clip].path.endswith(s.clip))
     assert any(m.clip == clip and m.words.startswith(f"{clip} jumps to ") for m in found.mistakes)
     assert found.count("jump") == found.jumps

@@ -11,7 +11,7 @@ from hypothesis import given
 from metagraph.graph import edits
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.model import Project
-from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.machines.normal_machine import normalize_machines
 from metagraph.research.study.scores.machines import Score, align_machine, are_equivalent, score
 from metagraph.research.study.simulation.work import draw_every_connection
 from tests.projects import projects
@@ -27,7 +27,7 @@ def stance(project: Project, name: str) -> str:
 
 
 def scored(project: Project, reference: Project | None = None, tolerance: float = 0.1) -> Score:
-    return score(normal(project), normal(reference or small()), tolerance)
+    return score(normalize_machines(project), normalize_machines(reference or small()), tolerance)
 
 
 def words(found: Score) -> list[str]:
@@ -67,7 +67,7 @@ def test_nothing_made_lacks_everything() -> None:
 
 
 def test_what_is_not_wanted_is_extra() -> None:
-    found = score(normal(small()), {})
+    found = score(normalize_machines(small()), {})
     assert (found.right, found.extra, found.precision, found.recall, found.f1) == (0, 28, 0.0, None, 0.0)
     assert found.count("unwanted") == 8
 
@@ -90,7 +90,8 @@ def test_names_of_stances_and_the_order_of_placing_do_not_matter() -> None:
     project = edits.remove_actions(project, [wave])
     clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
     assert are_equivalent(
-        normal(edits.place_clips(project, [clip], LAYER, "gesture", sides)), normal(small())
+        normalize_machines(edits.place_clips(project, [clip], LAYER, "gesture", sides)),
+        normalize_machines(small()),
     )
 
 
@@ -224,7 +225,7 @@ def test_several_uses_of_one_clip_are_matched_by_what_they_are() -> None:
         other, [clip], LAYER, "gesture", stance(project, "sides")
     )  # now that on the hips came first
     assert next(a.id for a in other.actions() if a.clip == clip) == first
-    assert are_equivalent(normal(other), normal(twice))
+    assert are_equivalent(normalize_machines(other), normalize_machines(twice))
     assert named(scored(twice))[0] == ("unwanted", "sides_wave.glb#2")
     assert scored(small(), twice).count("absent") == 1
 
@@ -234,10 +235,10 @@ def test_many_uses_of_one_clip_are_matched_one_by_one() -> None:
     clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
     many = edits.place_clips(project, [clip] * 9, LAYER, "fidget", stance(project, "hips"))
     assert (
-        align_machine(normal(many)[LAYER], normal(many)[LAYER]).states.keys()
-        == normal(many)[LAYER].states.keys()
+        align_machine(normalize_machines(many)[LAYER], normalize_machines(many)[LAYER]).states.keys()
+        == normalize_machines(many)[LAYER].states.keys()
     )
-    assert are_equivalent(normal(many), normal(many))
+    assert are_equivalent(normalize_machines(many), normalize_machines(many))
 
 
 def test_long_lists_are_cut() -> None:
@@ -262,6 +263,6 @@ def test_shares_by_hand() -> None:
 
 @given(projects())
 def test_whatever_is_made_is_right_beside_itself(project: Project) -> None:
-    found = normal(project, manual=False)
+    found = normalize_machines(project, manual=False)
     assert are_equivalent(found, found)
     assert score(found, found).placed == sum(len(m.states) for m in found.values())

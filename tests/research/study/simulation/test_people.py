@@ -12,10 +12,15 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.research.study.analysis.reading import collect_study
-from metagraph.research.study.analysis.results import Results, analyse_study, compare_conditions, learning
+from metagraph.research.study.analysis.results import (
+    Results,
+    analyse_study,
+    compare_conditions,
+    fit_learning_curve,
+)
 from metagraph.research.study.logs.log import read_log
-from metagraph.research.study.questionnaires import sus_score
-from metagraph.research.study.simulation.files import TASKS, clips_of, write_study
+from metagraph.research.study.questionnaires import compute_sus_score
+from metagraph.research.study.simulation.files import TASKS, list_task_clips, write_study
 from metagraph.research.study.simulation.people import Truth, simulate_participants, simulate_times
 from metagraph.research.study.simulation.work import draw_every_connection, make_slips
 from metagraph.research.study.sitting import find_place_in_sitting, list_phases
@@ -75,7 +80,7 @@ def test_intervals_include_the_truth_as_often_as_they_promise() -> None:
         truth = replace(plain, seed=seed + STUDIES, order=0.8)
         rows = simulate_times(truth, TWO).rows
         ordered = compare_conditions(rows)
-        curve = learning([r for r in rows if r.run.condition == "manual"])
+        curve = fit_learning_curve([r for r in rows if r.run.condition == "manual"])
         assert ordered is not None and ordered.order is not None and curve is not None
         held["adjusted"] += ordered.order.adjusted.holds(truth.ratio)
         held["second"] += ordered.order.second.holds(truth.order)
@@ -148,7 +153,9 @@ def test_the_study_is_valid_and_every_sitting_comes_to_its_end(folder: Path) -> 
 
 
 def test_the_logs_say_what_was_drawn(folder: Path) -> None:
-    people = {p.participant: p for p in simulate_participants(Truth(), {t: clips_of(t) for t in TASKS})}
+    people = {
+        p.participant: p for p in simulate_participants(Truth(), {t: list_task_clips(t) for t in TASKS})
+    }
     study = read_study(folder)
     for who, person in list(people.items())[:5]:
         log_ = read_log(study.log(who))
@@ -162,7 +169,7 @@ def test_the_logs_say_what_was_drawn(folder: Path) -> None:
                 for a in log_.answers()
                 if a.questionnaire == "sus" and a.condition == condition
             }
-            assert sus_score(answers) == score
+            assert compute_sus_score(answers) == score
 
 
 @pytest.mark.nightly

@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.research.study.statistics import mixed as stats_mixed
 from metagraph.research.study.statistics.mixed import fit_mixed
-from metagraph.research.study.statistics.student_t import t_quantile
+from metagraph.research.study.statistics.student_t import compute_t_quantile
 
 # Davies and Goldsmith, "Statistical Methods in Research and Production", 4th ed., table 6.3: yields of dyestuff,
 # five of each of six batches.
@@ -65,7 +65,7 @@ def test_a_balanced_cross_over_is_that_of_its_closed_form() -> None:
     gaps = logs[:, 1] - logs[:, 0]
     one, other = gaps[above_first], gaps[~above_first]
     adjusted, second = (one.mean() + other.mean()) / 2, (other.mean() - one.mean()) / 2
-    half = t_quantile(0.975, 10) * sqrt((one.var(ddof=1) + other.var(ddof=1)) / 2 / 3) / 2
+    half = compute_t_quantile(0.975, 10) * sqrt((one.var(ddof=1) + other.var(ddof=1)) / 2 / 3) / 2
     found = fit_mixed(
         logs.ravel().tolist(),
         {

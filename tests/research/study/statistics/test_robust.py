@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from metagraph.research.study.statistics.robust import (
-    censored_mean,
     compute_hodges_lehmann,
+    estimate_censored_mean,
     find_odd_ones,
     leave_one_out,
 )
@@ -59,8 +59,8 @@ def test_one_odd_value_moves_the_mean_and_not_the_middle() -> None:
 
 def test_without_censored_values_the_interval_is_students() -> None:
     values = [1.0, 2.0, 4.0, 4.5]
-    assert censored_mean(values) == mean(values)
-    near = censored_mean(values, above=[-30.0])  # a bound that says nothing
+    assert estimate_censored_mean(values) == mean(values)
+    near = estimate_censored_mean(values, above=[-30.0])  # a bound that says nothing
     assert near is not None and near.value == pytest.approx(mean(values).value, abs=1e-4)
 
 
@@ -70,7 +70,7 @@ def test_censored_values_agree_with_scipy() -> None:
     drawn = np.random.default_rng(3).normal(1, 0.5, 30)
     exact, above = [v for v in drawn if -0.1 < v < 1.3], [1.3] * int((drawn >= 1.3).sum())
     below = [-0.1] * int((drawn <= -0.1).sum())
-    found = censored_mean(exact, above, below)
+    found = estimate_censored_mean(exact, above, below)
     told = scipy.norm.fit(scipy.CensoredData(uncensored=exact, right=above, left=below))
     assert found is not None and found.value == pytest.approx(told[0], abs=2e-3)
     assert found.low is not None and found.high is not None and found.low < 1 < found.high
@@ -82,14 +82,14 @@ def test_intervals_of_censored_values_hold_the_truth_as_often_as_they_promise() 
     studies = many(100, 200)
     for _ in range(studies):
         drawn = rng.normal(0.8, 0.3, 14)
-        found = censored_mean([v for v in drawn if v < 1.0], [1.0] * int((drawn >= 1.0).sum()))
+        found = estimate_censored_mean([v for v in drawn if v < 1.0], [1.0] * int((drawn >= 1.0).sum()))
         held += found is not None and found.holds(0.8)
     # Of 100 or 200 with 95 % each, fewer or more are less likely than 1 in 100.
     assert many(88, 180) <= held <= many(99, 198), held
 
 
 def test_what_cannot_be_told_is_none_and_what_is_not_bounded_infinite() -> None:
-    assert censored_mean([], [1.0, 2.0]) is None
-    assert censored_mean([1.0, 1.0], [2.0]) is None
-    loose = censored_mean([0.9, 1.1], [1.2] * 30)
+    assert estimate_censored_mean([], [1.0, 2.0]) is None
+    assert estimate_censored_mean([1.0, 1.0], [2.0]) is None
+    loose = estimate_censored_mean([0.9, 1.1], [1.2] * 30)
     assert loose is not None and (loose.high is None or loose.high > 3 or loose.high == inf)

@@ -15,8 +15,8 @@ from metagraph.research.study.statistics.student_t import (
     compute_incomplete_beta,
     compute_t_cdf,
     compute_t_noncentral,
-    t_quantile,
-    t_two_sided,
+    compute_t_quantile,
+    compute_t_two_sided,
 )
 
 # Reference values: SciPy 1.17.1, statsmodels 0.15.0 (power, Holm, least squares).
@@ -44,7 +44,7 @@ def test_nobody_has_no_mean() -> None:
 
 def test_one_person_has_a_mean_but_no_interval_and_no_test() -> None:
     assert triple(s.compute_geometric_mean([20.0])) == (pytest.approx(20.0), None, None)
-    assert s.paired_t([2.0], [1.0]).p is None
+    assert s.compute_paired_t([2.0], [1.0]).p is None
     assert s.compute_effect_size([2.0], [1.0]) is None
     assert not s.compute_geometric_mean([1.0]).holds(1.0)
 
@@ -57,20 +57,20 @@ def test_no_time_has_no_logarithm() -> None:
 
 def test_pairs_need_as_many_of_both() -> None:
     with pytest.raises(ValueError, match="not 2 and 1"):
-        s.ratio([1.0, 2.0], [1.0])
+        s.estimate_ratio([1.0, 2.0], [1.0])
 
 
 def test_people_who_are_all_alike_have_an_interval_without_width() -> None:
-    assert triple(s.ratio([8.0, 8.0, 8.0], [1.0, 1.0, 1.0])) == (pytest.approx(8.0),) * 3
-    assert s.paired_t([3.0, 3.0], [1.0, 1.0]).p == 0.0
-    assert s.paired_t([3.0, 3.0], [3.0, 3.0]).p == 1.0
-    found, test = s.welch([1.0, 1.0], [3.0, 3.0])
+    assert triple(s.estimate_ratio([8.0, 8.0, 8.0], [1.0, 1.0, 1.0])) == (pytest.approx(8.0),) * 3
+    assert s.compute_paired_t([3.0, 3.0], [1.0, 1.0]).p == 0.0
+    assert s.compute_paired_t([3.0, 3.0], [3.0, 3.0]).p == 1.0
+    found, test = s.compute_welch([1.0, 1.0], [3.0, 3.0])
     assert (triple(found), test.p, test.statistic) == ((-2.0, -2.0, -2.0), 0.0, -inf)
     assert s.compute_effect_size([3.0, 3.0, 3.0], [1.0, 1.0, 1.0]) is None
 
 
 def test_a_group_of_one_has_no_interval() -> None:
-    found, test = s.welch([1.0], [2.0, 3.0])
+    found, test = s.compute_welch([1.0], [2.0, 3.0])
     assert (triple(found), test.p) == ((-1.5, None, None), None)
 
 
@@ -80,22 +80,22 @@ def test_a_group_of_one_has_no_interval() -> None:
 def test_a_ratio_by_hand() -> None:
     # Ratios 2, 4, 4, 8: 1, 2, 2, 3 doublings, mean 2, deviation sqrt(2/3), error sqrt(1/6); t of 3 degrees of
     # freedom 3.182446.
-    found = s.ratio([2.0, 8.0, 4.0, 16.0], [1.0, 2.0, 1.0, 2.0])
+    found = s.estimate_ratio([2.0, 8.0, 4.0, 16.0], [1.0, 2.0, 1.0, 2.0])
     half = 3.182446305283708 * sqrt(1 / 6)
     assert triple(found) == (close(4.0), close(2 ** (2 - half)), close(2 ** (2 + half)))
     assert found.n == 4
 
 
 def test_holm_by_hand() -> None:
-    assert s.holm([0.01, None, 0.04, 0.03, 0.005]) == [
+    assert s.apply_holm([0.01, None, 0.04, 0.03, 0.005]) == [
         close(0.03),
         None,
         close(0.06),
         close(0.06),
         close(0.02),
     ]
-    assert s.holm([]) == []
-    assert s.holm([0.9, 0.8]) == [1.0, 1.0]
+    assert s.apply_holm([]) == []
+    assert s.apply_holm([0.9, 0.8]) == [1.0, 1.0]
 
 
 def test_the_practice_of_a_perfect_learner_is_found() -> None:
@@ -124,32 +124,32 @@ def test_order_is_told_from_the_condition() -> None:
 
 
 def test_words_say_when_people_are_too_few() -> None:
-    (one,) = s.ratio_cautions(s.ratio([8.0], [1.0]), None)
+    (one,) = s.list_ratio_cautions(s.estimate_ratio([8.0], [1.0]), None)
     assert "no interval" in one
-    few = s.ratio_cautions(s.ratio([8.0, 9.0, 7.0], [1.0, 1.0, 1.0]), 5.0)
+    few = s.list_ratio_cautions(s.estimate_ratio([8.0, 9.0, 7.0], [1.0, 1.0, 1.0]), 5.0)
     assert len(few) == 1 and "3 pairs" in few[0]
-    vague = s.ratio_cautions(s.Estimate(1.2, 0.9, 1.6, 12), 0.5)
+    vague = s.list_ratio_cautions(s.Estimate(1.2, 0.9, 1.6, 12), 0.5)
     assert len(vague) == 1 and "includes 1" in vague[0] and "34 people" in vague[0] and "80 %" in vague[0]
-    assert "10,000 people" in s.ratio_cautions(s.Estimate(1.0, 0.9, 1.1, 12), 0.001)[0]
-    assert s.ratio_cautions(s.Estimate(2.0, 1.5, 2.5, 12), 3.0) == []
+    assert "10,000 people" in s.list_ratio_cautions(s.Estimate(1.0, 0.9, 1.1, 12), 0.001)[0]
+    assert s.list_ratio_cautions(s.Estimate(2.0, 1.5, 2.5, 12), 3.0) == []
 
 
 # --- against others
 
 
 def test_students_t_as_published() -> None:
-    assert t_quantile(0.975, 1) == close(12.706204736174694)
-    assert t_quantile(0.975, 3) == close(3.1824463052837078)
-    assert t_quantile(0.995, 7.5) == close(3.421422688124044)
-    assert t_quantile(0.025, 3) == close(-3.1824463052837078)
-    assert t_two_sided(3.3, 11) == close(0.007077990164459755)
-    assert t_two_sided(40, 5000) == pytest.approx(8.41485047193577e-304, rel=1e-8)
+    assert compute_t_quantile(0.975, 1) == close(12.706204736174694)
+    assert compute_t_quantile(0.975, 3) == close(3.1824463052837078)
+    assert compute_t_quantile(0.995, 7.5) == close(3.421422688124044)
+    assert compute_t_quantile(0.025, 3) == close(-3.1824463052837078)
+    assert compute_t_two_sided(3.3, 11) == close(0.007077990164459755)
+    assert compute_t_two_sided(40, 5000) == pytest.approx(8.41485047193577e-304, rel=1e-8)
     assert compute_t_cdf(0.0, 4) == 0.5
     assert compute_t_noncentral(2.1, 6, 1.3) == close(0.729203993214758)
     assert compute_t_noncentral(-0.4, 3, 0.5) == close(0.1954083082328511)
     assert compute_t_noncentral(20.0, 9, 18.0) == close(0.6053249088752901)
     with pytest.raises(ValueError, match="there is no t"):
-        t_quantile(1.0, 3)
+        compute_t_quantile(1.0, 3)
 
 
 def test_means_ratios_and_their_test_as_scipy_has_them() -> None:
@@ -158,12 +158,12 @@ def test_means_ratios_and_their_test_as_scipy_has_them() -> None:
         close(344.93662161640077),
         close(687.315116018961),
     )
-    assert triple(s.ratio(A, B)) == (
+    assert triple(s.estimate_ratio(A, B)) == (
         close(7.548711296279018),
         close(6.096019907816753),
         close(9.347581388555296),
     )
-    found = s.paired_t(s.logs(A), s.logs(B))
+    found = s.compute_paired_t(s.take_logs(A), s.take_logs(B))
     assert (found.statistic, found.p, found.df, found.n) == (
         close(22.36258727621612),
         close(9.043502318730145e-08),
@@ -174,14 +174,14 @@ def test_means_ratios_and_their_test_as_scipy_has_them() -> None:
 
 
 def test_welch_as_scipy_has_it() -> None:
-    found, test = s.welch(s.logs(A), s.logs(B[:5]))
+    found, test = s.compute_welch(s.take_logs(A), s.take_logs(B[:5]))
     assert (found.low, found.high) == (close(1.5365317930813582), close(2.473735012636729))
     assert (test.statistic, test.df) == (close(9.539222864082475), close(9.960879528444998))
     assert test.p == pytest.approx(2.5178566621217667e-06, rel=1e-9)
 
 
 def test_sizes_of_effects_and_studies_as_scipy_and_statsmodels_have_them() -> None:
-    found = s.compute_effect_size(s.logs(A), s.logs(B))
+    found = s.compute_effect_size(s.take_logs(A), s.take_logs(B))
     assert triple(found) == (close(7.022459538745655), close(3.816024964508703), close(12.01014228550578))
     for n, effect, wanted in (
         (5, 0.8, 0.2809920635173735),
@@ -211,7 +211,7 @@ def test_practice_as_least_squares_have_it() -> None:
 def test_it_agrees_with_scipy() -> None:
     theirs = pytest.importorskip("scipy.stats", reason="SciPy is not installed")
     for df in (1.0, 2.5, 9.0, 60.0, 1000.0):
-        assert [t_quantile(q, df) for q in (0.51, 0.9, 0.9999)] == pytest.approx(
+        assert [compute_t_quantile(q, df) for q in (0.51, 0.9, 0.9999)] == pytest.approx(
             theirs.t.ppf([0.51, 0.9, 0.9999], df), rel=1e-9
         )
         for shift in (0.0, 1.5, 8.0):
@@ -233,7 +233,7 @@ def test_both_ends_of_the_beta_function_are_all_of_it(a: float, b: float, x: flo
 
 @given(st.floats(0.001, 0.999), st.floats(1, 500))
 def test_a_share_of_a_t_of_a_share_is_that_share(share: float, df: float) -> None:
-    assert compute_t_cdf(t_quantile(share, df), df) == pytest.approx(share, abs=1e-12)
+    assert compute_t_cdf(compute_t_quantile(share, df), df) == pytest.approx(share, abs=1e-12)
 
 
 @given(st.lists(st.tuples(st.floats(1, 1e4), st.floats(1, 1e4)), min_size=2, max_size=12), st.floats(0.1, 10))
@@ -242,9 +242,9 @@ def test_units_of_time_do_not_matter_and_the_other_way_round_is_the_inverse(
 ) -> None:
     a, b = [x for x, _ in pairs], [y for _, y in pairs]
     found, scaled, turned = (
-        s.ratio(a, b),
-        s.ratio([unit * x for x in a], [unit * y for y in b]),
-        s.ratio(b, a),
+        s.estimate_ratio(a, b),
+        s.estimate_ratio([unit * x for x in a], [unit * y for y in b]),
+        s.estimate_ratio(b, a),
     )
     assert found.low is not None and turned.high is not None and scaled.low is not None
     assert scaled.value == pytest.approx(found.value) and scaled.low == pytest.approx(found.low)

@@ -70,7 +70,7 @@ namespace Metagraph
                 && action.Kind == "gesture"
                 && (request.Hold != null || request.Stroke != null || !request.Prepare))
             {
-                var found = PhasesRules.Phases(project, action);
+                var found = PhasesRules.FindPhases(project, action);
                 var latest = found.Skip(action.Timing.BlendIn);
                 entry = request.Prepare ? start : latest;
                 // Wait for the stroke, or catch up with it by cutting the preparation.
@@ -133,7 +133,7 @@ namespace Metagraph
         {
             if (request.Stroke != null && action.Kind == "gesture")
             {
-                var found = PhasesRules.Phases(project, action);
+                var found = PhasesRules.FindPhases(project, action);
                 var until = found.Stroke - shape.Entry;
                 return shape.Start + found.Stroke - shape.Entry + MoodRules.Drag(until, shape.Tempo) - request.Stroke.Value;
             }
@@ -159,7 +159,7 @@ namespace Metagraph
             {
                 return shape.Shortest;
             }
-            var found = PhasesRules.Phases(project, action);
+            var found = PhasesRules.FindPhases(project, action);
             var left = found.Relax - shape.Entry + shape.Hold - (shape.HoldTo - shape.HoldFrom);
             var moving = found.Relax - shape.Entry - (shape.HoldTo - shape.HoldFrom);
             if (shape.Hold <= 0)

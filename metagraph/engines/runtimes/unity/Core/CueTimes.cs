@@ -35,7 +35,7 @@ namespace Metagraph
         // clip seconds in which a cue that repeats makes its cycle's ends meet, at most half of the cycle
         public const double Seam = 0.4;
 
-        /// <summary>Return where a stance's loop is at a time, as `player.loop_seconds` does.</summary>
+        /// <summary>Return where a stance's loop is at a time, as `layers.compute_loop_seconds` does.</summary>
         public static LoopSpot LoopSpot(Graph project, Rest rest, double time)
         {
             var action = rest.Action;

@@ -129,7 +129,7 @@ namespace Metagraph
             before.AddRange(track.Idents());
             // Who takes everything back still looks at whom it talks with.
             var user = new HashSet<string>(track.Looks.Where(x => x.Start < now
-                && SpotsRules.SameSpot(x.To, SpotsRules.Named("user"))).Select(x => x.Id));
+                && SpotsRules.IsSameSpot(x.To, SpotsRules.Named("user"))).Select(x => x.Id));
             var taken = new HashSet<string>();
             var stopped = new HashSet<string>();
             foreach (string ident in before)

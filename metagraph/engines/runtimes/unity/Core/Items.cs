@@ -258,7 +258,7 @@ namespace Metagraph
 
         private static bool SameLook(LookAt a, LookAt b)
         {
-            if (!SpotsRules.SameSpot(a.To, b.To) || a.Amount != b.Amount || a.Strict != b.Strict)
+            if (!SpotsRules.IsSameSpot(a.To, b.To) || a.Amount != b.Amount || a.Strict != b.Strict)
             {
                 return false;
             }

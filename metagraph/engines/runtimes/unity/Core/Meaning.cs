@@ -275,7 +275,7 @@ namespace Metagraph
                 var layer = ask.Layer == null ? "arms" : ask.Layer;
                 if (stroke != null)
                 {
-                    start = Math.Max(0.0, stroke.Value - PhasesRules.LongestLead(Project, GraphOf(layer), ask.Tags));
+                    start = Math.Max(0.0, stroke.Value - PhasesRules.FindLongestLead(Project, GraphOf(layer), ask.Tags));
                 }
                 var request = new MetaRequest(
                     ident,

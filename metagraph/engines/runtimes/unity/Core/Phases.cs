@@ -6,7 +6,7 @@ namespace Metagraph
     /// <summary>A gesture's phases, as the export tells them.</summary>
     public static class PhasesRules
     {
-        public static Phases Phases(Graph graph, GraphAction action)
+        public static Phases FindPhases(Graph graph, GraphAction action)
         {
             return action.Phases;
         }
@@ -18,7 +18,7 @@ namespace Metagraph
         }
 
         /// <summary>How long before its stroke any gesture of a layer with these tags begins.</summary>
-        public static double LongestLead(Graph graph, LayerGraph layer, List<string> tags)
+        public static double FindLongestLead(Graph graph, LayerGraph layer, List<string> tags)
         {
             double longest = 0.0;
             foreach (GraphAction action in layer.Actions.Values)

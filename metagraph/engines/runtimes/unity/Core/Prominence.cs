@@ -4,7 +4,7 @@ namespace Metagraph
     public static class ProminenceRules
     {
         /// <summary>From 0 for hardly to 1 for much.</summary>
-        public static double Prominence(Graph graph, GraphAction action)
+        public static double MeasureProminence(Graph graph, GraphAction action)
         {
             return action.Prominence;
         }

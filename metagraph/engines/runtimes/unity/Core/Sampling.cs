@@ -335,7 +335,7 @@ namespace Metagraph
                 }
                 if (fits && Usable(action))
                 {
-                    var found = PhasesRules.Phases(Project, action);
+                    var found = PhasesRules.FindPhases(Project, action);
                     var lead = found.Stroke - found.Skip(action.Timing.BlendIn);
                     var speed = Tempo(action, Mood(request, request.Stroke.Value));
                     least = Math.Min(least, lead + MoodRules.Drag(lead, speed));
@@ -760,7 +760,7 @@ namespace Metagraph
             var weights = new Dictionary<string, double>();
             foreach (GraphAction a in left)
             {
-                var favoured = neutral ? 1.0 : MoodRules.Favour(mood, a.Tags, VigourRules.Vigour(Project, a));
+                var favoured = neutral ? 1.0 : MoodRules.Favour(mood, a.Tags, VigourRules.MeasureVigour(Project, a));
                 var weight = a.Likelihood / Math.Max(Count(a.Id, now), 1.0) * favoured;
                 weights[a.Id] = weight * Variety(a, now);
             }
@@ -780,7 +780,7 @@ namespace Metagraph
             {
                 return 1.0;
             }
-            var needed = DirectorRules.RepeatInterval(action.Kind, ProminenceRules.Prominence(Project, action)) * variety;
+            var needed = DirectorRules.RepeatInterval(action.Kind, ProminenceRules.MeasureProminence(Project, action)) * variety;
             return DirectorRules.Freshness(now - Ended[action.Id], needed);
         }
 
@@ -813,7 +813,7 @@ namespace Metagraph
             var out_ = new List<GraphAction>();
             foreach (GraphAction action in candidates)
             {
-                var shows = ProminenceRules.Prominence(Project, action);
+                var shows = ProminenceRules.MeasureProminence(Project, action);
                 if (reminded && shows >= DirectorRules.StandsOut)
                 {
                     continue;
@@ -856,7 +856,7 @@ namespace Metagraph
                 {
                     continue;
                 }
-                if (ProminenceRules.Prominence(Project, action) >= DirectorRules.StandsOut)
+                if (ProminenceRules.MeasureProminence(Project, action) >= DirectorRules.StandsOut)
                 {
                     return true;
                 }

@@ -193,7 +193,7 @@ namespace Metagraph
                 var look = Math.Max(0, PlainLists.Right(begun, edge) - 1);
                 Edges.Add(edge);
                 var felt = Moods.Rows[Math.Max(0, PlainLists.Right(Moods.Times, edge) - 1)];
-                var ways = LifeRules.Manner(Life, WordsRules.Modes[(int)(Modes.Rows[mode][0])]);
+                var ways = LifeRules.GetManner(Life, WordsRules.Modes[(int)(Modes.Rows[mode][0])]);
                 Manners.Add(WantedRules.WaysIn(ways, new Mood(felt[0], felt[1], felt[2])));
                 Strict.Add(Targets[look].Strict ? 1 : 0);
             }
@@ -625,11 +625,11 @@ namespace Metagraph
         /// </summary>
         private static string Change(Schedule before, LifeSettings life, Track track, Voices voices, uint seed)
         {
-            if (before.Track == null || before.Seed != seed || !LifeRules.SameLife(before.Life, life))
+            if (before.Track == null || before.Seed != seed || !LifeRules.IsSameLife(before.Life, life))
             {
                 return "all";
             }
-            if (!VoiceRules.SameVoices(before.Voices, voices))
+            if (!VoiceRules.AreSameVoices(before.Voices, voices))
             {
                 return "all";
             }

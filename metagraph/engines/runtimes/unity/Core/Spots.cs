@@ -36,7 +36,7 @@ namespace Metagraph
         }
 
         /// <summary>Whether two names or two points are the same.</summary>
-        public static bool SameSpot(Spot one, Spot other)
+        public static bool IsSameSpot(Spot one, Spot other)
         {
             return one.Name == other.Name && (one.Name != null || one.Point.SequenceEqual(other.Point));
         }

@@ -4,7 +4,7 @@ namespace Metagraph
     public static class VigourRules
     {
         /// <summary>Beside others of its layer and kind, -1..1.</summary>
-        public static double Vigour(Graph graph, GraphAction action)
+        public static double MeasureVigour(Graph graph, GraphAction action)
         {
             return action.Vigour;
         }

@@ -35,7 +35,7 @@ namespace Metagraph
             {
                 return false;
             }
-            return SpotsRules.SameSpot(To, other.To);
+            return SpotsRules.IsSameSpot(To, other.To);
         }
     }
 

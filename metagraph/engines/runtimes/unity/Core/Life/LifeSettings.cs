@@ -46,7 +46,7 @@ namespace Metagraph
     /// <summary>What planning asks of the settings.</summary>
     public static class LifeRules
     {
-        public static Manner Manner(LifeSettings life, string mode)
+        public static Manner GetManner(LifeSettings life, string mode)
         {
             return life.Manner(mode);
         }
@@ -57,7 +57,7 @@ namespace Metagraph
             return ways.Scaled(breathing, breathRate, aversionRate, saccadeRate, blinks);
         }
 
-        public static bool SameLife(LifeSettings one, LifeSettings other)
+        public static bool IsSameLife(LifeSettings one, LifeSettings other)
         {
             return one == other;
         }

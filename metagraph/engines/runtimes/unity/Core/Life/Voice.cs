@@ -82,7 +82,7 @@ namespace Metagraph
             return voices.Of(speech).Accents.ToList();
         }
 
-        public static bool SameVoices(Voices one, Voices other)
+        public static bool AreSameVoices(Voices one, Voices other)
         {
             return one == other;
         }

@@ -51,7 +51,7 @@ static func shape_of(project, action, request, now, speed):
 	var hold = 0.0
 	var cycle = Repeating.cycle_of(action.kind, action.timing, start, end)
 	if (request != null and action.kind == "gesture" and (request.hold != null or request.stroke != null or not request.prepare)):
-		var found = Phases.phases(project, action)
+		var found = Phases.find_phases(project, action)
 		var latest = found.skip(action.timing.blend_in)
 		entry = start if request.prepare else latest
 		# Wait for the stroke, or catch up with it by cutting the preparation.
@@ -94,7 +94,7 @@ static func fits_before(shape, limit):
 # time.
 static func lateness(project, action, request, shape):
 	if request.stroke != null and action.kind == "gesture":
-		var found = Phases.phases(project, action)
+		var found = Phases.find_phases(project, action)
 		var until = found.stroke - shape.entry
 		return shape.start + found.stroke - shape.entry + Mood.drag(until, shape.tempo) - request.stroke
 	return shape.start - request.start
@@ -113,7 +113,7 @@ static func hurried(project, action, shape):
 	var repeats = Repeating.cycle_of(action.kind, action.timing, start, end) > 0
 	if action.kind != "gesture" or action.timing.earliest_exit != null or repeats:
 		return shape.shortest
-	var found = Phases.phases(project, action)
+	var found = Phases.find_phases(project, action)
 	var left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
 	var moving = found.relax - shape.entry - (shape.hold_to - shape.hold_from)
 	if shape.hold <= 0:

@@ -26,7 +26,7 @@ class LoopSpot:
 		self.meets = meets_
 
 
-# Return where a stance's loop is at a time, as `player.loop_seconds` does.
+# Return where a stance's loop is at a time, as `layers.compute_loop_seconds` does.
 static func loop_spot(project, rest, time):
 	var action = rest.action
 	var both = project.span(action)

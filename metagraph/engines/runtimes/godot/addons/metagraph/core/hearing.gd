@@ -99,7 +99,7 @@ static func heard(requests, track, fresh, more, withdrawn, refused, now, turning
 	# Who takes everything back still looks at whom it talks with.
 	var user = {}
 	for x in track.looks:
-		if x.start < now and Spots.same_spot(x.to, Spots.named("user")):
+		if x.start < now and Spots.is_same_spot(x.to, Spots.named("user")):
 			Util.add_to(user, x.id)
 	var taken = {}
 	var stopped = {}

@@ -198,7 +198,7 @@ static func alike_looks(one, other):
 
 
 static func _same_look(a, b):
-	if not Spots.same_spot(a.to, b.to) or a.amount != b.amount or a.strict != b.strict:
+	if not Spots.is_same_spot(a.to, b.to) or a.amount != b.amount or a.strict != b.strict:
 		return false
 	return a.id == b.id and a.start == b.start and a.end == b.end and a.priority == b.priority
 

@@ -41,7 +41,7 @@ static func _over(usual, said):
 
 
 # Returns what a mode makes of the amounts.
-static func manner(life, mode):
+static func get_manner(life, mode):
 	return life.manners[mode]
 
 
@@ -57,5 +57,5 @@ static func scaled(ways, breathing, breath_rate, aversion_rate, saccade_rate, bl
 
 
 # Returns whether two are the same settings.
-static func same_life(one, other):
+static func is_same_life(one, other):
 	return typeof(one) == typeof(other) and one == other

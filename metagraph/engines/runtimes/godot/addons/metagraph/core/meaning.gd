@@ -251,7 +251,7 @@ class Meaning:
 			var kind = "gesture" if ask.do == "gesture" else "fidget"
 			var layer = "arms" if ask.layer == null else ask.layer
 			if stroke != null:
-				start = Util.most(0.0, stroke - Phases.longest_lead(self.project, self.graph_of(layer), ask.tags))
+				start = Util.most(0.0, stroke - Phases.find_longest_lead(self.project, self.graph_of(layer), ask.tags))
 			var request = MetaPlan.MetaRequest.new(
 				ident,
 				layer,

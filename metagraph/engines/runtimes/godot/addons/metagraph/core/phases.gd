@@ -4,7 +4,7 @@ const Util = preload("util.gd")
 
 
 # Returns an action's phases, clip seconds; see phase_times.gd.
-static func phases(_project, action):
+static func find_phases(_project, action):
 	return action.phases
 
 
@@ -14,7 +14,7 @@ static func lead(_project, action):
 
 
 # Returns how long before its stroke any gesture of a layer with these tags begins.
-static func longest_lead(project, graph, tags):
+static func find_longest_lead(project, graph, tags):
 	var out = 0.0
 	for action in graph.actions.values():
 		if action.kind == "gesture" and Util.has_all(action.tags, tags):

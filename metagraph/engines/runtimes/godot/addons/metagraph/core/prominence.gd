@@ -2,5 +2,5 @@
 
 
 # Returns it, from 0 for hardly to 1 for much.
-static func prominence(_project, action):
+static func measure_prominence(_project, action):
 	return action.prominence

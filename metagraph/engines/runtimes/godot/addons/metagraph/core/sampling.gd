@@ -262,7 +262,7 @@ class Performer:
 			if request.action != null:
 				fits = action.id == request.action
 			if fits and self._usable(action):
-				var found = Phases.phases(self.project, action)
+				var found = Phases.find_phases(self.project, action)
 				var lead = found.stroke - found.skip(action.timing.blend_in)
 				var speed = self._tempo(action, self._mood(request, request.stroke))
 				least = Util.least(least, lead + Mood.drag(lead, speed))
@@ -589,7 +589,7 @@ class Performer:
 		var neutral = mood.neutral
 		var weights = {}
 		for a in left:
-			var favoured = 1.0 if neutral else Mood.favour(mood, a.tags, Vigour.vigour(self.project, a))
+			var favoured = 1.0 if neutral else Mood.favour(mood, a.tags, Vigour.measure_vigour(self.project, a))
 			var weight = a.likelihood / Util.most(self._count(a.id, now), 1.0) * favoured
 			weights[a.id] = weight * self._variety(a, now)
 		var is_any = false
@@ -612,7 +612,7 @@ class Performer:
 		var variety = self.project.settings.variety
 		if variety <= 0 or action.kind == "transition" or not self.ended.has(action.id):
 			return 1.0
-		var needed = Director.repeat_interval(action.kind, Prominence.prominence(self.project, action)) * variety
+		var needed = Director.repeat_interval(action.kind, Prominence.measure_prominence(self.project, action)) * variety
 		return Director.freshness(now - self.ended[action.id], needed)
 
 	# Return those that may be done of one's own accord; see `director`.
@@ -637,7 +637,7 @@ class Performer:
 		var reminded = self._shown(now - Director.APART * variety)
 		var out = []
 		for action in candidates:
-			var shows = Prominence.prominence(self.project, action)
+			var shows = Prominence.measure_prominence(self.project, action)
 			if reminded and shows >= Director.STANDS_OUT:
 				continue
 			var needed = Director.repeat_interval(action.kind, shows) * share
@@ -662,7 +662,7 @@ class Performer:
 			var action = self.graph.actions.get(ident)
 			if action == null or action.kind == "transition" or end < since:
 				continue
-			if Prominence.prominence(self.project, action) >= Director.STANDS_OUT:
+			if Prominence.measure_prominence(self.project, action) >= Director.STANDS_OUT:
 				return true
 		return false
 

@@ -225,9 +225,9 @@ static func schedule(life, track, voices, seed_, end, before, now):
 
 # Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
 static func _change(before, life, track, voices, seed_):
-	if before.track == null or before.seed_ != seed_ or not Life.same_life(before.life, life):
+	if before.track == null or before.seed_ != seed_ or not Life.is_same_life(before.life, life):
 		return "all"
-	if not Voice.same_voices(before.voices, voices):
+	if not Voice.are_same_voices(before.voices, voices):
 		return "all"
 	if before.track == track or before.track.like(track):
 		return ""
@@ -311,7 +311,7 @@ class LifeDraw:
 			var look = Util.most(0, Util.right_of(begun, edge) - 1)
 			self.edges.append(edge)
 			var felt = self.moods.rows[Util.most(0, Util.right_of(self.moods.times, edge) - 1)]
-			var ways = Life.manner(self.life, Words.MODES[int(self.modes.rows[mode][0])])
+			var ways = Life.get_manner(self.life, Words.MODES[int(self.modes.rows[mode][0])])
 			self.manners.append(Wanted.ways_in(ways, Mood.Mood.new(felt[0], felt[1], felt[2])))
 			self.strict.append(1 if self.targets[look].strict else 0)
 

@@ -12,7 +12,7 @@ static func placed(places, to):
 
 
 # Returns whether two names or two points are the same.
-static func same_spot(one, other):
+static func is_same_spot(one, other):
 	if typeof(one) != typeof(other):
 		return false
 	if typeof(one) == TYPE_STRING:

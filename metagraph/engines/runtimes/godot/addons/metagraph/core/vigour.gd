@@ -2,5 +2,5 @@
 
 
 # Returns it beside others of its layer and kind, -1..1.
-static func vigour(_project, action):
+static func measure_vigour(_project, action):
 	return action.vigour

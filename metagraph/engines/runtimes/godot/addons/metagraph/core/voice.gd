@@ -39,5 +39,5 @@ static func stressed(graph, speech):
 
 
 # Returns whether lines sound the same.
-static func same_voices(one, other):
+static func are_same_voices(one, other):
 	return one == other

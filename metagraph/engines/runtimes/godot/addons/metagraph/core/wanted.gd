@@ -38,7 +38,7 @@ class GazeTarget:
 	func like(other):
 		if self.amount != other.amount or self.strict != other.strict or self.asked != other.asked:
 			return false
-		return Spots.same_spot(self.to, other.to)
+		return Spots.is_same_spot(self.to, other.to)
 
 
 # Return the mode asked for; where none is, talking while something is said and idle otherwise.
