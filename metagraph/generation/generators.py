@@ -60,15 +60,15 @@ class Generator(ABC):
 
 
 class FlowGenerator(Generator):
-    """The Flow-VAE, and MoGlow. lookahead: frames ahead that are known, 0..ahead. first: the pose `[X]`
-    before, standardised.
+    """The Flow-VAE, and MoGlow. lookahead: frames ahead that are known, 0..ahead; of a piece of several frames
+    at least all of its own. first: the pose `[X]` before, standardised.
     """
 
     def __init__(
         self, w: Weights, sizes: FlowSizes, first: Array, temperature: float, lookahead: int | None
     ) -> None:
         control = sizes.control
-        self._hears(control, lookahead)
+        self._hears(control, None if lookahead is None else max(lookahead, sizes.span - 1))
         self.made, self.temperature = sizes.span, np.float32(temperature)
         self.flow, self.decoder, self.noise = FlowDrawing(w, sizes), vae.Decoder(w, sizes), Noise(sizes.dims)
         self.hearing = EncoderHearing(w, control, self.needed, self.flow)

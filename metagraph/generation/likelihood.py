@@ -35,7 +35,8 @@ def _contexts(
     if lookahead is None or lookahead >= control.ahead:
         told = encode_all(model.weights, control, heard)
     else:
-        told = encode_window(model.weights, control, list_windows(heard, control.frames), max(0, lookahead))
+        known = max(lookahead, sizes.span - 1)  # as `generators.FlowGenerator` waits for
+        told = encode_window(model.weights, control, list_windows(heard, control.frames), known)
     count = len(poses) // sizes.span
     told = told[: count * sizes.span : sizes.span]
     if not control.past:
