@@ -60,8 +60,8 @@ class Generator(ABC):
 
 
 class FlowGenerator(Generator):
-    """The Flow-VAE, and MoGlow. lookahead: frames ahead that are known, 0..ahead; of a piece of several frames
-    at least all of its own. first: the pose `[X]` before, standardised.
+    """The Flow-VAE, and MoGlow. lookahead: frames ahead that are known, 0..ahead, at least those of the
+    piece that is made. first: the pose `[X]` before, standardised.
     """
 
     def __init__(
