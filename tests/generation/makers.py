@@ -51,7 +51,7 @@ def tiny(kind: Kind, pose: int = 78) -> Sizes:
         )
     code = "none" if kind == "moglow" else "autoencoder"
     dims = pose if kind == "moglow" else 7
-    return FlowSizes(pose=pose, control=Control(width=8), code=code, between=9, dims=dims, steps=3, units=6)
+    return FlowSizes(pose=pose, control=Control(width=8), code=code, between=16, dims=dims, steps=3, units=6)
 
 
 def shaken(sizes: Sizes, by: float = 0.3, seed: int = 5, dtype: Any = np.float32) -> Weights:
