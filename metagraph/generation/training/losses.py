@@ -117,14 +117,14 @@ class FlowObjective(Objective):
         self.what: Loss = settings.loss or choose_loss(sizes)
         if self.what not in ALPHA:
             raise ValueError(f"the loss '{self.what}' is not for a flow")
-        if self.what == "paper" and (sizes.code not in ("variational", "autoencoder") or sizes.guess):
-            raise ValueError(
-                f"the paper's loss is for a flow on an autoencoder's code, not on '{sizes.code}'"
-            )
+        if sizes.code == "autoencoder":
+            raise ValueError("models of earlier versions are used, but learn no more: begin a new training")
+        if self.what == "paper" and (sizes.code != "variational" or sizes.guess):
+            raise ValueError(f"the paper's loss is for an autoencoder's code, not '{sizes.code}'")
         self.alpha = ALPHA[self.what] if settings.alpha is None else settings.alpha
         self.third = THIRD[self.what] if settings.third is None else settings.third
         self.length = settings.frames
-        if self.what == "finished" and sizes.code in ("variational", "autoencoder"):
+        if self.what == "finished" and sizes.code == "variational":
             for part in (net.encode, net.decode):
                 part.requires_grad_(False)
 
@@ -224,7 +224,7 @@ class FlowObjective(Objective):
 
     def _standard(self, code: Tensor) -> Tensor:
         """Return codes as the flow sees them."""
-        if self.sizes.code not in ("variational", "autoencoder"):
+        if self.sizes.code != "variational":
             return code
         return (code - self.net.code.mean) / self.net.code.deviation
 

@@ -129,6 +129,11 @@ def corpus(takes: Any, sizes: Any) -> TrainingCorpus:
     return TrainingCorpus(takes, *scales_of(takes), *edges_of(sizes))
 
 
+def test_a_model_of_an_earlier_version_learns_no_more() -> None:
+    with pytest.raises(ValueError, match="begin a new training"):
+        objective_of(net_of(FlowSizes(code="autoencoder", dims=7)), TrainingSettings())
+
+
 def test_crops_lie_within_takes_and_reach_both_ends(takes: Any) -> None:
     sizes = tiny("flow-vae")
     own = corpus(takes, sizes)
