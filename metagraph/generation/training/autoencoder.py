@@ -50,7 +50,7 @@ def set_components(net: FlowNet, rows: Array) -> None:
         last.bias.copy_(mean)
 
 
-def tune_autoencoder(net: FlowNet, rows: Array, steps: int, chance: torch.Generator) -> None:
+def train_autoencoder(net: FlowNet, rows: Array, steps: int, chance: torch.Generator) -> None:
     """Learn the autoencoder by itself: how wrong draws from its Gaussian are decoded, as by noise of EXACT,
     and how far the Gaussians are from a normal one. rows: `[N, span X]`.
     """

@@ -18,7 +18,7 @@ from metagraph.generation import chunks, vae
 from metagraph.generation.networks import Control, CvaeSizes, MatchingSizes, Sizes, Weights
 from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, TrainingSettings
-from metagraph.generation.training.autoencoder import set_components, tune_autoencoder
+from metagraph.generation.training.autoencoder import set_components, train_autoencoder
 from metagraph.generation.training.data import TrainingCorpus, take_stretches
 from metagraph.generation.training.flow_net import CvaeNet, FlowNet
 from metagraph.generation.training.matching_net import MatchingNet
@@ -149,7 +149,7 @@ class FlowObjective(Objective):
             with torch.enable_grad():
                 for part in (net.encode, net.decode):
                     part.requires_grad_(True)
-                tune_autoencoder(net, rows, self.settings.tuned, chance)
+                train_autoencoder(net, rows, self.settings.tuned, chance)
                 for part in (net.encode, net.decode):
                     part.requires_grad_(False)
             with torch.no_grad():

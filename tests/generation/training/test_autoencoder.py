@@ -14,7 +14,7 @@ from metagraph.generation.networks import Control, FlowSizes  # noqa: E402
 from metagraph.generation.training.autoencoder import (  # noqa: E402
     compute_evidence_loss,
     set_components,
-    tune_autoencoder,
+    train_autoencoder,
 )
 from metagraph.generation.training.nets import net_of  # noqa: E402
 
@@ -47,7 +47,7 @@ def test_tuned_it_tells_more_and_keeps_its_dimensions() -> None:
     told = torch.from_numpy(data)
     losses = []
     for steps in (0, 300):
-        tune_autoencoder(net, data, steps, torch.Generator().manual_seed(1))
+        train_autoencoder(net, data, steps, torch.Generator().manual_seed(1))
         with torch.no_grad():
             losses.append(float(compute_evidence_loss(net, told, torch.Generator().manual_seed(2))))
     with torch.no_grad():
