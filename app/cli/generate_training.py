@@ -49,8 +49,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--loss",
-        choices=("paper", "whitened", "finished"),
-        help="the loss of a flow model (default: the one that suits the model)",
+        choices=("paper", "finished"),
+        help="'paper' trains a flow-vae as it was published, and adds nothing (default: the loss that "
+        "suits the model)",
     )
     parser.add_argument(
         "--mirror",
@@ -64,10 +65,9 @@ def add_training_arguments(parser: ArgumentParser, kind: str) -> None:
     parser.add_argument("--model", choices=KINDS, default=kind, help=f"what is trained (default: {kind})")
     parser.add_argument(
         "--size",
-        choices=("small", "tokens", "paper"),
+        choices=("small", "paper"),
         default="small",
-        help="'tokens' is a small flow-vae on pieces of 160 ms, like matching; 'paper' trains for "
-        "hundreds of processor hours (default: small)",
+        help="'paper' trains for hundreds of processor hours (default: small)",
     )
     parser.add_argument("--two-tracks", action="store_true", help="hear the two voices separately")
     parser.add_argument("--threads", type=int, default=0, help="processor threads to use (default: all)")
@@ -192,7 +192,7 @@ def _begin(options: Namespace) -> None:
         options.model,
         options.size,
         tracks,
-        settings=settings_for(options.loss),
+        settings=settings_for(options.loss, options.model),
         seed=options.seed,
         **_limits(options),
     )
@@ -365,12 +365,14 @@ def choose_changes(names: list[str] | None) -> list[Any]:
 
 def _train_one(options: Namespace, rig: Any, tracks: int, job: AblationJob) -> None:
     """Train one model of an ablation, or continue a training that was cut short."""
+    from msgspec.structs import replace
+
     from metagraph.errors import FileError
     from metagraph.generation.train_plan import (
-        TrainingSettings,
         folder_of,
         plan_of,
         read_training_plan,
+        settings_for,
         write_plan,
         write_training,
     )
@@ -386,7 +388,7 @@ def _train_one(options: Namespace, rig: Any, tracks: int, job: AblationJob) -> N
         options.size,
         tracks,
         job.sizes,
-        settings=TrainingSettings(**job.settings),
+        settings=replace(settings_for(job.settings.get("loss"), job.kind), **job.settings),
         seed=job.seed,
         minutes=0.0,
         seconds=job.seconds,

@@ -113,7 +113,7 @@ class FlowDrawing:
 
     def __init__(self, weights: Layers, sizes: FlowSizes, dtype: Any = np.float32) -> None:
         self.half, self._count = sizes.dims // 2, sizes.dims - sizes.dims // 2
-        own = self.half + sizes.control.of_past(sizes.pose)
+        own = self.half + sizes.control.of_past(sizes.told)
         self._steps = []
         for k in reversed(range(sizes.steps)):
             step = f"flow.steps.{k}"

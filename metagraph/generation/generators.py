@@ -60,26 +60,30 @@ class Generator(ABC):
 
 
 class FlowGenerator(Generator):
-    """The Flow-VAE, and MoGlow. lookahead: frames ahead that are known, 0..ahead. first: the pose `[X]`
-    before, standardised.
+    """The Flow-VAE, and MoGlow. lookahead: frames ahead that are known, 0..ahead, at least those of the
+    piece that is made. first: the pose `[X]` before, standardised.
     """
 
     def __init__(
         self, w: Weights, sizes: FlowSizes, first: Array, temperature: float, lookahead: int | None
     ) -> None:
         control = sizes.control
-        self._hears(control, lookahead)
+        self._hears(control, None if lookahead is None else max(lookahead, sizes.span - 1))
         self.made, self.temperature = sizes.span, np.float32(temperature)
         self.flow, self.decoder, self.noise = FlowDrawing(w, sizes), vae.Decoder(w, sizes), Noise(sizes.dims)
         self.hearing = EncoderHearing(w, control, self.needed, self.flow)
-        self.past = np.repeat(first[None].astype(np.float32), control.past, 0)
+        self.guess = vae.Guess(w) if sizes.guess else None
+        held = first[None].astype(np.float32)
+        if sizes.guess:
+            held = vae.encode_spans(w, sizes, np.tile(held, sizes.span)).astype(np.float32)
+        self.past = np.repeat(held, control.past, 0)  # codes where there is a guess, else poses
         self.summary: list[Dense] = []  # what is known of the past poses
         if control.kind == "encoder" and control.past:
             self.summary = [Dense.named(w, "past.0"), Dense.named(w, "past.2")]
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
         told = self.hearing.of(frame, heard)
-        past = self.past.reshape(-1)
+        before = past = self.past.reshape(-1)
         for n, layer in enumerate(self.summary):
             past = layer.one(np.maximum(past, 0, out=past) if n else past)
         z = self.noise.of(seed, take, frame) * self.temperature
@@ -88,8 +92,11 @@ class FlowGenerator(Generator):
             if not isfinite(code @ code):  # a flow that ran away begins again
                 code[:] = 0
                 self.flow.reset()
+        if self.guess is not None:
+            code = _near(self.guess.one(before, code))
+            self.past = np.concatenate([self.past, code[None]])[-len(self.past) :]
         poses = _near(self.decoder.one(code)).reshape(self.made, -1)
-        if len(self.past):
+        if self.guess is None and len(self.past):
             self.past = np.concatenate([self.past, poses])[-len(self.past) :]
         return poses
 

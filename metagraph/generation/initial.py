@@ -11,8 +11,8 @@ from metagraph.generation.networks import MatchingSizes, Sizes, Weights, shapes_
 
 def initial(sizes: Sizes, seed: int = 1) -> Weights:
     """Return weights to begin with, float32: torch's own ranges (uniform within 1 / sqrt(inputs)), rotations
-    as the flow's matrices, zero where a layer should begin by doing nothing. What is computed from the data
-    (means, deviations, bases, actnorm) leaves it as it is.
+    as the flow's matrices, zero where a layer should begin by doing nothing, as a guess does. What is
+    computed from the data (means, deviations, bases, actnorm) leaves it as it is.
     """
     chance = np.random.default_rng(seed)
     out: Weights = {}
@@ -23,12 +23,12 @@ def initial(sizes: Sizes, seed: int = 1) -> Weights:
             continue
         if last == "p":
             out.update(_rotation(name[: -len("p")], shape[0], chance))
+        elif last in ("basis", "spread"):
+            out[name] = np.eye(*shape, dtype=np.float32)
         elif last in ("mean", "bias_hh_l0", "logs") or ".actnorm." in name or _silent(name):
             out[name] = np.zeros(shape, np.float32)
         elif last == "deviation":
             out[name] = np.ones(shape, np.float32)
-        elif last == "basis":
-            out[name] = np.eye(*shape, dtype=np.float32)
         elif last in ("place", "no_past", "no_sound"):
             out[name] = (0.02 * chance.standard_normal(shape)).astype(np.float32)
         else:
@@ -48,7 +48,8 @@ def _silent(name: str) -> bool:
     """Whether a layer begins at zero: the couplings' outputs, the transformer's modulations and its
     result.
     """
-    return (name.startswith("flow.") and ".out." in name) or ".modulation." in name or "final.out" in name
+    flow = name.startswith("flow.") and ".out." in name
+    return flow or ".modulation." in name or "final.out" in name or name.startswith("guess.")
 
 
 def _rotation(prefix: str, dims: int, chance: np.random.Generator) -> Weights:

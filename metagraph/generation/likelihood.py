@@ -23,19 +23,31 @@ def contexts(
     """Return what enters a flow at each step of time `[T // span, C]`. poses: `[T, X]`, standardised, those
     before the first are the mean pose; features: `[T, audio + 4]`, not standardised.
     """
+    return _contexts(model, sizes, poses, features, lookahead)[0]
+
+
+def _contexts(
+    model: Model, sizes: FlowSizes, poses: Array, features: Array, lookahead: int | None
+) -> tuple[Array, Array]:
+    """Return the contexts, and what is told of the past `[T // span, past, X or D]`."""
     control = sizes.control
     heard = model.heard(with_edges(features, control.before, control.ahead))
     if lookahead is None or lookahead >= control.ahead:
         told = encode_all(model.weights, control, heard)
     else:
-        told = encode_window(model.weights, control, list_windows(heard, control.frames), max(0, lookahead))
+        known = max(lookahead, sizes.span - 1)  # as `generators.FlowGenerator` waits for
+        told = encode_window(model.weights, control, list_windows(heard, control.frames), known)
     count = len(poses) // sizes.span
     told = told[: count * sizes.span : sizes.span]
     if not control.past:
-        return told
-    padded = np.concatenate([np.zeros((control.past, poses.shape[1]), poses.dtype), poses])
-    before = list_windows(padded, control.past)[: count * sizes.span : sizes.span]
-    return np.concatenate([encode_past(model.weights, control, before), told], -1)
+        return told, np.zeros((count, 0, sizes.told), poses.dtype)
+    padded = np.concatenate([np.zeros((sizes.before, poses.shape[1]), poses.dtype), poses])
+    if sizes.guess:
+        codes = vae.encode_spans(model.weights, sizes, vae.list_spans(padded, sizes.span))
+        before = list_windows(codes, control.past)[:count]
+    else:
+        before = list_windows(padded, control.past)[: count * sizes.span : sizes.span]
+    return np.concatenate([encode_past(model.weights, control, before), told], -1), before
 
 
 def noise_of(
@@ -52,6 +64,11 @@ def noise_of(
         raise ValueError(f"{len(poses)} poses cannot go with {len(features)} frames of sound")
     standard = model.poses.apply(poses)
     codes = vae.encode_spans(model.weights, sizes, vae.list_spans(standard, sizes.span))
-    context = contexts(model, sizes, standard, features, lookahead)
+    context, before = _contexts(model, sizes, standard, features, lookahead)
+    spread = 0.0
+    if sizes.guess:
+        guess = vae.Guess(model.weights)
+        codes, spread = guess.find_lacked(codes, before.reshape(len(before), -1)), guess.log_spread
     z, logs, _ = FlowWeights(model.weights, sizes).forward(codes, context)
+    logs = logs - spread
     return z, np.asarray(logs - 0.5 * (z * z + np.log(2 * np.pi)).sum(-1))

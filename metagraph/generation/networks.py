@@ -34,12 +34,22 @@ encoded at once, else each window by itself (`encoder.EncoderHearing`), which co
 
 **flow-vae, moglow** (`FlowSizes`). x is a frame, or `span` frames in a row, flat. Its code h `[D]`:
 
-    autoencoder   `encode.0`, ReLU, `encode.2`; back `decode.0`, ReLU, `decode.2`. The flow sees
-                  (h - code.mean) / code.deviation; with the paper's loss these are 0 and 1.
+    variational   `encode.0`, ReLU, `encode.2` gives D means, then D logarithms of variances, of a Gaussian;
+                  back `decode.0`, ReLU, `decode.2`. In training decoder and flow get a draw from that
+                  Gaussian, else its mean. The flow sees (h - code.mean) / code.deviation; with the paper's
+                  loss these are 0 and 1.
+    autoencoder   the same without the variances: models of earlier versions.
     pca           h = (x - code.mean) @ code.basis^T / code.deviation; basis `[D, X span]`, rows orthonormal.
     none          h = x: MoGlow.
 
-`flow.steps.k`, k = 0 first on the way from h to z (normalising direction):
+With `guess` the past is the codes before, not the poses: `control.past` of them, oldest first, flat (before
+a take those of the pose that it goes on from). A linear guess, by least squares over the takes, comes first:
+the flow is on e, with h = guess.weight p + guess.bias + S e, p the past codes, flat, and S the lower triangle
+of guess.spread. So e has mean 0 and covariance 1 before anything is learned, whatever the flow then makes of
+it, and what is drawn moves as fast and stays as near as the takes do, up to what a linear guess can tell.
+ln p(h) has - sum ln |diag S| more. Without `guess`, e = h.
+
+`flow.steps.k`, k = 0 first on the way from e to z (normalising direction):
 
     actnorm   z <- (z + bias) * exp(logs)
     linear    z <- W z, W = p @ (strictly lower + 1) @ (strictly upper + diag(sign * exp(log_s)));
@@ -47,7 +57,7 @@ encoded at once, else each window by itself (`encoder.EncoderHearing`), which co
     coupling  a, b = z[: D // 2], z[D // 2 :];  u = out(lstm([a, context])): the first D - D // 2 of u shift,
               the others scale;  b <- (b + shift) * (sigmoid(scale + 2) + 1e-6)
 
-ln p(h) = ln N(z; 0, 1) + sum over steps of (sum logs + sum log_s + sum ln(sigmoid(scale + 2) + 1e-6)).
+ln p(e) = ln N(z; 0, 1) + sum over steps of (sum logs + sum log_s + sum ln(sigmoid(scale + 2) + 1e-6)).
 `out` begins at zero. The LSTMs' state begins at 0 for each training sequence AND for the draw that the third
 term of the paper's loss makes; it runs on while sampling. With `span` > 1 a step of time is `span` frames:
 its control is that of its first frame, the past poses are the frames before that.
@@ -100,7 +110,8 @@ _Some = Annotated[int, Meta(ge=0, le=256)]
 
 
 class Control(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How a network hears. audio: numbers of audio a frame. past: poses before. before, ahead: frames of
+    """How a network hears. audio: numbers of audio a frame. past: poses (of a flow with a guess: codes)
+    before. before, ahead: frames of
     audio and activity before and after. width: of the encoder's layers, and of its two results. dilations:
     of its convolutions of width 3; with kind `encoder` their sum is `before + ahead` over 2.
     """
@@ -143,26 +154,39 @@ class Control(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag="flow", tag_field="net"):
     """A flow, with or without an autoencoder. pose: numbers a frame. code: what the flow is on. between:
     units of the autoencoder's inner layers. dims: numbers of a code. steps: K. units, layers: of each LSTM.
-    span: frames of one step of time.
+    span: frames of one step of time. guess: whether the flow is on what a linear guess from past codes lacks.
     """
 
     pose: _Count = 78
     control: Control = Control()
-    code: Literal["autoencoder", "pca", "none"] = "autoencoder"
+    code: Literal["variational", "autoencoder", "pca", "none"] = "variational"
     between: _Count = 105
     dims: Annotated[int, Meta(ge=1, le=2048)] = 32
     steps: Annotated[int, Meta(ge=1, le=64)] = 6
     units: _Count = 96
     layers: Annotated[int, Meta(ge=1, le=8)] = 1
     span: Annotated[int, Meta(ge=1, le=16)] = 1
+    guess: bool = False
 
     def __post_init__(self) -> None:
+        if self.guess and not self.control.past:
+            raise ValueError("without past codes there is nothing to guess from")
         if self.code == "none" and self.dims != self.pose * self.span:
             raise ValueError(
                 f"a flow on poses themselves is on {self.pose * self.span} numbers, not on {self.dims}"
             )
         if self.code == "pca" and self.dims > self.pose * self.span:
             raise ValueError(f"{self.pose * self.span} numbers have no {self.dims} components")
+
+    @property
+    def told(self) -> int:
+        """Numbers of each of the past poses, or codes, that the network is told."""
+        return self.dims if self.guess else self.pose
+
+    @property
+    def before(self) -> int:
+        """Frames before the first one that the past takes."""
+        return self.control.past * (self.span if self.guess else 1)
 
 
 class CvaeSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag="cvae", tag_field="net"):
@@ -225,21 +249,15 @@ class MatchingSizes(
 
 Sizes = FlowSizes | CvaeSizes | MatchingSizes
 Kind = Literal["flow-vae", "moglow", "cvae", "matching"]
-Size = Literal["small", "tokens", "paper"]
+Size = Literal["small", "paper"]
 
 
-def sizes_of(kind: Kind, size: Size = "small", pose: int = 78, audio: int = 27) -> Sizes:
+def sizes_of(
+    kind: Kind, size: Size = "small", pose: int = 78, audio: int = 27, as_published: bool = False
+) -> Sizes:
     """Return the sizes of a model. pose: numbers a frame (6 a joint). audio: numbers of audio a frame.
-    `tokens` is a Flow-VAE whose code are the pieces of motion that matching has. Raises ValueError for
-    another of that size.
+    as_published: a small Flow-VAE of single frames, without a guess, as the paper's is built.
     """
-    if size == "tokens":
-        if kind != "flow-vae":
-            raise ValueError(f"the size 'tokens' is of a flow-vae; a {kind} is small, or as in the paper")
-        dims = min(48, 4 * pose)
-        return FlowSizes(
-            pose=pose, control=Control(audio=audio), code="pca", dims=dims, steps=6, units=128, span=4
-        )
     if kind == "matching":
         return MatchingSizes(pose=pose, audio=audio, dims=min(48, 4 * pose), around=1)
     if kind == "cvae":
@@ -256,7 +274,11 @@ def sizes_of(kind: Kind, size: Size = "small", pose: int = 78, audio: int = 27) 
         return FlowSizes(
             pose=pose, control=Control(kind="window", audio=audio), dims=35, steps=8, units=400, layers=2
         )
-    return FlowSizes(pose=pose, control=Control(audio=audio), dims=24, steps=4, units=64)
+    if as_published:
+        return FlowSizes(pose=pose, control=Control(audio=audio), dims=24, steps=4, units=64)
+    far = Control(audio=audio, past=2, ahead=35, dilations=(1, 2, 4, 8, 5))
+    dims = min(48, 8 * pose)
+    return FlowSizes(pose=pose, control=far, between=128, dims=dims, steps=4, units=96, span=16, guess=True)
 
 
 def shapes_of(sizes: Sizes) -> Shapes:
@@ -301,12 +323,12 @@ def _convolutions(inputs: int, width: int, dilations: tuple[int, ...]) -> Shapes
     return out
 
 
-def _control(control: Control, pose: int) -> Shapes:
+def _control(control: Control, told: int) -> Shapes:
     if control.kind == "window":
         return {}
     out = _convolutions(control.inputs + 1, control.width, control.dilations)
     if control.past:
-        out |= linear_shapes("past.0", control.past * pose, control.width)
+        out |= linear_shapes("past.0", control.past * told, control.width)
         out |= linear_shapes("past.2", control.width, control.width)
     return out
 
@@ -314,20 +336,23 @@ def _control(control: Control, pose: int) -> Shapes:
 def _flow(s: FlowSizes) -> Shapes:
     whole = s.pose * s.span
     out: Shapes = {}
-    if s.code == "autoencoder":
-        out |= linear_shapes("encode.0", whole, s.between) | linear_shapes("encode.2", s.between, s.dims)
+    if s.code in ("variational", "autoencoder"):
+        given = 2 * s.dims if s.code == "variational" else s.dims
+        out |= linear_shapes("encode.0", whole, s.between) | linear_shapes("encode.2", s.between, given)
         out |= linear_shapes("decode.0", s.dims, s.between) | linear_shapes("decode.2", s.between, whole)
         out |= {"code.mean": (s.dims,), "code.deviation": (s.dims,)}
     elif s.code == "pca":
         out |= {"code.mean": (whole,), "code.basis": (s.dims, whole), "code.deviation": (s.dims,)}
-    out |= _control(s.control, s.pose)
+    if s.guess:
+        out |= linear_shapes("guess", s.control.past * s.dims, s.dims) | {"guess.spread": (s.dims, s.dims)}
+    out |= _control(s.control, s.told)
     half = s.dims // 2
     for k in range(s.steps):
         step = f"flow.steps.{k}"
         out |= {f"{step}.actnorm.bias": (s.dims,), f"{step}.actnorm.logs": (s.dims,)}
         out |= {f"{step}.linear.{m}": (s.dims, s.dims) for m in ("p", "lower", "upper")}
         out |= {f"{step}.linear.{m}": (s.dims,) for m in ("sign", "log_s")}
-        out |= lstm_shapes(f"{step}.lstm", half + s.control.context(s.pose), s.units, s.layers)
+        out |= lstm_shapes(f"{step}.lstm", half + s.control.context(s.told), s.units, s.layers)
         out |= linear_shapes(f"{step}.out", s.units, 2 * (s.dims - half))
     return out
 

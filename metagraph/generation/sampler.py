@@ -23,7 +23,7 @@ from metagraph.generation.features import (
 )
 from metagraph.generation.generators import generator
 from metagraph.generation.loudness import gain_of
-from metagraph.generation.networks import FPS, MatchingSizes
+from metagraph.generation.networks import FPS, FlowSizes, MatchingSizes
 from metagraph.generation.poses import PoseError, decode_poses, encode_rotations
 from metagraph.generation.stored import Model
 from metagraph.graph.conversation.model import Conversation
@@ -80,7 +80,9 @@ class TakeSampler:
                 raise PoseError("the first pose is one of another skeleton")
             before = model.poses.apply(encode_rotations(model.rig, rotations))
         self._made = generator(model.weights, sizes, before, temperature, lookahead, guidance)
-        adaptive = smooth is None and isinstance(sizes, MatchingSizes)
+        adaptive = smooth is None and (
+            isinstance(sizes, MatchingSizes) or (isinstance(sizes, FlowSizes) and sizes.span > 1)
+        )
         self._averaging = Averaging() if adaptive else Averaging(smooth or 0.0, None)
         quiet = silence(model.card.tracks * MELS)
         # Features that are still needed, from `before` frames before the next one made.

@@ -43,7 +43,7 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-FORMAT = 2  # 2: pieces of motion that are given by their neighbours, too
+FORMAT = 3  # 2: pieces of motion that are given by their neighbours, too; 3: Gaussian codes and guesses
 SUFFIX = ".mgmodel"
 MOST = 512 * 2**20  # bytes of all weights
 MOST_TOLD = 16 * 2**20  # bytes of model.json

@@ -24,7 +24,7 @@ from metagraph.generation.poses import PoseRig
 from metagraph.generation.stored import SkeletonCard, TakeCard, skeleton_card
 from metagraph.generation.takes import Take, TakeMarks, TakeSource, check_split
 
-Loss = Literal["paper", "whitened", "finished", "matching", "evidence"]
+Loss = Literal["paper", "finished", "matching", "evidence"]
 PLAN, TAKES, STOP = "plan.json", "takes.npz", "stop"
 FOLDER = ".training"  # what is added to a model's name
 _MARKS = ("peaks", "responses", "hesitations")
@@ -37,18 +37,19 @@ _Weight = Annotated[float, Meta(ge=0)]
 class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How a model is trained.
 
-    loss: `paper`, as in the paper; `whitened`, without its two faults; `finished`, the likelihood alone of
-    a code that is finished beforehand; None: what suits the sizes. batch: crops a step; frames: of a crop.
-    rate, least, warm: of Noam's decay: the largest and smallest rate, steps to the largest. clip: norm of
-    the gradient. past_dropped: share of past frames (of pasts, for tokens) not told; past_noise: deviation
-    of noise on past tokens; sound_dropped: share of chunks that see who speaks and hear nothing. alpha:
-    weight of the likelihood, in bits; third: of the paper's third term; noise: deviation on a whitened code.
-    head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of
-    the running mean of weights, a step. voices: share of crops that sound otherwise (`training.voices`), so
-    that a model does not learn one voice in one room. early, spread: flow matching asks for velocities at
-    t = sigmoid(N(-early, spread)): near the noise it is settled whether something rare happens. turns: crops
-    in which who speaks changes n times weigh (1 + n)^turns; only what is heard decides, so that what is
-    learned of it stays unbiased.
+    loss: `paper`, as in the paper; `finished`, the likelihood alone of a code that is finished beforehand;
+    None: what suits the sizes. batch: crops a step; frames: of a crop. rate, least, warm: of Noam's decay:
+    the largest and smallest rate, steps to the largest. calm: the last share of a training, in which the rate
+    goes down. clip: norm of the gradient, 0 for any. past_dropped: share of past frames (of pasts, for
+    tokens) not told, while a guess knows its codes; past_noise: deviation of noise on past codes and tokens;
+    sound_dropped: share of chunks that see who speaks and hear nothing. alpha: weight of the likelihood, in
+    bits; third: of the paper's third term; noise: deviation on a finished code of poses. tuned: steps of an
+    autoencoder before it is finished. head: weight of the head that predicts speeds. known: share of
+    stretches that know all ahead. kept: of the running mean of weights, a step; 0 for the weights themselves.
+    voices: share of crops that sound otherwise (`training.voices`), so that a model does not learn one voice
+    in one room. early, spread: flow matching asks for velocities at t = sigmoid(N(-early, spread)): near the
+    noise it is settled whether something rare happens. turns: crops in which who speaks changes n times weigh
+    (1 + n)^turns; only what is heard decides, so that what is learned of it stays unbiased.
     """
 
     loss: Loss | None = None
@@ -57,13 +58,15 @@ class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     rate: _Positive = 1.5e-3
     least: _Positive = 1.5e-4
     warm: Annotated[int, Meta(ge=1)] = 600
-    clip: _Positive = 5.0
+    calm: _Share = 0.2
+    clip: _Weight = 5.0
     past_dropped: _Share = 0.4
     past_noise: _Weight = 0.05
     sound_dropped: _Share = 0.1
     alpha: _Weight | None = None
     third: _Weight | None = None
     noise: _Weight = 0.01
+    tuned: Annotated[int, Meta(ge=0)] = 1500
     head: _Weight = 0.5
     known: _Share = 0.7
     kept: _Share = 0.999
@@ -73,10 +76,27 @@ class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     turns: Annotated[float, Meta(ge=0, le=8)] = 1.5
 
 
-def settings_for(loss: Loss | None) -> TrainingSettings:
-    """Return the settings of a training by a loss: by the paper's nothing is done that the paper does not."""
+def settings_for(loss: Loss | None, kind: Kind = "matching") -> TrainingSettings:
+    """Return the settings of a training by a loss: by the paper's nothing is done that the paper does not.
+    kind: what is trained; a Flow-VAE that is not the paper's learns longer crops at a rate that stays high
+    for longer.
+    """
     if loss == "paper":
-        return TrainingSettings(loss=loss, head=0.0, known=1.0, voices=0.0, noise=0.0, turns=0.0)
+        return TrainingSettings(
+            loss=loss,
+            calm=0.0,
+            clip=0.0,
+            past_noise=0.0,
+            noise=0.0,
+            tuned=0,
+            head=0.0,
+            known=1.0,
+            kept=0.0,
+            voices=0.0,
+            turns=0.0,
+        )
+    if kind == "flow-vae":
+        return TrainingSettings(loss=loss, batch=32, frames=256, rate=2e-3, warm=800, known=0.9)
     return TrainingSettings(loss=loss)
 
 
@@ -123,14 +143,16 @@ def plan_of(
     sizes: Sizes | None = None,
     **options: Any,
 ) -> TrainingPlan:
-    """Return a plan. sizes: those of kind and size unless given. options: further fields of the plan. Raises
-    SplitError if a take held out is learned from.
+    """Return a plan. sizes: those of kind and size unless given; by the paper's loss, as it is published.
+    options: further fields of the plan. Raises SplitError if a take held out is learned from.
     """
     check_split(takes, held)
+    options = {"settings": settings_for(None, kind), **options}
+    published = options["settings"].loss == "paper"
     return TrainingPlan(
         kind=kind,
         size=size,
-        sizes=sizes_of(kind, size, rig.numbers, tracks * MELS) if sizes is None else sizes,
+        sizes=sizes_of(kind, size, rig.numbers, tracks * MELS, published) if sizes is None else sizes,
         tracks=tracks,
         skeleton=skeleton_card(rig),
         takes=tuple(card_of(t) for t in takes),

@@ -1,7 +1,10 @@
-"""From poses to codes and back: the frame's autoencoder, or principal components."""
+"""From poses to codes and back: a variational autoencoder, or principal components; and what comes next of
+codes by a linear guess.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -21,7 +24,7 @@ def encode_spans(w: Layers, sizes: FlowSizes, poses: Array) -> Array:
         return poses
     if sizes.code == "pca":
         return np.asarray((poses - w["code.mean"]) @ w["code.basis"].T / w["code.deviation"])
-    code = apply_linear(w, "encode.2", relu(apply_linear(w, "encode.0", poses)))
+    code = apply_linear(w, "encode.2", relu(apply_linear(w, "encode.0", poses)))[..., : sizes.dims]
     return np.asarray((code - w["code.mean"]) / w["code.deviation"])
 
 
@@ -42,7 +45,7 @@ class Decoder:
         self._layers: list[Dense] = []
         if sizes.code == "pca":
             self._layers = [Dense(w["code.deviation"][:, None] * w["code.basis"], w["code.mean"])]
-        elif sizes.code == "autoencoder":
+        elif sizes.code != "none":
             first = w["decode.0.weight"].T
             inner = Dense(w["code.deviation"][:, None] * first, w["decode.0.bias"] + w["code.mean"] @ first)
             self._layers = [inner, Dense.named(w, "decode.2")]
@@ -52,6 +55,70 @@ class Decoder:
         for n, layer in enumerate(self._layers):
             code = layer.one(np.maximum(code, 0, out=code) if n else code)
         return code
+
+
+class Guess:
+    """What comes next by a linear guess from past codes, and what it lacks."""
+
+    def __init__(self, w: Layers, dtype: Any = np.float32) -> None:
+        spread = np.tril(w["guess.spread"]).astype(np.float64)
+        self._next = Dense.named(w, "guess")
+        self._lacked = Dense(spread.T, np.zeros(len(spread)), dtype)
+        self._weight, self._bias = w["guess.weight"].T, w["guess.bias"]
+        self._inverse = np.linalg.inv(spread).T.astype(dtype)
+        self.log_spread = float(np.log(np.abs(np.diag(spread))).sum())
+
+    def one(self, past: Array, lacked: Array) -> Array:
+        """Return the next code `[D]`, which lasts until the next call. past: `[past D]`; lacked: `[D]`, as
+        the flow gives it.
+        """
+        code = self._next.one(past)
+        code += self._lacked.one(lacked)
+        return code
+
+    def find_lacked(self, codes: Array, past: Array) -> Array:
+        """Return what the guess lacks `[..., D]` of codes `[..., D]`. past: `[..., past D]`."""
+        return np.asarray((codes - past @ self._weight - self._bias) @ self._inverse)
+
+
+def fit_guess(takes: Iterable[Array], past: int, ridge: float) -> Weights:
+    """Return the guess by least squares, float32. takes: codes `[n, D]` in a row; past: how many a guess
+    goes on from; ridge: deviation of the noise that each of them counts as having, without which a guess
+    would trust what is lost. Raises ValueError if they are too few.
+    """
+    told, wanted = [], []
+    for codes in takes:
+        if len(codes) > past:
+            told.append(join_past(codes, past))
+            wanted.append(codes[past:])
+    count = sum(map(len, wanted))
+    if not count or count <= past * wanted[0].shape[1]:
+        raise ValueError(f"{count} stretches are too few for a guess from {past} codes: give more takes")
+    x, y = np.concatenate(told).astype(np.float64), np.concatenate(wanted).astype(np.float64)
+    mean_x, mean_y = x.mean(0), y.mean(0)
+    x, y = x - mean_x, y - mean_y
+    weight = np.linalg.solve(x.T @ x + ridge**2 * len(x) * np.eye(x.shape[1]), x.T @ y)
+    lacked = y - x @ weight
+    spread = np.linalg.cholesky(lacked.T @ lacked / len(y) + FLOOR * np.eye(y.shape[1]))
+    parts = {"weight": weight.T, "bias": mean_y - mean_x @ weight, "spread": spread}
+    return {f"guess.{name}": part.astype(np.float32) for name, part in parts.items()}
+
+
+def join_past(codes: Array, past: int) -> Array:
+    """Return the codes before each of `[n, D]` but the first `past`, flat, oldest first: `[n - past, past
+    D]`.
+    """
+    count = len(codes) - past
+    return np.concatenate([codes[k : k + count] for k in range(past)], 1)
+
+
+def count_effective_dimensions(codes: Array) -> float:
+    """Return how many numbers of codes `[n, D]` vary by themselves, 1..D: e to the entropy of the shares
+    that the eigenvalues of their covariance have of its trace.
+    """
+    values = np.linalg.eigvalsh(np.cov(codes, rowvar=False).reshape(codes.shape[1], -1))
+    shares = np.maximum(values, 1e-12) / np.maximum(values, 1e-12).sum()
+    return float(np.exp(-(shares * np.log(shares)).sum()))
 
 
 def list_spans(poses: Array, span: int) -> Array:

@@ -49,9 +49,9 @@ def tiny(kind: Kind, pose: int = 78) -> Sizes:
         return MatchingSizes(
             pose=pose, dims=6, past=2, new=3, ahead=2, hidden=8, layers=2, heads=2, time=4, width=6, around=1
         )
-    code = "none" if kind == "moglow" else "autoencoder"
+    code = "none" if kind == "moglow" else "variational"
     dims = pose if kind == "moglow" else 7
-    return FlowSizes(pose=pose, control=Control(width=8), code=code, between=9, dims=dims, steps=3, units=6)
+    return FlowSizes(pose=pose, control=Control(width=8), code=code, between=16, dims=dims, steps=3, units=6)
 
 
 def shaken(sizes: Sizes, by: float = 0.3, seed: int = 5, dtype: Any = np.float32) -> Weights:

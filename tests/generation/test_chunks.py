@@ -33,7 +33,7 @@ def test_components_of_too_few_rows_are_refused():
     assert np.isfinite(vae.principal(np.ones((9, 4)), 2, "code")["code.deviation"]).all()
 
 
-@pytest.mark.parametrize("code", ["none", "autoencoder"])
+@pytest.mark.parametrize("code", ["none", "autoencoder", "variational"])
 def test_a_codes_mean_and_deviation_come_off_and_on(code):
     dims = 78 if code == "none" else 7
     sizes = FlowSizes(code=code, dims=dims)
@@ -45,12 +45,44 @@ def test_a_codes_mean_and_deviation_come_off_and_on(code):
     )
     assert plain.shape == (4, dims)
     assert back.shape == (4, 78)
-    if code == "autoencoder":
+    if code != "none":
         w["code.mean"], w["code.deviation"] = w["code.mean"] + 3, w["code.deviation"] * 2
         assert np.allclose(vae.encode_spans(w, sizes, poses), (plain - 3) / 2, atol=1e-5)
         assert np.allclose(vae.decode_spans(w, sizes, vae.encode_spans(w, sizes, poses)), back, atol=1e-4)
     one = vae.Decoder(w, sizes).one(vae.encode_spans(w, sizes, poses)[2])
     assert np.allclose(one, back[2], atol=1e-4)
+
+
+def test_what_is_drawn_by_a_guess_varies_and_moves_as_what_it_was_made_of():
+    """Of a process that it can tell whole: two numbers that go round, with a little chance."""
+    turn, codes = np.array([[0.9, -0.3], [0.3, 0.9]]), [np.zeros(2)]
+    for _ in range(20000):
+        codes.append(codes[-1] @ turn.T + CHANCE.standard_normal(2) * (0.1, 0.4))
+    codes = np.array(codes)
+    w = vae.fit_guess([codes[:9000], codes[9000:]], 2, 0.0)
+    guess, past, drawn = vae.Guess(w), np.zeros((2, 2), np.float32), []
+    for _ in range(20000):
+        new = guess.one(past.reshape(-1), CHANCE.standard_normal(2).astype(np.float32)).copy()
+        past = np.stack([past[1], new])
+        drawn.append(new)
+    for make in (np.asarray, lambda rows: np.diff(rows, axis=0)):
+        assert np.allclose(make(drawn).std(0), make(codes).std(0), rtol=0.06)
+    lacked = guess.find_lacked(codes[2:], vae.join_past(codes, 2))
+    assert np.allclose(np.cov(lacked, rowvar=False), np.eye(2), atol=0.02)
+    again = guess.one(codes[:2].reshape(-1).astype(np.float32), lacked[0].astype(np.float32))
+    assert np.abs(again - codes[2]).max() < 1e-5
+
+
+def test_a_guess_from_too_few_codes_is_refused():
+    with pytest.raises(ValueError, match="3 stretches are too few for a guess from 2 codes"):
+        vae.fit_guess([np.zeros((5, 4)), np.zeros((2, 4))], 2, 0.1)
+
+
+def test_copies_of_one_number_are_one_dimension():
+    source = CHANCE.standard_normal((5000, 6))
+    assert vae.count_effective_dimensions(source) > 5.9
+    assert vae.count_effective_dimensions(source[:, :1] * np.arange(1, 7)) < 1.01
+    assert 1.9 < vae.count_effective_dimensions(np.repeat(source[:, :2], 3, 1)) < 2.1
 
 
 def test_frames_are_put_in_rows_and_the_rest_is_left_out():

@@ -26,6 +26,9 @@ WINDOW = Control(kind="window", ahead=20)
         FlowSizes(code="none", dims=78, steps=2, units=6, layers=2, control=WINDOW),
         FlowSizes(code="pca", dims=234, steps=2, units=6, control=Control(width=8, past=2), span=3),
         FlowSizes(code="none", dims=78, steps=2, units=6, control=Control(width=8, past=0)),
+        FlowSizes(
+            code="pca", dims=234, steps=2, units=6, control=Control(width=8, past=2), span=3, guess=True
+        ),
     ],
 )
 def test_a_take_that_was_drawn_gives_its_noise_back(sizes, lookahead):
@@ -44,6 +47,22 @@ def test_a_take_that_was_drawn_gives_its_noise_back(sizes, lookahead):
     assert np.abs(z - expected).max() < 2e-3
     assert np.isfinite(logs).all()
     assert logs.shape == (count,)
+
+
+def test_the_density_of_a_guess_counts_how_far_it_spreads():
+    """Noise that spreads three times as far is as likely at a third of each number's density."""
+    control = Control(width=8, past=2)
+    sizes = FlowSizes(code="pca", dims=5, steps=2, units=6, control=control, span=3, guess=True)
+    model = untrained("flow-vae", 0.02, sizes)
+    still = np.tile(np.array([1.0, 0, 0, 0, 1, 0] * 13), (len(HEARD), 1))
+    near = noise_of(model, still, HEARD)
+    model.weights["guess.spread"] = 3 * model.weights["guess.spread"]
+    model.weights["guess.bias"] = 0 * model.weights["guess.bias"]
+    model.weights["code.mean"] = np.zeros_like(model.weights["code.mean"])
+    wide = noise_of(model, still, HEARD)
+    flow = wide[0].shape[1]
+    assert flow == 5
+    assert abs(wide[1].mean() - near[1].mean() + 5 * np.log(3)) < 1.0
 
 
 def test_what_is_unlike_the_model_is_less_likely():

@@ -65,8 +65,18 @@ def test_using_models_brings_in_no_torch():
     assert done.stdout.strip() == "[]"
 
 
-def test_a_flow_on_pieces_of_motion_has_the_pieces_that_matching_has():
-    flow, matching = sizes_of("flow-vae", "tokens"), sizes_of("matching")
-    assert flow.code == "pca" and flow.span == matching.frames and flow.dims == matching.dims
-    with pytest.raises(ValueError, match="of a flow-vae"):
-        sizes_of("moglow", "tokens")
+def test_a_flow_vae_is_on_pieces_of_motion_unless_it_is_the_published_one():
+    ours, published, whole = (
+        sizes_of("flow-vae"),
+        sizes_of("flow-vae", as_published=True),
+        sizes_of("flow-vae", "paper"),
+    )
+    assert (ours.span, ours.guess, ours.before) == (16, True, 32)
+    assert (published.span, published.guess, published.before) == (1, False, 5)
+    assert (whole.span, whole.guess) == (1, False)
+    assert ours.code == published.code == whole.code == "variational"
+
+
+def test_a_guess_needs_something_to_go_on_from():
+    with pytest.raises(ValueError, match="nothing to guess from"):
+        FlowSizes(control=Control(past=0), guess=True)

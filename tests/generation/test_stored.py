@@ -223,7 +223,7 @@ def test_a_missing_weight_and_a_missing_card_are_told(kept, tmp_path):
 @pytest.mark.parametrize(
     ("field", "value", "why"),
     [
-        ("format", 3, "has format 3, this version reads 2.*newer version"),
+        ("format", 4, "has format 4, this version reads 3.*newer version"),
         ("kind", "gan", "Invalid enum"),
         ("fps", 30.0, "25 are made"),
         ("tracks", 2, "it hears 27 numbers a frame, 54"),

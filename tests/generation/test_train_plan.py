@@ -95,8 +95,17 @@ def test_what_is_missing_or_damaged_is_told(takes: Any, tmp_path: Path) -> None:
 def test_by_the_papers_loss_nothing_is_done_that_the_paper_does_not() -> None:
     own = settings_for("paper")
     assert (own.loss, own.voices, own.head, own.noise, own.known) == ("paper", 0, 0, 0, 1)
+    assert (own.kept, own.clip, own.calm, own.tuned) == (0, 0, 0, 0), "nor means, clipping, an end"
     assert own.past_dropped == 0.4, "the paper's own"
     assert settings_for(None).voices > 0
+
+
+def test_by_the_papers_loss_a_small_model_is_built_as_published(takes: Any, tmp_path: Path) -> None:
+    options = {"kind": "flow-vae", "settings": settings_for("paper", "flow-vae")}
+    own = plan(takes, tmp_path / "a.mgmodel", **options)
+    ours = plan(takes, tmp_path / "a.mgmodel", kind="flow-vae")
+    assert not own.sizes.guess and ours.sizes.guess
+    assert ours.settings == settings_for(None, "flow-vae")
 
 
 def test_a_plan_names_no_file_on_another_computer(takes: Any, tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from torch import Tensor
 
 from metagraph.generation import vae
 from metagraph.generation.features import MELS, STRANGEST, as_heard, with_edges
-from metagraph.generation.networks import ACTIVITY, Control, MatchingSizes, Sizes
+from metagraph.generation.networks import ACTIVITY, Control, FlowSizes, MatchingSizes, Sizes
 from metagraph.generation.poses import NUMBERS, Standardisation
 from metagraph.generation.takes import Take
 from metagraph.generation.training.voices import vary_voices
@@ -118,7 +118,8 @@ def edges_of(sizes: Sizes) -> tuple[int, int]:
     if isinstance(sizes, MatchingSizes):
         return sizes.past * sizes.frames, sizes.ahead * sizes.frames
     control: Control = sizes.control
-    return max(control.before, control.past), control.ahead
+    past = sizes.before if isinstance(sizes, FlowSizes) else control.past
+    return max(control.before, past), control.ahead
 
 
 def take_stretches(corpus: TrainingCorpus, span: int, most: int = 60000) -> Array:

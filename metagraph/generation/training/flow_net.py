@@ -24,7 +24,9 @@ def mask_features(features: Tensor, last: Tensor) -> Tensor:
 
 
 class NetConvolutions(nn.Module):
-    """Convolutions over time. padded: the result is as long as what goes in, zeros around it."""
+    """Convolutions over time. padded: the result is as long as what goes in, zeros around it. They are
+    products of neighbours in a row, which a single processor computes faster than torch's own convolutions.
+    """
 
     def __init__(self, inputs: int, width: int, dilations: tuple[int, ...], padded: bool) -> None:
         super().__init__()
@@ -36,10 +38,13 @@ class NetConvolutions(nn.Module):
 
     def forward(self, frames: Tensor) -> Tensor:
         """Return `[N, T', width]` of `[N, T, inputs]`."""
-        x = functional.relu(self.input(frames.transpose(1, 2)))
+        x = functional.relu(functional.linear(frames, self.input.weight[:, :, 0], self.input.bias))
         for block, d in zip(self.blocks, self.dilations, strict=True):
-            x = (x if self.padded else x[:, :, d:-d]) + functional.relu(block(x))
-        return x.transpose(1, 2)
+            wide = functional.pad(x, (0, 0, d, d)) if self.padded else x
+            near = torch.cat([wide[:, : -2 * d], wide[:, d:-d], wide[:, 2 * d :]], -1)
+            told = functional.linear(near, block.weight.transpose(1, 2).flatten(1), block.bias)
+            x = wide[:, d:-d] + functional.relu(told)
+        return x
 
 
 class ControlNet(nn.Module):
@@ -116,7 +121,7 @@ class FlowStep(nn.Module):
         super().__init__()
         self.first = sizes.dims // 2
         self.actnorm, self.linear = ActNorm(sizes.dims), Invertible(sizes.dims)
-        heard = self.first + sizes.control.context(sizes.pose)
+        heard = self.first + sizes.control.context(sizes.told)
         self.lstm = nn.LSTM(heard, sizes.units, sizes.layers, batch_first=True)
         self.out = nn.Linear(sizes.units, 2 * (sizes.dims - self.first))
 
@@ -186,6 +191,30 @@ class Code(nn.Module):
         self.register_buffer("deviation", torch.ones(dims))
 
 
+class GuessNet(nn.Module):
+    """What comes next by a linear guess: computed of the data, never learned."""
+
+    weight: Tensor
+    bias: Tensor
+    spread: Tensor
+
+    def __init__(self, dims: int, past: int) -> None:
+        super().__init__()
+        self.register_buffer("weight", torch.zeros(dims, past * dims))
+        self.register_buffer("bias", torch.zeros(dims))
+        self.register_buffer("spread", torch.eye(dims))
+
+    def find_lacked(self, codes: Tensor, past: Tensor) -> Tensor:
+        """Return what the guess lacks `[..., D]`. past: `[..., past, D]`."""
+        apart = codes - past.flatten(-2) @ self.weight.T - self.bias
+        solved = torch.linalg.solve_triangular(torch.tril(self.spread), apart.flatten(0, -2).T, upper=False)
+        return solved.T.reshape(apart.shape)
+
+    def complete(self, lacked: Tensor, past: Tensor) -> Tensor:
+        """Return the codes `[..., D]` of which `find_lacked` gives what they lack."""
+        return past.flatten(-2) @ self.weight.T + self.bias + lacked @ torch.tril(self.spread).T
+
+
 class FlowNet(ControlNet):
     """The Flow-VAE, and MoGlow."""
 
@@ -193,29 +222,46 @@ class FlowNet(ControlNet):
         super().__init__()
         self.sizes = sizes
         whole = sizes.pose * sizes.span
-        if sizes.code == "autoencoder":
+        if sizes.code in ("variational", "autoencoder"):
+            given = 2 * sizes.dims if sizes.code == "variational" else sizes.dims
             self.encode = nn.Sequential(
-                nn.Linear(whole, sizes.between), nn.ReLU(), nn.Linear(sizes.between, sizes.dims)
+                nn.Linear(whole, sizes.between), nn.ReLU(), nn.Linear(sizes.between, given)
             )
             self.decode = nn.Sequential(
                 nn.Linear(sizes.dims, sizes.between), nn.ReLU(), nn.Linear(sizes.between, whole)
             )
         if sizes.code != "none":
             self.code = Code(sizes.dims, whole if sizes.code == "pca" else None)
-        self.hears(sizes.control, sizes.pose)
+        if sizes.guess:
+            self.guess = GuessNet(sizes.dims, sizes.control.past)
+        self.hears(sizes.control, sizes.told)
         self.flow = FlowSteps(sizes)
+
+    def gaussian(self, poses: Tensor) -> tuple[Tensor, Tensor]:
+        """Return mean and deviation `[..., D]` of the codes that the encoder gives, before mean and deviation
+        of all are taken off. poses: `[..., span X]`.
+        """
+        mean, spread = self.encode(poses).chunk(2, -1)
+        return mean, torch.exp(0.5 * spread.clamp(-20, 4))
+
+    def draw_code(self, poses: Tensor, chance: torch.Generator) -> Tensor:
+        """Return codes as `to_code` does, drawn where the encoder is a Gaussian."""
+        if self.sizes.code != "variational":
+            return self.to_code(poses)
+        mean, deviation = self.gaussian(poses)
+        return mean + deviation * torch.randn(mean.shape, generator=chance)
 
     def to_code(self, poses: Tensor) -> Tensor:
         """Return codes as they are before mean and deviation are taken off. poses: `[..., span X]`."""
-        if self.sizes.code == "autoencoder":
-            return self.encode(poses)
+        if self.sizes.code in ("variational", "autoencoder"):
+            return self.encode(poses)[..., : self.sizes.dims]
         if self.sizes.code == "pca":
             return (poses - self.code.mean) @ self.code.basis.T / self.code.deviation
         return poses
 
     def from_code(self, code: Tensor) -> Tensor:
         """Return poses `[..., span X]` of codes as `to_code` gives them."""
-        if self.sizes.code == "autoencoder":
+        if self.sizes.code in ("variational", "autoencoder"):
             return self.decode(code)
         if self.sizes.code == "pca":
             return (code * self.code.deviation) @ self.code.basis + self.code.mean

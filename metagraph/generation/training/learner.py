@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 import torch
@@ -16,8 +17,7 @@ from metagraph.generation.training.data import TrainingCorpus, edges_of
 from metagraph.generation.training.losses import objective_of
 from metagraph.generation.training.nets import net_of, weights_of
 
-CALM = 0.2  # the last share of a training, in which the rate goes down to CALMEST of itself
-CALMEST = 0.1
+CALMEST = 0.1  # of the rate is left at the end of a training that calms down
 FUTILE = 50  # steps in a row without a finite gradient
 
 
@@ -52,7 +52,7 @@ class Learner:
         """Return the next step's rate by Noam's decay. share: of the training that is over, 0..1."""
         s, n = self.plan.settings, self.step + 1
         rate = max(s.least if n > s.warm else 0.0, s.rate * min(n / s.warm, (s.warm / n) ** 0.5))
-        left = min(1.0, max(0.0, 1 - share) / CALM)
+        left = min(1.0, max(0.0, 1 - share) / s.calm) if s.calm else 1.0
         return float(rate) * (CALMEST + (1 - CALMEST) * left)
 
     def advance(self, share: float = 0.0) -> dict[str, float]:
@@ -65,7 +65,7 @@ class Learner:
         loss, told = self.objective.loss(self.corpus, self.chance)
         self.optimiser.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]
-        size = torch.nn.utils.clip_grad_norm_(self.named.values(), self.plan.settings.clip)
+        size = torch.nn.utils.clip_grad_norm_(self.named.values(), self.plan.settings.clip or inf)
         self.step += 1
         if not bool(torch.isfinite(size)):  # a step that would spoil all weights is left out
             self._bad += 1

@@ -1,4 +1,4 @@
-"""What is made small: of the paper's model, of it without its two faults, of flow matching, of the CVAE.
+"""What is made small: of the paper's model, of a flow on a finished code, of flow matching, of the CVAE.
 
 Each objective draws its own crops. `loss` returns what is made small and, in words, numbers to show.
 """
@@ -6,24 +6,27 @@ Each objective draws its own crops. `loss` returns what is made small and, in wo
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from math import log
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
 from metagraph.generation import chunks, vae
-from metagraph.generation.networks import Control, CvaeSizes, MatchingSizes, Sizes
+from metagraph.generation.networks import Control, CvaeSizes, MatchingSizes, Sizes, Weights
 from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, TrainingSettings
+from metagraph.generation.training.autoencoder import set_components, train_autoencoder
 from metagraph.generation.training.data import TrainingCorpus, take_stretches
 from metagraph.generation.training.flow_net import CvaeNet, FlowNet
 from metagraph.generation.training.matching_net import MatchingNet
 from metagraph.generation.training.nets import Net, load, weights_of
 
-ALPHA = {"paper": 5e-4, "whitened": 5e-3, "finished": 1.0}  # of the likelihood, in bits
-THIRD = {"paper": 1.0, "whitened": 0.0, "finished": 0.0}
-RUNNING = 0.02  # what a batch adds to the running mean and variance of a code
+ALPHA = {"paper": 5e-4, "finished": 1.0}  # of the likelihood, in bits
+THIRD = {"paper": 1.0, "finished": 0.0}
+SHIFTS = 2  # frames between the beginnings of codes that a guess is made of
 
 
 def choose_loss(sizes: Sizes) -> Loss:
@@ -32,7 +35,7 @@ def choose_loss(sizes: Sizes) -> Loss:
         return "matching"
     if isinstance(sizes, CvaeSizes):
         return "evidence"
-    return "whitened" if sizes.code == "autoencoder" else "finished"
+    return "finished"
 
 
 class Objective(nn.Module, ABC):
@@ -86,8 +89,23 @@ class Objective(nn.Module, ABC):
     length: int
 
 
+@dataclass(frozen=True, eq=False)
+class FlowBatch:
+    """What a flow learns from at once. poses: `[B, n, span X]`; codes: what the flow is on, `[B, n, D]`;
+    context: `[B, n, C]`; heard: `[B, n, width]`; starts: first frames `[B]`.
+    """
+
+    poses: Tensor
+    codes: Tensor
+    context: Tensor
+    heard: Tensor
+    starts: Tensor
+
+
 class FlowObjective(Objective):
-    """The Flow-VAE and MoGlow. what: which loss."""
+    """The Flow-VAE and MoGlow. By the paper's loss all is learned at once; else the code is finished before
+    the flow learns it.
+    """
 
     net: FlowNet
 
@@ -97,93 +115,118 @@ class FlowObjective(Objective):
         super().__init__(net, width, sizes.pose, settings)
         self.sizes = sizes
         self.what: Loss = settings.loss or choose_loss(sizes)
-        if self.what not in ALPHA or (self.what == "finished") != (sizes.code != "autoencoder"):
-            raise ValueError(f"the loss '{self.what}' is not for a flow on code '{sizes.code}'")
+        if self.what not in ALPHA:
+            raise ValueError(f"the loss '{self.what}' is not for a flow")
+        if sizes.code == "autoencoder":
+            raise ValueError("models of earlier versions are used, but learn no more: begin a new training")
+        if self.what == "paper" and (sizes.code != "variational" or sizes.guess):
+            raise ValueError(f"the paper's loss is for an autoencoder's code, not '{sizes.code}'")
         self.alpha = ALPHA[self.what] if settings.alpha is None else settings.alpha
         self.third = THIRD[self.what] if settings.third is None else settings.third
         self.length = settings.frames
-        self.deviation = 1.0  # of the code before it is whitened, to be watched
+        if self.what == "finished" and sizes.code == "variational":
+            for part in (net.encode, net.decode):
+                part.requires_grad_(False)
 
     def begin(self, corpus: TrainingCorpus, chance: torch.Generator) -> None:
         self.resume(corpus)
-        if self.sizes.code == "pca":
-            parts = vae.principal(take_stretches(corpus, self.sizes.span), self.sizes.dims, "code")
-            load(self.net, weights_of(self.net) | parts)
+        if self.what == "finished":
+            self._finish_code(corpus, chance)
         with torch.no_grad():
-            poses, context, _, _ = self._batch(corpus, chance)
-            code = self.net.to_code(poses)
-            if self.what == "whitened":
-                self.net.code.mean.copy_(code.mean((0, 1)))
-                self.net.code.deviation.copy_(code.std((0, 1)) + 1e-6)
-            self.net.flow(self._whitened(code), context, begin=True)
+            batch = self._batch(corpus, chance)
+            self.net.flow(batch.codes, batch.context, begin=True)
+
+    def _finish_code(self, corpus: TrainingCorpus, chance: torch.Generator) -> None:
+        """Make the code from the takes, and the guess of what comes next."""
+        net, sizes = self.net, self.sizes
+        if sizes.code == "none":
+            return
+        rows = take_stretches(corpus, sizes.span)
+        if sizes.code == "pca":
+            load(net, weights_of(net) | vae.principal(rows, sizes.dims, "code"))
+        else:
+            set_components(net, rows)
+            with torch.enable_grad():
+                for part in (net.encode, net.decode):
+                    part.requires_grad_(True)
+                train_autoencoder(net, rows, self.settings.tuned, chance)
+                for part in (net.encode, net.decode):
+                    part.requires_grad_(False)
+            with torch.no_grad():
+                codes = net.draw_code(torch.from_numpy(np.asarray(rows, np.float32)), chance)
+                net.code.mean.copy_(codes.mean(0))
+                net.code.deviation.copy_(codes.std(0) + vae.FLOOR)
+        if sizes.guess:
+            load(net, weights_of(net) | self._fit_guess(corpus, chance))
+
+    def _fit_guess(self, corpus: TrainingCorpus, chance: torch.Generator) -> Weights:
+        codes = []
+        with torch.no_grad():
+            for poses in corpus.each():
+                for shift in range(0, self.sizes.span, SHIFTS):
+                    rows = torch.from_numpy(vae.list_spans(poses[shift:], self.sizes.span))
+                    codes.append(self._standard(self.net.draw_code(rows, chance)).numpy())
+        return vae.fit_guess(codes, self.sizes.control.past, self.settings.past_noise)
 
     def resume(self, corpus: TrainingCorpus) -> None:
         self.length = corpus.longest_crop(self.settings.frames)
         self.length -= self.length % self.sizes.span
 
     def loss(self, corpus: TrainingCorpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
-        poses, context, heard, starts = self._batch(corpus, chance)
-        code = self.net.to_code(poses)
-        self.deviation = float(code.detach().std((0, 1)).mean())
-        clean = code
-        if self.what == "whitened":
-            code = self._renormed(code)
-            clean = code = code + self.settings.noise * torch.randn(code.shape, generator=chance)
-        elif self.what == "finished":
-            code = code + self.settings.noise * torch.randn(code.shape, generator=chance)
-        z, logs = self.net.flow(code, context)
+        batch = self._batch(corpus, chance)
+        z, logs = self.net.flow(batch.codes, batch.context)
         nats = (0.5 * (z * z + log(2 * torch.pi)).sum(-1) - logs).mean()
-        bits = nats / log(2.0)
-        out = self.alpha * bits
+        out = self.alpha * nats / log(2.0)
         told = {"likelihood": -float(nats.detach())}
-        if self.what != "finished":
-            again = functional.mse_loss(self.net.from_code(self._coloured(clean)), poses)
-            told |= {"reconstruction": float(again.detach()), "deviation": self.deviation}
+        if self.what == "paper":
+            again = functional.mse_loss(self.net.from_code(batch.codes), batch.poses)
+            told["reconstruction"] = float(again.detach())
             out = out + again
         else:
-            out = out / code.shape[-1]
-        if self.third:
+            out = out / self.sizes.dims
+        if self.third and self.what == "paper":
             # The states begin at 0 again: those of the sequence's end would tell the draw what comes.
-            drawn, _ = self.net.flow.inverse(torch.randn(code.shape, generator=chance), context)
-            out = out + self.third * functional.mse_loss(self.net.from_code(self._coloured(drawn)), poses)
+            noise = torch.randn(batch.codes.shape, generator=chance)
+            drawn, _ = self.net.flow.inverse(noise, batch.context)
+            out = out + self.third * functional.mse_loss(self.net.from_code(drawn), batch.poses)
         if self.settings.head and self.sizes.control.kind == "encoder":
-            head = self.head(heard, corpus.rows(corpus.speeds, starts, 0, self.length)[:, :: self.sizes.span])
-            out = out + self.settings.head * head * (1.0 if self.what == "finished" else 0.1)
+            speeds = corpus.rows(corpus.speeds, batch.starts, 0, self.length)
+            speeds = speeds.unflatten(1, (-1, self.sizes.span)).mean(2)
+            head = self.head(batch.heard, speeds)
+            out = out + self.settings.head * head
             told["speeds"] = float(head.detach())
         return out, told | {"loss": float(out.detach())}
 
-    def _batch(
-        self, corpus: TrainingCorpus, chance: torch.Generator
-    ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return spans of poses `[B, n, span X]`, the context `[B, n, C]`, what is heard, and the starts."""
-        control, span, batch = self.sizes.control, self.sizes.span, self.settings.batch
+    def _batch(self, corpus: TrainingCorpus, chance: torch.Generator) -> FlowBatch:
+        sizes, settings = self.sizes, self.settings
+        control, span, count = sizes.control, sizes.span, settings.batch
         starts, poses, features, ahead = self.crops(corpus, control, chance)
         heard = self.net.heard(features, ahead, span)
-        past = torch.zeros(batch, self.length // span, 0, 0)
-        if control.past:
-            rows = corpus.rows(corpus.poses, starts, -control.past, self.length - 1)
-            past = rows.unfold(1, control.past, 1).transpose(2, 3)[:, ::span]
-            told = torch.rand(past.shape[:3], generator=chance) >= self.settings.past_dropped
-            past = past * told[..., None]
-        return poses.reshape(batch, -1, span * self.sizes.pose), self.net.context(heard, past), heard, starts
+        poses = poses.reshape(count, -1, span * sizes.pose)
+        if sizes.guess:
+            before = corpus.rows(corpus.poses, starts, -sizes.before, 0).reshape(count, control.past, -1)
+            every = self._standard(self.net.draw_code(torch.cat([before, poses], 1), chance))
+            codes = every[:, control.past :]
+            every = every + settings.past_noise * torch.randn(every.shape, generator=chance)
+            past = every.unfold(1, control.past, 1).transpose(2, 3)[:, :-1]
+            codes = self.net.guess.find_lacked(codes, past)
+        else:
+            codes = self._standard(self.net.draw_code(poses, chance))
+            if self.what == "finished":
+                codes = codes + settings.noise * torch.randn(codes.shape, generator=chance)
+            past = torch.zeros(count, self.length // span, 0, 0)
+            if control.past:
+                rows = corpus.rows(corpus.poses, starts, -control.past, self.length - 1)
+                past = rows.unfold(1, control.past, 1).transpose(2, 3)[:, ::span]
+                known = torch.rand(past.shape[:3], generator=chance) >= settings.past_dropped
+                past = past * known[..., None]
+        return FlowBatch(poses, codes, self.net.context(heard, past), heard, starts)
 
-    def _renormed(self, code: Tensor) -> Tensor:
-        """Return a code by its batch's mean and variance, and keep the running ones."""
-        mean, spread = code.mean((0, 1)), code.std((0, 1)) + 1e-6
-        self._now = mean, spread
-        with torch.no_grad():
-            kept = self.net.code
-            kept.mean.lerp_(mean, RUNNING)
-            kept.deviation.lerp_(spread, RUNNING)
-        return (code - mean) / spread
-
-    def _whitened(self, code: Tensor) -> Tensor:
-        if self.what != "whitened":
+    def _standard(self, code: Tensor) -> Tensor:
+        """Return codes as the flow sees them."""
+        if self.sizes.code != "variational":
             return code
         return (code - self.net.code.mean) / self.net.code.deviation
-
-    def _coloured(self, code: Tensor) -> Tensor:
-        return code * self._now[1] + self._now[0] if self.what == "whitened" else code
 
 
 class CvaeObjective(Objective):

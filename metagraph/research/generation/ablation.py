@@ -19,7 +19,16 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.generation.features import BOTH, MELS, NONE, PARTNER, SELF, compute_features
-from metagraph.generation.networks import ACTIVITY, FPS, CvaeSizes, FlowSizes, Kind, MatchingSizes, Sizes
+from metagraph.generation.networks import (
+    ACTIVITY,
+    FPS,
+    CvaeSizes,
+    FlowSizes,
+    Kind,
+    MatchingSizes,
+    Sizes,
+    sizes_of,
+)
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.statistics import (
     DRAWS,
@@ -76,10 +85,13 @@ class Trainer(Protocol):
 
 CHANGES = (
     AblationChange(WHOLE, "nothing changed"),
-    AblationChange("paper's loss", "the loss as in the paper, with both of its faults", {"loss": "paper"}),
     AblationChange(
-        "no third term", "the paper's loss without its third term", {"loss": "paper", "third": 0.0}
+        "paper's loss", "the model and its loss as in the paper, nothing added", {"loss": "paper"}
     ),
+    AblationChange("no third term", "the same without its third term", {"loss": "paper", "third": 0.0}),
+    AblationChange("no guess", "no linear guess of the next code: the flow is told the poses before"),
+    AblationChange("frame by frame", "codes of single frames instead of pieces of motion"),
+    AblationChange("not tuned", "the code is of principal components alone", {"tuned": 0}),
     AblationChange(
         "one step",
         "a flow of a single step: the nearest to a Gaussian code that the same network can be, with the same "
@@ -107,30 +119,49 @@ NAMES = tuple(c.name for c in CHANGES)
 def choose_sizes(change: AblationChange, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
     """Return what is trained, None if the change says nothing about such a model."""
     name = change.name
-    if name in ("paper's loss", "no third term"):
-        return (kind, sizes) if isinstance(sizes, FlowSizes) and sizes.code == "autoencoder" else None
+    if name in ("no guidance", "any moment", "apart"):
+        return _of_matching(name, kind, sizes)
+    if name in ("paper's loss", "no third term", "no guess", "frame by frame", "not tuned"):
+        return _of_flow_vae(name, kind, sizes)
     if name == "one step":
         return (kind, changed(sizes, steps=1)) if isinstance(sizes, FlowSizes) else None
     if name == "no vae":
         if not isinstance(sizes, FlowSizes) or sizes.code == "none":
             return None
-        return "moglow", changed(sizes, code="none", dims=sizes.pose * sizes.span)
+        alone = {"code": "none", "dims": sizes.pose, "span": 1, "guess": False}
+        return "moglow", changed(sizes, **alone)
     if name == "no past":
         if isinstance(sizes, MatchingSizes):  # its tokens go on from each other; nothing else joins them
             return None
-        return None if isinstance(sizes, CvaeSizes) else (kind, _control(sizes, past=0))
-    if name in ("no guidance", "any moment"):
-        return (kind, sizes) if isinstance(sizes, MatchingSizes) else None
-    if name == "apart":
-        return (kind, changed(sizes, around=0)) if isinstance(sizes, MatchingSizes) and sizes.around else None
+        return None if isinstance(sizes, CvaeSizes) else (kind, _control(changed(sizes, guess=False), past=0))
     if name == "past told":
-        return None if isinstance(sizes, CvaeSizes) else (kind, sizes)
+        knows = isinstance(sizes, CvaeSizes) or (isinstance(sizes, FlowSizes) and sizes.guess)
+        return None if knows else (kind, sizes)
     if name == "no ahead":
         if isinstance(sizes, MatchingSizes):  # a chunk hears itself
             return None
         control = sizes.control
         return kind, _control(sizes, before=control.before + control.ahead, ahead=0)
     return kind, sizes
+
+
+def _of_matching(name: str, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
+    if not isinstance(sizes, MatchingSizes) or (name == "apart" and not sizes.around):
+        return None
+    return kind, changed(sizes, around=0) if name == "apart" else sizes
+
+
+def _of_flow_vae(name: str, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
+    if not isinstance(sizes, FlowSizes) or sizes.code != "variational":
+        return None
+    if name in ("paper's loss", "no third term"):
+        published = sizes_of("flow-vae", "small", sizes.pose, sizes.control.audio, as_published=True)
+        return kind, published if sizes.guess else sizes
+    if not sizes.guess:
+        return (kind, sizes) if name == "not tuned" else None
+    if name == "frame by frame":
+        return kind, changed(sizes, span=1)
+    return kind, changed(sizes, guess=False) if name == "no guess" else sizes
 
 
 def _control(sizes: FlowSizes | CvaeSizes, **new: int) -> FlowSizes | CvaeSizes:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import msgspec
 import numpy as np
 import pytest
 
@@ -100,12 +99,11 @@ def test_takes_shorter_than_a_crop_are_learned_from(takes: Any) -> None:
 def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
     _, performed = drive(conversation(10.0), 0, sample)
     one, other = take(10.0, 1, bake(Evaluator(performed, sample), sample, 10.0, 25.0)), take(10.0, 2)
-    sizes = msgspec.structs.replace(sizes_of("flow-vae"), code="autoencoder", dims=24, span=1)
+    sizes = sizes_of("flow-vae", as_published=True)
     assert isinstance(sizes, FlowSizes)
-    settings = TrainingSettings(loss="whitened", batch=8, frames=64, warm=30, rate=4e-3, kept=0.9, head=0.0)
+    settings = TrainingSettings(loss="finished", batch=8, frames=64, warm=30, head=0.0, tuned=400)
     own = Learner(plan((one,), (other,), sizes=sizes, settings=settings, kind="flow-vae"), [one])
-    for n in range(250):
-        own.advance(n / 250)
+    own.advance()
     weights, standard = own.weights(), own.poses.apply(one.poses)
     again = vae.decode_spans(weights, sizes, vae.encode_spans(weights, sizes, standard))
     apart = landmarks_of(rig(), own.poses.undo(again)) - landmarks_of(rig(), one.poses)

@@ -59,6 +59,10 @@ def _frames(net: FlowNet | CvaeNet, model: Model, told: Any, seed: int, lookahea
     heard = net.heard(heard, ahead)
     span = sizes.span if isinstance(sizes, FlowSizes) else 1
     past = torch.zeros(1, 1, max(1, control.past), sizes.pose)
+    guessed = isinstance(net, FlowNet) and net.sizes.guess
+    if isinstance(net, FlowNet) and guessed:
+        held = net.to_code(torch.zeros(1, 1, 1, span * sizes.pose)) / net.code.deviation
+        past = held.expand(1, 1, control.past, -1)
     out: list[Any] = []
     state: Any = None
     for t in range(0, len(told), span):
@@ -66,12 +70,16 @@ def _frames(net: FlowNet | CvaeNet, model: Model, told: Any, seed: int, lookahea
         context = net.context(heard[:, t : t + 1], past)
         if isinstance(net, FlowNet):
             code, state = net.flow.inverse(z, context, state)
+            if guessed:
+                code = net.guess.complete(code, past).clamp(-FURTHEST, FURTHEST)
+                past = torch.cat([past, code[:, :, None]], 2)[:, :, -control.past :]
             poses = net.from_code(code * net.code.deviation if net.sizes.code != "none" else code)
         else:
             hidden, state = net.decoder(torch.cat([z, context], -1), state)
             poses = net.decoder_out(hidden)
         poses = poses.clamp(-FURTHEST, FURTHEST).reshape(1, 1, span, -1)
-        past = torch.cat([past, poses], 2)[:, :, -max(1, control.past) :]
+        if not guessed:
+            past = torch.cat([past, poses], 2)[:, :, -max(1, control.past) :]
         out.append(poses[0, 0])
     return torch.cat(out).numpy()[: len(told)]
 
@@ -140,7 +148,8 @@ def odd(kind: Kind) -> Sizes:
         far = Control(kind="window", ahead=20)
         return FlowSizes(control=far, code="none", dims=78, steps=2, units=5, layers=2)
     if kind == "flow-vae":
-        return FlowSizes(control=Control(width=8), code="pca", dims=7, steps=2, units=6, span=4)
+        control = Control(width=8, past=2)
+        return FlowSizes(control=control, between=20, dims=7, steps=2, units=6, span=4, guess=True)
     return MatchingSizes(dims=5, past=1, new=2, ahead=0, hidden=12, heads=3, layers=1, time=6, width=5)
 
 
