@@ -126,7 +126,7 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
     assert "Dropped: responses" in other.words() and "repeats within 3 s" in other.words()
 
 
-@pytest.mark.parametrize(("exact", "search"), [(True, "find_best_path"), (False, "greedy")])
+@pytest.mark.parametrize(("exact", "search"), [(True, "find_best_path"), (False, "search_greedily")])
 def test_where_speech_does_not_constrain_nothing_is_said_of_it(
     sample: Project, monkeypatch: pytest.MonkeyPatch, exact: bool, search: str
 ) -> None:
