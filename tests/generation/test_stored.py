@@ -145,13 +145,13 @@ class _Trap:
     [
         (pickle.dumps(_Trap()), "another size|no array"),
         (_npy(np.array([_Trap()], object)), "another size|16 or 32 bits"),
-        (_npy(np.zeros((7, 9))), "64, not numbers of 16 or 32 bits|another size"),
-        (_npy(np.zeros((9, 7), np.float32)), r"is \(9, 7\), expected \(7, 9\)"),
-        (_npy(np.zeros((7, 9), np.float32, order="F")), "expected|holds"),
-        (_npy(np.full((7, 9), np.inf, np.float32)), "not a number"),
-        (_npy(np.zeros((7, 9), ">f4")), "not numbers of 16 or 32 bits"),
-        (_npy(np.zeros((7, 9), np.int32)), "not numbers of 16 or 32 bits"),
-        (_npy(np.zeros((7, 9), np.float32))[:-8], "more or fewer"),
+        (_npy(np.zeros((14, 16))), "64, not numbers of 16 or 32 bits|another size"),
+        (_npy(np.zeros((16, 14), np.float32)), r"is \(16, 14\), expected \(14, 16\)"),
+        (_npy(np.zeros((14, 16), np.float32, order="F")), "expected|holds"),
+        (_npy(np.full((14, 16), np.inf, np.float32)), "not a number"),
+        (_npy(np.zeros((14, 16), ">f4")), "not numbers of 16 or 32 bits"),
+        (_npy(np.zeros((14, 16), np.int32)), "not numbers of 16 or 32 bits"),
+        (_npy(np.zeros((14, 16), np.float32))[:-8], "more or fewer"),
         (b"\x93NUMPY\x01\x00\xff\xff" + b"(" * 200 + b"\0" * 200, "no array|another size"),
         (b"", "another size"),
     ],
@@ -166,7 +166,7 @@ def test_what_is_no_array_of_numbers_is_refused(kept, tmp_path, monkeypatch, con
 
 def test_pickled_objects_are_never_made(kept, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    array = np.empty((7, 9), object)
+    array = np.empty((14, 16), object)
     array.fill(_Trap())
     content = _npy(array)
     path = _changed(kept, tmp_path / "p.mgmodel", {"weights/encode.2.weight.npy": content[:1000]})
@@ -177,7 +177,7 @@ def test_pickled_objects_are_never_made(kept, tmp_path, monkeypatch):
 
 def test_a_huge_shape_takes_no_memory(kept, tmp_path):
     head = str({"descr": "<f4", "fortran_order": False, "shape": (1 << 40,)}).encode().ljust(118) + b"\n"
-    huge = b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head + bytes(7 * 9 * 4)
+    huge = b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head + bytes(14 * 16 * 4)
     with pytest.raises(FileError, match=r"\(1099511627776,\), expected"):
         read_model(_changed(kept, tmp_path / "huge.mgmodel", {"weights/encode.2.weight.npy": huge}))
 
