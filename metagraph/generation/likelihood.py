@@ -29,7 +29,7 @@ def contexts(
 def _contexts(
     model: Model, sizes: FlowSizes, poses: Array, features: Array, lookahead: int | None
 ) -> tuple[Array, Array]:
-    """Return the contexts, and what is told of the past `[T // span, past, X or D]`."""
+    """Return the contexts, and what the flow knows of the past `[T // span, past, X or D]`."""
     control = sizes.control
     heard = model.heard(with_edges(features, control.before, control.ahead))
     if lookahead is None or lookahead >= control.ahead:

@@ -180,7 +180,7 @@ class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, t
 
     @property
     def told(self) -> int:
-        """Numbers of each of the past poses, or codes, that the network is told."""
+        """Numbers of each of the past poses, or codes, that the network gets."""
         return self.dims if self.guess else self.pose
 
     @property
