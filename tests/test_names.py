@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 from metagraph.engines.translation.listing import LISTING
@@ -65,6 +66,7 @@ SHORT = {
 NOUNS = set(Path(__file__).with_name("noun_names.txt").read_text(encoding="utf-8").split())
 
 
+@cache
 def defined() -> dict[str, list[tuple[Path, ast.stmt]]]:
     """Return by name where public functions and classes are defined."""
     out = defaultdict(list)

@@ -220,6 +220,7 @@ def test_a_newer_version_a_cut_glb_and_a_missing_file_are_told(tmp_path: Path) -
         Character(tmp_path / "nothing.json")
 
 
+@pytest.mark.nightly
 def test_the_readme_is_true(sample_export: Path, tmp_path: Path) -> None:
     blocks = re.findall(r"```python\n(.*?)```", README.read_text(), re.S)
     shutil.copytree(sample_export, tmp_path / "game")

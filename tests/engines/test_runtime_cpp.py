@@ -53,6 +53,7 @@ def test_the_runtime_agrees_with_the_sample_project(probe: Path, sample_export: 
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
+@pytest.mark.nightly
 def test_what_is_left_of_a_division_is_what_python_leaves_at_exact_multiples_too(probe: Path) -> None:
     rng = np.random.default_rng(3)
     parts = rng.choice([0.1, 0.31, 1.55, 2.0 / 3.0, 1.0 / 60.0, -0.7], 400).tolist()

@@ -183,6 +183,7 @@ def test_two_exports_are_equal_to_the_byte(sample: Project, made: ExportedFiles,
     assert all(a.read_bytes() == b.read_bytes() for a, b in zip(again.files, made.files, strict=True))
 
 
+@pytest.mark.nightly
 def test_there_is_a_clip_for_each_state_and_one_of_the_base_pose_and_they_are_small(
     sample: Project, made: ExportedFiles
 ) -> None:

@@ -188,6 +188,7 @@ README = (HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" 
 FIVE_LINES = README.partition("```html\n")[2].partition("```")[0]
 
 
+@pytest.mark.nightly
 def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path, browse: Browser) -> None:
     """Offline, from files of the export alone; then in another page three of them."""
     shutil.copytree(page, tmp_path / "page")

@@ -184,6 +184,7 @@ def test_the_programs_own_model_is_offered_where_it_is_installed(shown, model, t
     assert dialog.use.model.currentText() == "tiny", "what was just trained is chosen"
 
 
+@pytest.mark.nightly
 def test_takes_are_listed_with_what_is_wrong_with_them_in_words(shown, tmp_path):
     drive, dialog = shown
     dialog.tabs.setCurrentWidget(dialog.learn)

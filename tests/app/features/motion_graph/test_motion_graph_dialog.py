@@ -95,6 +95,7 @@ def test_a_take_that_is_unchecked_is_left_out(shown):
     drive.wait(lambda: len(dialog.takes.ids) == before - 1)
 
 
+@pytest.mark.nightly
 def test_the_table_is_filled(shown):
     drive, dialog = shown
     press(dialog.count_button)

@@ -41,6 +41,7 @@ def test_people_are_told_apart_and_sites_are_a_random_effect(folders: list[Path]
     assert columns[1] == "site" and rows[7][:2] == ("Bonn-P02", "Bonn")
 
 
+@pytest.mark.nightly
 def test_what_does_not_belong_together_is_refused_or_told(folders: list[Path], tmp_path: Path) -> None:
     with pytest.raises(FileError, match="'Ulm'"):
         merge_site_data([folders[0], folders[0]])
