@@ -100,6 +100,9 @@ def install_extra(name: str) -> None:
                     why=" ".join(said).strip() or f"pip ended with {code}",
                 )
             )
+        for part in fresh.iterdir():
+            if (ROOT / part.name).exists():  # the bundle has it, and its own comes first
+                shutil.rmtree(part) if part.is_dir() else part.unlink()
         target = place / name
         shutil.rmtree(target, ignore_errors=True)
         fresh.replace(target)

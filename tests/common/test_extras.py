@@ -46,6 +46,13 @@ def test_an_extra_comes_into_a_folder_of_its_own_and_can_be_imported(bundle, mon
     assert not extras.remove_extra("lab"), "it is gone"
 
 
+def test_what_the_bundle_has_is_not_kept_twice(bundle, monkeypatch):
+    (extras.ROOT / "numpy.py").touch()
+    monkeypatch.setattr(extras, "run_program", pip(files=("numpy.py", "numba.py")))
+    extras.install_extra("lab")
+    assert [path.name for path in (extras.find_extras_folder() / "lab").iterdir()] == ["numba.py"]
+
+
 def test_what_fails_half_way_leaves_what_was_there(bundle, monkeypatch):
     monkeypatch.setattr(extras, "run_program", pip())
     extras.install_extra("lab")
