@@ -41,7 +41,7 @@ def shown(drive, sample):
     plays = drive.performance
     drive.wait(lambda: plays.shown.project is drive.document.project)
     drive.wait(lambda: len(plays.shown.plan.layers["arms"].cues) > 3)
-    drive.wait(lambda: drive.preview.scene().actors)  # its figure is read on a thread
+    drive.wait(lambda: bool(drive.preview.scene().actors))  # its figure is read on a thread
     return drive
 
 
