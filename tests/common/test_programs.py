@@ -48,6 +48,8 @@ UNPICKLES = {  # from a process that this program started
 def _sources() -> Iterator[tuple[str, ast.Module]]:
     for folder in PRODUCT:
         for path in sorted((ROOT / folder).rglob("*.py")):
+            if path.is_relative_to(ROOT / "app" / "bundle"):
+                continue  # whoever makes a bundle runs it; nothing of the program imports it
             yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
 
 
