@@ -306,6 +306,8 @@ class Subject(QObject):
 
     def compare(self, on: bool) -> None:
         """Show the actions as they were when they were selected, or marked, or as they are."""
+        if on and self.idents and self.session.transport.show == "clip":
+            self.session.show_context(self.idents[0])  # a clip alone is the same before and after
         self._compare(self.marked if on else None)
         self.changed.emit()
 

@@ -250,7 +250,9 @@ def test_the_key_a_shows_them_as_they_were_and_again_as_they_are(editor):
     project = editor.document.project
     pull(editor, at(editor, 1.5), at(editor, 1.9), ALT)
     editor.view.setFocus()
+    assert editor.session.transport.show == "clip", "the handle is watched on the clip alone"
     editor.key(Qt.Key.Key_A, widget=editor.view)
+    assert editor.session.transport.show == "context", "where the two differ"
     assert editor.performance.before is project and editor.panel.compare.text() == "A: before"
     editor.wait(lambda: editor.performance.shown.beside is not None)
     character = editor.shell.panel("character")
