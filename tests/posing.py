@@ -22,13 +22,13 @@ from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.manual_playback import ManualEvaluator, ManualPlan
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import compute_morphs_at, compute_pose_at
+from metagraph.playback.player import compute_morphs_at, pose_at
 from metagraph.playback.posing.composer import ComposerRig
 from metagraph.playback.posing.overlay import Overlay
 from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import Weight
 
-__all__ = ["compute_morphs_at", "compute_pose_at"]
+__all__ = ["compute_morphs_at", "pose_at"]
 
 KEPT = 8
 _kept: list[Evaluator] = []

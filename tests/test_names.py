@@ -60,6 +60,8 @@ SHORT = {
     "phrase",  # marks a text in the domain, as `tr` does in the window; it is a verb, too
     "plural_phrase",  # marks a text that depends on a count, as `tr_plural` does in the window
     "slerp",  # spherical linear interpolation
+    "pose_at",  # programs that others wrote ask for poses by this name, and every runtime has it as poseAt
+    "state_folder",  # as they find what is kept beside a project
     "slerp_exact",  # slerp for keys that are far apart
 }
 # Names of functions that were nouns before this was checked. The list only gets shorter.

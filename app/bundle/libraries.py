@@ -28,10 +28,8 @@ NAMED = ("libportaudio.so.2",)  # loaded by name, when something is said
 _LINE = re.compile(r"^\s*(\S+) => (/\S+)", re.MULTILINE)
 
 
-def add_libraries(folder: Path, site: Path) -> list[str]:
-    """Copy what the binaries of a bundle need of the system into its `python/lib`, where Qt and Python look;
-    return the names of what was copied.
-    """
+def add_libraries(folder: Path, site: Path) -> None:
+    """Copy what a bundle's binaries need of the system into its `python/lib`, where Qt and Python look."""
     to = folder / "python" / "lib"
     wanted = dict(_needed(folder))
     for name in NAMED:
@@ -49,7 +47,6 @@ def add_libraries(folder: Path, site: Path) -> list[str]:
             _search(binary, to)
     for plugin in (site / "PySide6" / "Qt").rglob("*.so*"):
         _search(plugin, to, site / "PySide6" / "Qt" / "lib")
-    return sorted(path.name for path in to.glob("*.so*"))
 
 
 def find_library(name: str) -> Path | None:

@@ -46,7 +46,7 @@ class Autosave:
         """Return the user's own folder, for journals of projects that were never saved, and those whose own
         place is gone; it also has the list of all journals.
         """
-        return make_state_folder()
+        return state_folder()
 
     @property
     def register(self) -> JournalRegister:
@@ -193,7 +193,7 @@ def find_journal_shelter(folder: Path) -> Path:
     return folder / "journals"
 
 
-def make_state_folder() -> Path:
+def state_folder() -> Path:
     """Return the folder for the recent projects and the journals of unsaved work; it is made if necessary."""
     folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
     with suppress(OSError):  # the code that writes there reports it

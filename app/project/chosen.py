@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from metagraph.common.budgets import LIST_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
@@ -19,7 +19,7 @@ MOST = 20_000  # entries; the oldest are removed first
 
 
 def _place() -> Path:
-    return make_state_folder() / "chosen_sounds.json"
+    return state_folder() / "chosen_sounds.json"
 
 
 def _kept() -> list[str]:

@@ -15,7 +15,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.autosave import Autosave
-from app.project.autosave import make_state_folder as make_state_folder  # where others look for it
+from app.project.autosave import state_folder as state_folder  # where others look for it
 from app.project.change_words import describe_edit
 from app.project.opening import with_motion_of
 from app.project.version_count import count_kept_versions

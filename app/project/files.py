@@ -14,7 +14,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.faults import is_foreseen
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from app.project.document import Document, ProjectPast
 from app.project.jobs import WORDS, Jobs, WindowJob
 from app.project.keeper import Keeper
@@ -381,7 +381,7 @@ class Files(QObject):
     def recent(self) -> list[Path]:
         """Return the recent projects that still exist, the latest first."""
         try:
-            names = json.loads((make_state_folder() / "recent.json").read_text(encoding="utf-8"))
+            names = json.loads((state_folder() / "recent.json").read_text(encoding="utf-8"))
             return [Path(n) for n in names if isinstance(n, str) and Path(n).is_file()]
         except (OSError, ValueError, TypeError):
             return []
@@ -389,9 +389,7 @@ class Files(QObject):
     def _remember(self, path: Path) -> None:
         names = [str(path.resolve()), *(str(p) for p in self.recent() if p != path.resolve())]
         try:
-            write_atomically(
-                make_state_folder() / "recent.json", json.dumps(names[:RECENT]).encode(), PRIVATE
-            )
+            write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode(), PRIVATE)
         except (FileError, OSError):
             self.told.emit(tr("The list of recent projects could not be saved."))
 

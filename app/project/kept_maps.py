@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from metagraph.formats.atomic import write_atomically
 from metagraph.motion.joint_map import JointMap, RetargetError
 
@@ -13,7 +13,7 @@ MOST = 100  # maps; the oldest are removed first
 
 
 def _place() -> Path:
-    return make_state_folder() / "joint_maps.json"
+    return state_folder() / "joint_maps.json"
 
 
 def read_joint_maps() -> dict[tuple[str, str], JointMap]:

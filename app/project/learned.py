@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QLockFile, QObject, QSettings, Signal
 
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from app.project.document import Document
 from app.translation import tr
 from metagraph.errors import FileError
@@ -155,7 +155,7 @@ class Learned(QObject):
         """Return what a file holds now; nothing if it cannot be read, which is reported once."""
         from metagraph.suggest.memory import Memory, MemoryFormatError
 
-        path = make_state_folder() / file
+        path = state_folder() / file
         try:
             state = path.stat()
         except OSError:
@@ -189,7 +189,7 @@ class Learned(QObject):
 
     def _change(self, file: str, change: Callable[[Memory], Memory]) -> None:
         """Read a file, change its content, and write it, while no other window does."""
-        path = make_state_folder() / file
+        path = state_folder() / file
         lock = QLockFile(str(path.with_suffix(".lock")))
         if not lock.tryLock(LOCK_WAIT):
             self.failed.emit(

@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.project.autosave import find_journal_shelter, make_state_folder
+from app.project.autosave import find_journal_shelter, state_folder
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import sweep
@@ -46,7 +46,7 @@ class FoundJournal:
 
 def register() -> JournalRegister:
     """Return the list of all journals of this user."""
-    return JournalRegister(find_journal_shelter(make_state_folder()))
+    return JournalRegister(find_journal_shelter(state_folder()))
 
 
 def look_beside(path: Path, owner: Owner) -> FoundJournal:
@@ -66,7 +66,7 @@ def list_untitled_journals() -> list[Path]:
     """Return the journals that opening a project would not offer, the latest last: of projects never saved
     whose windows are gone, and of those whose file is missing.
     """
-    folder = make_state_folder()
+    folder = state_folder()
     homeless = []
     for journal in find_all_journals(register(), ()):
         project = project_of(journal)
@@ -79,19 +79,19 @@ def list_known_journals(recent: Sequence[Path]) -> list[Path]:
     """Return every journal whose window is gone, the latest last. The folders of the `recent` projects are
     searched, too.
     """
-    found = [*find_journals_in(make_state_folder(), UNTITLED), *list_damaged_untitled()]
+    found = [*find_journals_in(state_folder(), UNTITLED), *list_damaged_untitled()]
     return order_journals(
         [*found, *find_all_journals(register(), dict.fromkeys(path.parent for path in recent))]
     )
 
 
 def list_damaged_untitled() -> list[Path]:
-    return find_journals_in(make_state_folder(), rf"({UNTITLED}){re.escape(DAMAGED)}")
+    return find_journals_in(state_folder(), rf"({UNTITLED}){re.escape(DAMAGED)}")
 
 
 def read_untitled(journals: Sequence[Path]) -> FoundJournal:
     """Read journals, each with the project file it belongs to."""
-    sweep(make_state_folder())
+    sweep(state_folder())
     return FoundJournal(None, None, *_read([(journal, project_of(journal)) for journal in journals]))
 
 

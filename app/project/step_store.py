@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
@@ -56,4 +56,4 @@ def find_steps(digest: str | None, project: Project, folder: Path) -> tuple[Undo
 
 
 def _folder() -> Path:
-    return make_state_folder() / "steps"
+    return state_folder() / "steps"

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 
 from app import faults
 from app.look.theme import strengthen
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from app.project.document import Document
 from app.translation import tr, tr_error
 from metagraph.errors import FileError
@@ -30,7 +30,7 @@ CHILDREN = 5000  # ms between two checks for what processes have written
 
 def find_fault_folder() -> Path:
     """Return the folder for reports of crashes."""
-    return make_state_folder() / "faults"
+    return state_folder() / "faults"
 
 
 class FaultTeller(QObject):

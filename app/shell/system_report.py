@@ -8,6 +8,8 @@ import sys
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 
+from PySide6.QtCore import QSettings
+
 from metagraph import __version__
 from metagraph.common.extras import EXTRAS, find_extras_folder, is_bundle, is_installed
 from metagraph.common.programs import ROOT
@@ -27,7 +29,7 @@ def make_system_report() -> dict[str, str]:
         "OpenGL": _describe_opengl(),
         "Sound": _describe_sound(),
         "Caches": str(find_user_folder("caches")),
-        "Settings": str(find_user_folder("data")),
+        "Settings": QSettings("Metagraph", "Metagraph").fileName(),
         "Extras": ", ".join(name for name in EXTRAS if is_installed(name)) or "none",
         "Extras' folder": str(find_extras_folder()) if is_bundle() else "the environment of this Python",
     }

@@ -82,7 +82,6 @@ def _install() -> None:
             install_extra("compiled")
         except ExtraError as error:
             raise CompilerError(f"This needs numba. {error}") from None
-        importlib.invalidate_caches()
         return
     setup = ROOT / "run.py"
     if not setup.exists() or not any(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import shutil
 import sys
@@ -124,6 +125,7 @@ def remove_extra(name: str) -> bool:
 
 def add_extras() -> None:
     """Have Python find the extras that the user installed, after its own packages."""
+    importlib.invalidate_caches()
     place = find_extras_folder()
     for name in EXTRAS if place is not None and place.is_dir() else ():
         folder = str(place / name) if place is not None else ""

@@ -17,7 +17,7 @@ from metagraph.playback.plan import Plan
 _latest: list[Evaluator] = []  # of the latest plan, which is usually the next one, too
 
 
-def compute_pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
+def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
     """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]` xyzw,
     translations `[..., J, 3]` metres.
 
@@ -32,14 +32,14 @@ def compute_morphs_at(
     """Return morph target weights, 0..1, at one time.
 
     `composed` is the pose `[J]` before life, if it differs from the plan's. Raises ValueError as
-    `compute_pose_at` does.
+    `pose_at` does.
     """
     return _evaluator(plan, project).morphs_at(seconds, alive, composed)
 
 
 def compose_layers(plan: Plan, project: Project, times: NDArray[Any]) -> Pose:
     """Return what only the layers compose at `times [N]`, without life, weight and contacts. Raises
-    ValueError as `compute_pose_at` does.
+    ValueError as `pose_at` does.
     """
     return _evaluator(plan, project).layered(np.asarray(times, np.float64))
 

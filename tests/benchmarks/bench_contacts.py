@@ -32,7 +32,7 @@ from metagraph.playback.posing.contacts import (
     solve_pose_with_contacts,
 )
 from metagraph.suggest.find_contacts import find_contacts
-from tests.posing import compute_pose_at, contact_rig
+from tests.posing import contact_rig, pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
@@ -97,12 +97,10 @@ def hour(minutes: float) -> None:
     goals = [find_hand_goals(plan, project, rig, t) for t in times.tolist()]
     for name, touch in ways:
         other = replace(project, touch=touch)
-        parts = [
-            compute_pose_at(plan, other, some) for some in np.array_split(times, max(1, len(times) // 1000))
-        ]
+        parts = [pose_at(plan, other, some) for some in np.array_split(times, max(1, len(times) // 1000))]
         pose = Pose(*(np.concatenate([getattr(p, f) for p in parts]) for f in ("rotations", "translations")))
         said(name, measured(rig, pose, goals, FPS))
-        fine = compute_pose_at(plan, other, np.arange(0, 60, 1 / 120))
+        fine = pose_at(plan, other, np.arange(0, 60, 1 / 120))
         jerks = np.linalg.norm(np.diff(_wrists(project, fine), 2, axis=0), axis=-1) * 120**2
         level, most = np.percentile(jerks, 99.9), jerks.max()
         print(f"  {'':22} wrists' acceleration: 99.9 % {level:.0f} m/s2, most {most:.0f}")
@@ -112,7 +110,7 @@ def hour(minutes: float) -> None:
     for name, touch in ways:
         other = replace(project, touch=touch)
         for what, at, rounds in (("free", free, 200), ("held", held, 200), ("600", times[:600], 5)):
-            spent = cost(partial(compute_pose_at, plan, other, at), rounds)
+            spent = cost(partial(pose_at, plan, other, at), rounds)
             ratio = spent / usual.setdefault(what, spent)
             print(f"  {name:22} hands {what:5} {spent * 1e3:8.2f} ms, {ratio:.2f} times what neither costs")
 

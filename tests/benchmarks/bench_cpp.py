@@ -22,7 +22,7 @@ from metagraph.engines.export import export_project
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
 from metagraph.playback.planner import make_plan
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIMES = ROOT / "metagraph" / "engines" / "runtimes"
@@ -92,7 +92,7 @@ def python(path: Path) -> list[float]:
     for alive in (False, True):
         begun = perf_counter()
         for n in range(0, FRAMES, 10):
-            compute_pose_at(plan, project, n / 60, alive=alive)
+            pose_at(plan, project, n / 60, alive=alive)
         out.append((perf_counter() - begun) / (FRAMES // 10))
     return out
 

@@ -34,7 +34,7 @@ from metagraph.playback.posing.foot_slides import (
     measure_slide_speeds,
 )
 from tests.benchmarks.bench_weight import FPS, SAMPLE, STANDS, Watched, shared_project
-from tests.posing import compute_pose_at, weight_of
+from tests.posing import pose_at, weight_of
 
 SETS = (
     "bandai-namco-1",
@@ -118,7 +118,7 @@ def marks(project: Project, plan: Plan, seconds: float) -> None:
     def places(times: Array) -> Array:
         assert project.skeleton is not None
         parts = np.array_split(times, max(1, len(times) // 1000))
-        return np.concatenate([project.skeleton.globals(compute_pose_at(plan, project, t))[1] for t in parts])
+        return np.concatenate([project.skeleton.globals(pose_at(plan, project, t))[1] for t in parts])
 
     seen = FeetWatch(project, places, seconds, plan).at(range(int(seconds * RATE)))
     shares = ", ".join(f"{state.name.lower()} {(seen.states == state).mean():.1%}" for state in FootState)
@@ -140,7 +140,7 @@ def costs(project: Project, plan: Plan, times: Array) -> None:
             for n, way in enumerate(ways):
                 began = time.perf_counter()
                 for part in np.array_split(times, chunks):
-                    compute_pose_at(plan, way, part if chunks == 1 else float(part[0]))
+                    pose_at(plan, way, part if chunks == 1 else float(part[0]))
                 took[n].append((time.perf_counter() - began) / len(times) * 1e6)
         a, b = (float(np.median(x)) for x in took)
         print(f"  a pose {word}: {a:.0f} us without, {b:.0f} with, {b / a:.2f} times")

@@ -152,7 +152,7 @@ def flood(seconds: float) -> None:
     from metagraph.live.relay import Relay
     from metagraph.live.server import Server
     from metagraph.live.wire import BatchResult, RequestBatch, exchange
-    from tests.posing import compute_pose_at
+    from tests.posing import pose_at
 
     project = open_project(SAMPLE).project
     print(f"{os.cpu_count()} cores; {RATE} requests a second for {seconds:g} s\n")
@@ -168,7 +168,7 @@ def flood(seconds: float) -> None:
             start = time.perf_counter()
             relay.tick(session, start - begin)
             ticks.append(time.perf_counter() - start)
-            compute_pose_at(session.plan, project, start - begin)
+            pose_at(session.plan, project, start - begin)
             if relay.ready is not None and process is None:
                 assert not relay.error, relay.error
                 process, ours = spawn(int(str(relay.ready.websocket).rpartition(":")[2]), listed, seconds)

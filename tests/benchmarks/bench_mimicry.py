@@ -22,7 +22,7 @@ from metagraph.mimicry.keypoint_layouts import KeypointTrack  # noqa: E402
 from metagraph.mimicry.mimic import Mimic  # noqa: E402
 from metagraph.mimicry.performing import mimic_performance  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
-from tests.posing import compute_pose_at  # noqa: E402
+from tests.posing import pose_at  # noqa: E402
 
 FOLDER = ROOT / "sample_clips" / "keypoints"
 
@@ -54,7 +54,7 @@ def main() -> None:
         for name, work in works.items():
             rounds.setdefault(name, []).append(timed(work) / 200)
         rounds.setdefault("pose", []).append(
-            timed(lambda: [compute_pose_at(plan, project, n * 0.3) for n in range(100)]) / 100
+            timed(lambda: [pose_at(plan, project, n * 0.3) for n in range(100)]) / 100
         )
     pose = statistics.median(rounds["pose"])
     print(f"one pose of the character      {pose * 1e3:8.3f} ms")

@@ -31,7 +31,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import hear_asks
 from metagraph.playback.planning.mood import MOODS
 from metagraph.playback.timing.phases import find_phases
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
@@ -60,10 +60,10 @@ def measured(project: Project, seed: int) -> list[float]:
     times = np.arange(0, SECONDS, 1 / FPS)
     skeleton, roles = project.skeleton, anatomy.project_roles(project)
     assert skeleton is not None
-    turned, at = skeleton.globals(compute_pose_at(plan, project, times))
+    turned, at = skeleton.globals(pose_at(plan, project, times))
     arms = plan.layers["arms"]
     resting = replace(plan, layers={**plan.layers, "arms": replace(arms, cues=())})
-    under = skeleton.globals(compute_pose_at(resting, project, times))[1]
+    under = skeleton.globals(pose_at(resting, project, times))[1]
     chest = next(roles[r] for r in ("upper_chest", "chest", "spine") if r in roles)
     hands = [roles[f"{side}_hand"] for side in ("left", "right")]
     seen = at[:, hands] - at[:, [chest]]

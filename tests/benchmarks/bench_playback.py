@@ -26,7 +26,7 @@ from metagraph.playback.life.schedule import Schedule, schedule  # noqa: E402
 from metagraph.playback.life.track import LookAt, Speech, track_of  # noqa: E402
 from metagraph.playback.plan import Plan  # noqa: E402
 from metagraph.playback.planner import extend_plan, make_plan  # noqa: E402
-from tests.posing import compute_pose_at  # noqa: E402
+from tests.posing import pose_at  # noqa: E402
 
 
 def clock(work: Callable[[], object]) -> float:
@@ -67,11 +67,11 @@ def lively(project: Project) -> None:
     whole: list[float] = []
     planned: list[float] = []
     running = make_plan(project, 12.0)
-    compute_pose_at(plan, project, 1.0)
+    pose_at(plan, project, 1.0)
     for n in range(600):
         at, now = 100 + n / 60, n / 60
-        bare.append(clock(lambda at=at: compute_pose_at(plan, project, at, alive=False)))  # type: ignore[misc]
-        whole.append(clock(lambda at=at: compute_pose_at(plan, project, at)))  # type: ignore[misc]
+        bare.append(clock(lambda at=at: pose_at(plan, project, at, alive=False)))  # type: ignore[misc]
+        whole.append(clock(lambda at=at: pose_at(plan, project, at)))  # type: ignore[misc]
         began = time.perf_counter()
         running = replace(
             running, life=schedule(project.life, running.track, {}, 1, 12.0 + now, running.life, now)
@@ -88,7 +88,7 @@ def lively(project: Project) -> None:
     row("what drawing life ahead adds to a tick", planned, f"mean {statistics.mean(planned):.3f}")
     row(
         "one minute at 60 fps, a frame",
-        [clock(lambda: compute_pose_at(plan, project, times)) / 3600 for _ in range(3)],
+        [clock(lambda: pose_at(plan, project, times)) / 3600 for _ in range(3)],
     )
     hour = [clock(lambda: schedule(project.life, track, {}, 1, 3600.0, Schedule(), 0.0)) for _ in range(5)]
     row("an hour of life, drawn at once", hour)
@@ -108,10 +108,10 @@ def one_character(project: Project, plan: Plan) -> None:
     ):
         taken: list[float] = []
         after: list[float] = []
-        compute_pose_at(plan, project, float(times[0]), alive)
+        pose_at(plan, project, float(times[0]), alive)
         for time_ in times.tolist():
             start = time.thread_time_ns()
-            pose = compute_pose_at(plan, project, time_, alive)
+            pose = pose_at(plan, project, time_, alive)
             done = time.thread_time_ns()
             project.skeleton.globals(pose)  # type: ignore[union-attr]
             taken.append((done - start) / 1e3)
@@ -121,7 +121,7 @@ def one_character(project: Project, plan: Plan) -> None:
     minute = np.arange(3600) / 60
     for alive in (False, True):
         start = time.thread_time_ns()
-        compute_pose_at(plan, project, minute, alive)
+        pose_at(plan, project, minute, alive)
         spent = (time.thread_time_ns() - start) / 3.6e6
         row(f"one minute at 60 fps, a frame, {'alive' if alive else 'without life'}", [spent])
 
@@ -156,15 +156,15 @@ def main() -> None:
     )
 
     times = np.random.default_rng(1).uniform(0, 3600, 400)
-    compute_pose_at(hour, sample, times, alive=False)
+    pose_at(hour, sample, times, alive=False)
     row(
         "pose_at without life, one time",
-        [clock(lambda t=t: compute_pose_at(hour, sample, t, alive=False)) for t in times],
+        [clock(lambda t=t: pose_at(hour, sample, t, alive=False)) for t in times],
     )  # type: ignore[misc]
     minute = np.arange(3600) / 60
     row(
         "the same, one minute at 60 fps, a frame",
-        [clock(lambda: compute_pose_at(hour, sample, minute, alive=False)) / 3600 for _ in range(3)],
+        [clock(lambda: pose_at(hour, sample, minute, alive=False)) / 3600 for _ in range(3)],
     )
     one_character(sample, make_plan(sample, 120))
     lively(sample)

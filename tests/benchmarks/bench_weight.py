@@ -32,7 +32,7 @@ from metagraph.playback.posing.foot_slides import (
     measure_clip_speeds,
     measure_slide_speeds,
 )
-from tests.posing import compute_pose_at, weight_of
+from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
@@ -63,7 +63,7 @@ class Watched:
         legs = [[roles[f"{s}_{p}"] for p in ("upper_leg", "lower_leg", "foot")] for s in SIDES]
         parts = []
         for some in np.array_split(times, max(1, len(times) // 1000)):
-            turned, at = skeleton.globals(compute_pose_at(plan, project, some, alive))
+            turned, at = skeleton.globals(pose_at(plan, project, some, alive))
             parts.append(
                 (
                     at[:, roles["hips"]],
@@ -139,7 +139,7 @@ def costs(project: Project, plan: Plan) -> None:
             for n, way in enumerate(ways):
                 began = time.perf_counter()
                 for part in np.array_split(some, chunks):
-                    compute_pose_at(plan, way, part if chunks == 1 else float(part[0]))
+                    pose_at(plan, way, part if chunks == 1 else float(part[0]))
                 took[n].append((time.perf_counter() - began) / len(some) * 1e6)
         a, b = (float(np.median(x)) for x in took)
         print(f"  a pose {word}: {a:.0f} us without, {b:.0f} with, {b / a:.2f} times")

@@ -26,7 +26,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import hear_asks
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 STICK = Path(metagraph.__file__).parent / "engines" / "conformance" / "stick" / "stick.json"
 README = Path(metagraph.__file__).parent / "engines" / "runtimes" / "python" / "README.md"
@@ -62,7 +62,7 @@ def test_it_plays_what_a_plan_of_the_same_steps_plays(stick: Project) -> None:
         end = plan.end if plan.end >= now + 18 else now + 20
         if asks or end > plan.end:
             plan = hear_asks(stick, plan, now, asks, end, {}, True)
-        assert np.allclose(pose.rotations, compute_pose_at(plan, stick, now).rotations, atol=1e-6)
+        assert np.allclose(pose.rotations, pose_at(plan, stick, now).rotations, atol=1e-6)
 
 
 @pytest.mark.nightly

@@ -43,7 +43,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import choice, hashing, markov
 from metagraph.playback.posing.layers import ease_blend
 from sample_clips.make.conformance_projects import stick
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 from tests.projects import clip, projects
 from tests.thorough import many
 
@@ -214,7 +214,7 @@ def test_a_plan_of_what_was_read_back_is_the_same_and_looks_the_same(sample: Pro
             (c.action.id, round(c.start, 6)) for c in theirs.layers[layer].cues
         ]
     at = np.linspace(0, 20, 40)
-    a, b = compute_pose_at(ours, sample, at), compute_pose_at(theirs, back, at)
+    a, b = pose_at(ours, sample, at), pose_at(theirs, back, at)
     assert np.abs(np.einsum("...i,...i->...", a.rotations, b.rotations)).min() > 1 - 1e-5
 
 

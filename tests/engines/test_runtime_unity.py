@@ -22,7 +22,7 @@ from metagraph.playback.planning.extend_performance import drop_ended, hear_asks
 from tests.engines.csharp_runtime import RUNTIME, STICK, Host, compiled, mono, needs_mono
 from tests.engines.mutants import PLAYED, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 pytestmark = needs_mono
 
@@ -361,7 +361,7 @@ def test_actions_of_a_clip_that_is_missing_show_their_stance(probe: Probe, tmp_p
     without = replace(project, clips=clips)
     for time, line in zip(times, posed.splitlines(), strict=True):
         rotations, translations = (np.array(x) for x in json.loads(line))
-        pose = compute_pose_at(plan, without, time, alive=False)
+        pose = pose_at(plan, without, time, alive=False)
         assert (
             np.degrees(rotation.measure_angle_between(rotations.reshape(-1, 4), pose.rotations)).max() < 0.05
         )

@@ -35,7 +35,7 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.planner import make_plan
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 HERE = Path(__file__).parent
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
@@ -132,9 +132,9 @@ def test_godot_rests_changes_stance_and_comes_back_from_a_gesture(folder: Path, 
     assert rest["states"] == {m.layer: m.start.name for m in list_machines(sample)}
     assert sample.skeleton is not None
     alone = sample.skeleton.globals(resting(sample, 1.0))[1]
-    preview = sample.skeleton.globals(
-        compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
-    )[1]
+    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[
+        1
+    ]
     for place, joint in enumerate(sample.skeleton.names):
         position = np.array(rest["joints"][joint]["position"])
         assert np.linalg.norm(position - alone[place]) < 1e-4, joint
@@ -323,9 +323,9 @@ def test_godot_4_composes_as_the_contract_does(sample: Project) -> None:
             )
             shifts[n] += pose.translations[n] - base.translations[n]
     got = sample.skeleton.globals(Pose(turns, shifts))[1]
-    preview = sample.skeleton.globals(
-        compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
-    )[1]
+    preview = sample.skeleton.globals(pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False))[
+        1
+    ]
     assert np.abs(got - preview).max() < 1e-4
 
 

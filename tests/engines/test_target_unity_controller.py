@@ -25,7 +25,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.planner import make_plan
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 Array = NDArray[Any]
 MIRROR = {4: np.array([1, -1, -1, 1]), 3: np.array([-1, 1, 1])}
@@ -394,7 +394,7 @@ def test_layers_put_together_as_unity_does_are_the_previews_pose(
     translations = np.stack(
         [shifts.get(name, skeleton.rest_translations[j]) for j, name in enumerate(skeleton.names)]
     )
-    wanted = compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+    wanted = pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
     _, mine = skeleton.globals(replace(wanted, rotations=rotations, translations=translations))
     _, theirs = skeleton.globals(wanted)
     assert np.linalg.norm(mine - theirs, axis=1).max() < 0.003

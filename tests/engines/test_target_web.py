@@ -22,7 +22,7 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import hear_asks
 from tests.browsing import Browser
 from tests.engines.web_tools_kept import kept_web_tools
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parents[1] / "sample_clips"
@@ -60,7 +60,7 @@ def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matche
     assert not errors
     project = read_export(page / "sample.json", resolved=True)
     assert project.skeleton is not None
-    pose = compute_pose_at(hear_asks(project, Plan(SEED, 0.0), 0.0, [], 20.0), project, TIME)
+    pose = pose_at(hear_asks(project, Plan(SEED, 0.0), 0.0, [], 20.0), project, TIME)
     rotations, positions = project.skeleton.globals(pose)
     for place, joint in enumerate(project.skeleton.names):
         assert np.linalg.norm(np.array(joints[joint]) - positions[place]) < 1e-4, joint

@@ -33,7 +33,7 @@ from metagraph.motion import rotation
 from metagraph.playback.bml.reader import read_bml
 from metagraph.playback.planner import make_plan
 from tests.engines.test_export import gltf, khronos
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 from tests.recipes import code_of
 
 HERE = Path(__file__).parent
@@ -283,7 +283,7 @@ def test_playcanvas_rests_as_the_preview_does_changes_stance_and_adds_a_gesture(
     )
     assert sample.skeleton is not None
     _, positions = sample.skeleton.globals(
-        compute_pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
+        pose_at(make_plan(sample, 5.0, idle=False), sample, 1.0, alive=False)
     )
     for place, joint in enumerate(sample.skeleton.names):
         assert np.linalg.norm(np.array(rest["joints"][joint]["position"]) - positions[place]) < 0.003, joint

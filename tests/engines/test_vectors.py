@@ -32,7 +32,7 @@ from metagraph.playback.posing import layers
 from sample_clips.make import conformance
 from sample_clips.make.conformance_projects import sparse
 from tests.engines.mutants import PLAYED, folders_to_try
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 
@@ -127,7 +127,7 @@ def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path)
     back = read_export(export_project(sample, tmp_path).json, resolved=True)
     assert sample.skeleton is not None
     times = np.linspace(0.0, 40.0, 161)
-    poses = [compute_pose_at(make_plan(project, 40.0), project, times) for project in (sample, back)]
+    poses = [pose_at(make_plan(project, 40.0), project, times) for project in (sample, back)]
     (_, ours), (_, theirs) = (sample.skeleton.globals(pose) for pose in poses)
     # Thinned keys are off by as much in each joint of an arm.
     assert np.linalg.norm(ours - theirs, axis=-1).max() < 1.5 * vectors.METRES

@@ -21,7 +21,7 @@ from metagraph.graph.face.takes import find_face_joints
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.playback.planner import make_plan
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 SAMPLES = Path(__file__).parents[2] / "sample_clips"
 HEADER = "Timecode,BlendShapeCount," + ",".join(n[0].upper() + n[1:] for n in ARKIT) + "," + ",".join(TURNS)
@@ -168,7 +168,7 @@ def test_on_a_character_the_face_moves_and_nothing_else(sample: Project, tmp_pat
     )
     assert ahead[0] > 0.2, "to its left"
     plan = make_plan(after, 1.0, [])
-    assert compute_pose_at(plan, after, 0.5).rotations.shape[-2] == len(skeleton)
+    assert pose_at(plan, after, 0.5).rotations.shape[-2] == len(skeleton)
 
 
 def test_it_is_there_again_when_the_project_is_opened(sample: Project, tmp_path: Path) -> None:

@@ -21,6 +21,15 @@ def test_without_torch_it_is_told_what_to_install_and_how_large_it_is(
     assert not list(tmp_path.iterdir())
 
 
+def test_in_a_bundle_the_command_that_installs_torch_there_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(train_process.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(train_process, "is_bundle", lambda: True)
+    with pytest.raises(TrainingFailedError, match="metagraph extras add train"):
+        TrainingProcess(tmp_path / "m.mgmodel")
+
+
 def test_a_training_is_planned_and_begun_without_torch() -> None:
     code = (
         "import sys\n"

@@ -19,7 +19,7 @@ from metagraph.graph.model import Project
 from metagraph.live.live_session import LiveSession
 from metagraph.live.voice_detector import VoiceDetector
 from tests.generation.makers import babble, rig, stance, untrained
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 TICK = 1 / 60
 
@@ -81,7 +81,7 @@ def test_arms_and_head_move_as_the_model_says_and_the_legs_as_the_body_does(sess
     for _ in range(60):
         session.tick(session.now + TICK)
         rotations.append(session.pose(session.now).rotations)
-        plain.append(compute_pose_at(session.plan, sample, session.now).rotations)
+        plain.append(pose_at(session.plan, sample, session.now).rotations)
     apart = np.abs(np.stack(rotations) - np.stack(plain)).max((0, 2))
     parts = np.array(anatomy.project_parts(sample))
     assert apart[parts == "legs"].max() < 1e-6 and apart[parts == "arms"].max() > 0.01
@@ -111,7 +111,7 @@ def test_a_gesture_by_name_wins_and_gives_way_again(session, sample):
         over = session.overlay(session.now)
         shown[session.now] = float(over.arms[0])
         if abs(session.now - (at + until) / 2) < TICK:
-            plan = compute_pose_at(session.plan, sample, session.now).rotations
+            plan = pose_at(session.plan, sample, session.now).rotations
             assert np.allclose(session.pose(session.now).rotations, plan, atol=1e-5)
     assert max(w for t, w in shown.items() if t <= at) == 0.0
     assert min(w for t, w in shown.items() if at + 0.25 < t < until - 0.25) == 1.0

@@ -21,7 +21,7 @@ from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.track import Speech
 from metagraph.synthesis.extending.path import FADE, replay_path
 from tests.live.test_heard_voice import voice
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 from tests.synthesis.talking import talkers, talkers_graph
 
 TICK = 1 / 60
@@ -85,7 +85,7 @@ def test_arms_and_head_move_as_the_takes_and_the_legs_as_the_body_does(session, 
     for _ in range(150):
         session.tick(session.now + TICK)
         rotations.append(session.pose(session.now).rotations)
-        plain.append(compute_pose_at(session.plan, sample, session.now).rotations)
+        plain.append(pose_at(session.plan, sample, session.now).rotations)
     apart = np.abs(np.stack(rotations) - np.stack(plain)).max((0, 2))
     parts = np.array(anatomy.project_parts(sample))
     assert apart[parts == "legs"].max() < 1e-6 and apart[parts == "arms"].max() > 0.1

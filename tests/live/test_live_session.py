@@ -24,7 +24,7 @@ from metagraph.live.tick_work import Out
 from metagraph.playback.planning.cue_shapes import STOPPED
 from metagraph.playback.planning.running_plan import plan_performance
 from tests.live.traffic import mixed, valid
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 from tests.thorough import many
 
 TICK = 1 / 60
@@ -706,7 +706,7 @@ def test_poses_come_at_their_rate_and_are_the_players(session: LiveSession) -> N
         frames += session.tick(session.now + TICK).frames
     assert 38 <= len(frames) <= 42 and frames[0].clients == (1, 2) and not frames[0].binary
     data = msgspec.json.decode(frames[-1].data)
-    pose = compute_pose_at(session.plan, session.project, data["t"])
+    pose = pose_at(session.plan, session.project, data["t"])
     np.testing.assert_allclose(data["rotations"], pose.rotations, atol=2e-4)
     np.testing.assert_allclose(data["root"], pose.translations[0], atol=1e-4)
 
@@ -729,17 +729,17 @@ def test_a_session_performs_again_exactly_as_it_was_played(seed: int, idle: bool
             session.receive(r.randint(1, 2), mixed(r))
         session.tick(n * TICK)
         if n % 171 == 0:
-            shown[session.now] = compute_pose_at(session.plan, project, session.now)
+            shown[session.now] = pose_at(session.plan, project, session.now)
     kept = msgspec.json.decode(msgspec.json.encode(session.performance("again")), type=a.Performance)
     again = plan_performance(project, kept.asks, kept.length + 20, kept.seed, kept.stances, kept.idle)
     for layer in LAYERS:
         live = [c for c in session.plan.layers[layer].cues if c.start <= session.now]
         assert [c for c in again.layers[layer].cues if c.start <= session.now][-len(live) :] == live
     for seconds, pose in shown.items():
-        assert (compute_pose_at(again, project, seconds).rotations == pose.rotations).all(), seconds
-        assert (
-            compute_pose_at(session.plan_at(seconds), project, seconds).rotations == pose.rotations
-        ).all(), seconds
+        assert (pose_at(again, project, seconds).rotations == pose.rotations).all(), seconds
+        assert (pose_at(session.plan_at(seconds), project, seconds).rotations == pose.rotations).all(), (
+            seconds
+        )
 
 
 def test_of_a_session_too_long_to_be_kept_the_beginning_is_and_that_is_said(session: LiveSession) -> None:

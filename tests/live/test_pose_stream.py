@@ -12,7 +12,7 @@ from metagraph.graph.requests import RequestError
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Poses
 from metagraph.live.pose_stream import HEADER, Stream, collect_due_frames, encode_pose_frame
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 
 def test_streams_of_one_rate_get_the_same_bytes_once(sample: Project) -> None:
@@ -38,7 +38,7 @@ def test_joints_come_in_the_order_they_were_named(sample: Project) -> None:
     names = ("Head", "Hips", "Spine")
     stream = Stream.of(Poses(joints=names, format="binary"), sample, 0.0)
     session = LiveSession(sample)
-    pose = compute_pose_at(session.plan, sample, 1.0)
+    pose = pose_at(session.plan, sample, 1.0)
     data = encode_pose_frame(stream, 1.0, pose, None, {})
     numbers = np.frombuffer(data, "<f4", offset=HEADER.size)
     places = [sample.skeleton.names.index(n) for n in names]
@@ -50,7 +50,7 @@ def test_weights_of_morph_targets_come_in_the_order_of_the_greeting(sample: Proj
     stream = Stream.of(Poses(joints=(), format="binary"), sample, 0.0)
     stream.morphs = ("a", "b", "c")
     data = encode_pose_frame(
-        stream, 2.5, compute_pose_at(LiveSession(sample).plan, sample, 1.0), None, {"b": 0.5, "other": 1.0}
+        stream, 2.5, pose_at(LiveSession(sample).plan, sample, 1.0), None, {"b": 0.5, "other": 1.0}
     )
     assert HEADER.unpack_from(data)[1:] == (0, 0, 3, 0, 2.5)
     assert np.frombuffer(data, "<f4", offset=HEADER.size)[3:].tolist() == [0.0, 0.5, 0.0]
@@ -59,7 +59,7 @@ def test_weights_of_morph_targets_come_in_the_order_of_the_greeting(sample: Proj
 def test_weights_are_there_at_rest_too(sample: Project) -> None:
     stream = Stream.of(Poses(joints=()), sample, 0.0)
     stream.morphs = ("a", "b")
-    pose = compute_pose_at(LiveSession(sample).plan, sample, 1.0)
+    pose = pose_at(LiveSession(sample).plan, sample, 1.0)
     assert json.loads(encode_pose_frame(stream, 2.5, pose, None, {"b": 0.5}))["weights"] == {
         "a": 0.0,
         "b": 0.5,

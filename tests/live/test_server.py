@@ -27,7 +27,7 @@ from metagraph.live.osc_bytes import pad_osc
 from metagraph.live.pose_stream import HEADER, MAGIC
 from metagraph.live.server import LiveError, Options, Server, check_live_options, is_loopback
 from metagraph.live.wire import BatchResult, Ready, RequestBatch, exchange
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 FREE = Options(port=0, osc=0)
 
@@ -171,7 +171,7 @@ def test_poses_are_streamed_as_json_and_as_packed_numbers(sample: Project) -> No
             assert (magic, flags, count, morphs) == (MAGIC, 3, joints, len(hello["poses"]["morphs"]))
             numbers = np.frombuffer(data, "<f4", offset=HEADER.size)
             assert len(numbers) == 3 + 4 * joints + 3 * joints + morphs
-            rotations, positions = sample.skeleton.globals(compute_pose_at(session.plan, sample, seconds))  # type: ignore[union-attr]
+            rotations, positions = sample.skeleton.globals(pose_at(session.plan, sample, seconds))  # type: ignore[union-attr]
             np.testing.assert_allclose(numbers[3 : 3 + 4 * joints].reshape(-1, 4), rotations, atol=1e-5)
             np.testing.assert_allclose(
                 numbers[3 + 4 * joints : 3 + 7 * joints].reshape(-1, 3), positions, atol=1e-5
@@ -451,7 +451,7 @@ def test_poses_are_streamed_as_osc_bundles(sample: Project) -> None:
             "/metagraph/joint",
         ]
         assert messages[2].params[0] == "Head" and len(messages[2].params) == 5
-        pose = compute_pose_at(session.plan, sample, messages[0].params[0])
+        pose = pose_at(session.plan, sample, messages[0].params[0])
         head = list(sample.skeleton.names).index("Head")  # type: ignore[union-attr]
         np.testing.assert_allclose(messages[2].params[1:], pose.rotations[head], atol=1e-5)
         osc.send("/metagraph/poses", 0)

@@ -16,7 +16,7 @@ from metagraph.playback.bake import bake
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 
@@ -39,7 +39,7 @@ def test_a_baked_performance_read_back_has_its_joints_where_the_preview_has_them
         write_glb(path, [clip], keys=Keys(quantize=False))
         again = read_gltf_clips(path)[0]
     times = np.arange(clip.frames) / clip.fps
-    _, shown = project.skeleton.globals(compute_pose_at(plan, project, times))
+    _, shown = project.skeleton.globals(pose_at(plan, project, times))
     _, read = again.skeleton.globals(again.poses())
     order = [again.skeleton.index(name) for name in project.skeleton.names]
     offset = read[:, order] - shown

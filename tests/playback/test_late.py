@@ -150,7 +150,7 @@ def test_what_a_model_began_is_left_for_a_stroke(sample: Project) -> None:
 
 
 def test_poses_up_to_now_stay_when_something_is_left_early(sample: Project) -> None:
-    from tests.posing import compute_pose_at
+    from tests.posing import pose_at
 
     plan = hear_asks(sample, Plan(3, 0.0), 0.0, [], 60.0)
     cue = next(c for c in plan.layers["arms"].cues if c.action.kind == "fidget" and c.end - c.start > 2.0)
@@ -158,7 +158,7 @@ def test_poses_up_to_now_stay_when_something_is_left_early(sample: Project) -> N
     after = hear_asks(sample, plan, now, [Gesture(id="a", stroke=now + 1.2, late=0.0)], 60.0)
     assert after.layers["arms"].cues != plan.layers["arms"].cues
     for t in (now - 0.3, now, now + sample.settings.lookahead - 1e-6):
-        a, b = compute_pose_at(plan, sample, t), compute_pose_at(after, sample, t)
+        a, b = pose_at(plan, sample, t), pose_at(after, sample, t)
         assert a.rotations == pytest.approx(b.rotations, abs=1e-6)
 
 

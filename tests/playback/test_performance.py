@@ -19,7 +19,7 @@ from metagraph.playback.planning import sampling
 from metagraph.playback.planning.mood import Mood
 from metagraph.playback.planning.sampling import Performer
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
-from tests.posing import compute_pose_at, rig
+from tests.posing import pose_at, rig
 
 LENGTH = 600.0
 SEEDS = range(1, 11)
@@ -214,7 +214,7 @@ def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(
         )
         ticks = np.unique((moments[:, None] * FPS + np.arange(-6, 7)).astype(int))
         ticks = ticks[ticks >= 0]
-        every = compute_pose_at(plan, sample, ticks / FPS)
+        every = pose_at(plan, sample, ticks / FPS)
         for run in np.split(np.arange(len(ticks)), np.flatnonzero(np.diff(ticks) > 1) + 1):
             if len(run) < 2:
                 continue
@@ -250,9 +250,7 @@ def test_composed_no_joint_is_faster_than_the_clips_of_all_layers_together(
         limit += np.where(below, most, 0)
     fastest = 0.0
     for start in range(0, 120, 30):
-        r, p = skeleton.globals(
-            compute_pose_at(performances[0].plan, sample, np.arange(start, start + 30, 1 / FPS))
-        )
+        r, p = skeleton.globals(pose_at(performances[0].plan, sample, np.arange(start, start + 30, 1 / FPS)))
         v = speeds(r, p)[1]
         assert (v <= limit * 1.05 + 0.01).all()
         fastest = max(fastest, float(v.max()))

@@ -17,7 +17,7 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import LayerPlan, MetaRequest, Plan, Rest
 from metagraph.playback.planner import make_plan
 from metagraph.playback.posing.layers import compute_cue_weight, compute_loop_seconds, ease_blend, keep_to
-from tests.posing import compute_morphs_at, compute_pose_at
+from tests.posing import compute_morphs_at, pose_at
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
 
@@ -63,10 +63,7 @@ def test_a_clip_that_reaches_everything_comes_back_as_it_was(project: Project, t
     plan = shown(project, toy, name)
     [cue] = plan.layers["arms"].cues
     times = np.linspace(cue.start + cue.blend_in, cue.end - cue.blend_out - 1e-9, 40)
-    assert (
-        apart(compute_pose_at(plan, project, times), clip_pose_at(project, cue.action, times - cue.start))
-        < 1e-6
-    )
+    assert apart(pose_at(plan, project, times), clip_pose_at(project, cue.action, times - cue.start)) < 1e-6
 
 
 def test_whatever_the_base_pose_the_clip_comes_back(project: Project, toy: Any) -> None:
@@ -75,10 +72,7 @@ def test_whatever_the_base_pose_the_clip_comes_back(project: Project, toy: Any) 
         plan = shown(other, toy, "rest long")
         cue = plan.layers["arms"].cues[0]
         times = np.linspace(cue.start + cue.blend_in, cue.end - cue.blend_out - 1e-9, 10)
-        assert (
-            apart(compute_pose_at(plan, other, times), clip_pose_at(other, cue.action, times - cue.start))
-            < 1e-6
-        )
+        assert apart(pose_at(plan, other, times), clip_pose_at(other, cue.action, times - cue.start)) < 1e-6
 
 
 def test_a_trimmed_clip_begins_at_its_start(project: Project, toy: Any) -> None:
@@ -87,7 +81,7 @@ def test_a_trimmed_clip_begins_at_its_start(project: Project, toy: Any) -> None:
     )
     plan = shown(project, toy, "rest long")
     cue = plan.layers["arms"].cues[0]
-    assert apart(compute_pose_at(plan, project, cue.start), clip_pose_at(project, cue.action, 0.5)) < 1e-6
+    assert apart(pose_at(plan, project, cue.start), clip_pose_at(project, cue.action, 0.5)) < 1e-6
 
 
 def test_the_stance_is_its_loop(project: Project, toy: Any) -> None:
@@ -95,7 +89,7 @@ def test_the_stance_is_its_loop(project: Project, toy: Any) -> None:
     plan = make_plan(project, 10, idle=False)
     loop = plan.layers["arms"].rests[0].action
     times = np.linspace(0, 9, 50)
-    assert apart(compute_pose_at(plan, project, times), clip_pose_at(project, loop, times % 2.0)) < 1e-6
+    assert apart(pose_at(plan, project, times), clip_pose_at(project, loop, times % 2.0)) < 1e-6
 
 
 # --- time
@@ -104,20 +98,20 @@ def test_the_stance_is_its_loop(project: Project, toy: Any) -> None:
 def test_one_time_and_many_forwards_and_backwards_agree(sample: Project) -> None:
     plan = make_plan(sample, 30)
     times = np.linspace(-1, 32, 150)
-    many = compute_pose_at(plan, sample, times)
-    backwards = compute_pose_at(plan, sample, times[::-1])
+    many = pose_at(plan, sample, times)
+    backwards = pose_at(plan, sample, times[::-1])
     assert np.array_equal(backwards.rotations[::-1], many.rotations) and np.array_equal(
         backwards.translations[::-1], many.translations
     )
     for n in reversed(range(len(times))):
-        one = compute_pose_at(plan, sample, times[n])
+        one = pose_at(plan, sample, times[n])
         assert np.abs(one.rotations - many.rotations[n]).max() < 1e-7
         assert np.abs(one.translations - many.translations[n]).max() < 1e-7
 
 
 @pytest.mark.parametrize("shape", [(), (0,), (1,), (3,), (2, 3), (2, 0)])
 def test_poses_have_the_shape_of_the_times(project: Project, shape: tuple[int, ...]) -> None:
-    pose = compute_pose_at(make_plan(project, 10), project, np.ones(shape))
+    pose = pose_at(make_plan(project, 10), project, np.ones(shape))
     assert pose.rotations.shape == (*shape, 16, 4) and pose.translations.shape == (*shape, 16, 3)
 
 
@@ -127,9 +121,9 @@ def test_before_the_beginning_and_after_the_end_the_stances_rest(project: Projec
         project, 10, [MetaRequest("r", "arms", "transition", 1, stance=toy.id(project, "up"))], idle=False
     )
     rest, up = (project.action(toy.id(project, f"{n} loop")) for n in ("rest", "up"))
-    assert apart(compute_pose_at(plan, project, -0.5), clip_pose_at(project, rest, 1.5)) < 1e-6
+    assert apart(pose_at(plan, project, -0.5), clip_pose_at(project, rest, 1.5)) < 1e-6
     late = 1000.0 - plan.layers["arms"].rests[-1].start
-    assert apart(compute_pose_at(plan, project, 1000.0), clip_pose_at(project, up, late % 2.0)) < 1e-5
+    assert apart(pose_at(plan, project, 1000.0), clip_pose_at(project, up, late % 2.0)) < 1e-5
 
 
 # --- what is missing
@@ -137,13 +131,13 @@ def test_before_the_beginning_and_after_the_end_the_stances_rest(project: Projec
 
 def test_a_plan_of_nothing_gives_the_base_pose(project: Project) -> None:
     base = project.clips[project.base.clip].motion.pose_at(0)
-    assert apart(compute_pose_at(Plan(1, 0.0), project, 3.0), base) < 1e-6
-    assert compute_pose_at(Plan(1, 0.0), project, np.zeros(4)).rotations.shape == (4, 16, 4)
+    assert apart(pose_at(Plan(1, 0.0), project, 3.0), base) < 1e-6
+    assert pose_at(Plan(1, 0.0), project, np.zeros(4)).rotations.shape == (4, 16, 4)
 
 
 def test_a_project_without_a_skeleton_has_no_poses() -> None:
     with pytest.raises(ValueError, match="cannot be posed"):
-        compute_pose_at(Plan(1, 0.0), Project(), 0.0)
+        pose_at(Plan(1, 0.0), Project(), 0.0)
 
 
 def test_where_a_clip_is_missing_the_stance_shows(project: Project, toy: Any) -> None:
@@ -151,10 +145,10 @@ def test_where_a_clip_is_missing_the_stance_shows(project: Project, toy: Any) ->
     resting = make_plan(project, 10, idle=False)
     clip = plan.layers["arms"].cues[0].action.clip
     lost = replace(project, clips={**project.clips, clip: replace(project.clips[clip], motion=None)})
-    assert apart(compute_pose_at(plan, lost, 1.1), compute_pose_at(resting, lost, 1.1)) < 1e-6
-    assert compute_pose_at(plan, lost, np.linspace(0, 5, 20)).rotations.shape == (20, 16, 4)
+    assert apart(pose_at(plan, lost, 1.1), pose_at(resting, lost, 1.1)) < 1e-6
+    assert pose_at(plan, lost, np.linspace(0, 5, 20)).rotations.shape == (20, 16, 4)
     gone = edits.remove_clips(project, [clip])
-    assert apart(compute_pose_at(plan, gone, 1.1), compute_pose_at(resting, project, 1.1)) < 1e-6
+    assert apart(pose_at(plan, gone, 1.1), pose_at(resting, project, 1.1)) < 1e-6
 
 
 def test_where_the_loop_is_missing_the_base_pose_shows(project: Project, toy: Any) -> None:
@@ -162,7 +156,7 @@ def test_where_the_loop_is_missing_the_base_pose_shows(project: Project, toy: An
     loop = plan.layers["arms"].rests[0].action.clip
     other = edits.set_base(project, "c5")
     lost = replace(other, clips={**other.clips, loop: replace(other.clips[loop], motion=None)})
-    assert apart(compute_pose_at(plan, lost, 1.1), other.clips["c5"].motion.pose_at(0)) < 1e-6
+    assert apart(pose_at(plan, lost, 1.1), other.clips["c5"].motion.pose_at(0)) < 1e-6
 
 
 # --- weights and masks
@@ -173,10 +167,10 @@ def test_a_layers_weight_scales_what_it_adds(project: Project, toy: Any, weight:
     project = edits.set_weight(project, "arms", "arms", weight)
     plan = shown(project, toy, "rest long")
     joint = project.skeleton.index("LeftUpperArm")
-    base = compute_pose_at(Plan(1, 0.0), project, 0.0).rotations[joint]
+    base = pose_at(Plan(1, 0.0), project, 0.0).rotations[joint]
     at = 2.2
     alone = clip_pose_at(project, plan.layers["arms"].cues[0].action, at - 1.0).rotations[joint]
-    turn = rotation.measure_angle_between(base, compute_pose_at(plan, project, at).rotations[joint])
+    turn = rotation.measure_angle_between(base, pose_at(plan, project, at).rotations[joint])
     assert turn == pytest.approx(weight * rotation.measure_angle_between(base, alone), abs=1e-5)
 
 
@@ -184,7 +178,7 @@ def test_a_one_armed_action_leaves_the_other_arm_in_its_stance(project: Project,
     plan = shown(project, toy, "rest beat lf")
     resting = Plan(plan.seed, plan.end, {**plan.layers, "arms": replace(plan.layers["arms"], cues=())})
     times = np.linspace(0.9, 2.1, 60)
-    pose, still = compute_pose_at(plan, project, times), compute_pose_at(resting, project, times)
+    pose, still = pose_at(plan, project, times), pose_at(resting, project, times)
     right, left = (project.skeleton.index(f"{side}UpperArm") for side in ("Right", "Left"))
     assert np.allclose(pose.rotations[:, right], still.rotations[:, right], atol=1e-6)
     assert rotation.measure_angle_between(pose.rotations[:, left], still.rotations[:, left]).max() > 0.3
@@ -196,7 +190,7 @@ def test_named_joints_are_the_only_ones_that_move(project: Project, toy: Any) ->
     resting = Plan(plan.seed, plan.end, {**plan.layers, "arms": replace(plan.layers["arms"], cues=())})
     moved = (
         rotation.measure_angle_between(
-            compute_pose_at(plan, project, 2.2).rotations, compute_pose_at(resting, project, 2.2).rotations
+            pose_at(plan, project, 2.2).rotations, pose_at(resting, project, 2.2).rotations
         )
         > 1e-3
     )
@@ -214,8 +208,8 @@ def test_a_soft_joint_goes_as_far_from_its_stance_as_its_weight_says(
     partly = Plan(plan.seed, plan.end, {**plan.layers, "arms": replace(plan.layers["arms"], cues=(cue,))})
     resting = Plan(plan.seed, plan.end, {**plan.layers, "arms": replace(plan.layers["arms"], cues=())})
     times = np.linspace(cue.start, cue.end, 40)  # blends, too
-    whole, rest = compute_pose_at(plan, project, times), compute_pose_at(resting, project, times)
-    found = compute_pose_at(partly, soft, times)
+    whole, rest = pose_at(plan, project, times), pose_at(resting, project, times)
+    found = pose_at(partly, soft, times)
     far = rotation.measure_angle_between(rest.rotations[:, joint], whole.rotations[:, joint])
     gone = rotation.measure_angle_between(rest.rotations[:, joint], found.rotations[:, joint])
     expected = rotation.nlerp(rest.rotations[:, joint], whole.rotations[:, joint], np.full(40, weight))
@@ -259,8 +253,8 @@ def test_a_cues_weight_is_0_outside_it_and_1_in_its_middle(project: Project, toy
 def jump(plan: Plan, project: Project, moment: float, step: float = 1e-4) -> float:
     """How far the pose moves within `step` about a moment; radians or metres."""
     a, b = (
-        compute_pose_at(plan, project, moment - step / 2),
-        compute_pose_at(plan, project, moment + step / 2),
+        pose_at(plan, project, moment - step / 2),
+        pose_at(plan, project, moment + step / 2),
     )
     return apart(a, b)
 
@@ -299,10 +293,7 @@ def test_a_clip_far_from_its_stance_is_led_in_and_out_too(project: Project, toy:
         jump(plan, project, moment) < 2e-3 for moment in np.linspace(cue.start - 0.1, cue.end + 0.1, 60)
     )
     middle = (cue.start + cue.end) / 2
-    assert (
-        apart(compute_pose_at(plan, project, middle), clip_pose_at(project, cue.action, middle - cue.start))
-        < 1e-6
-    )
+    assert apart(pose_at(plan, project, middle), clip_pose_at(project, cue.action, middle - cue.start)) < 1e-6
 
 
 def test_a_clip_that_begins_in_its_stance_keeps_its_own_speed_while_it_blends_in(
@@ -314,9 +305,7 @@ def test_a_clip_that_begins_in_its_stance_keeps_its_own_speed_while_it_blends_in
     plan = shown(still, toy, "rest long")
     cue = plan.layers["arms"].cues[0]
     times = np.linspace(cue.start, cue.end - 1e-6, 50)
-    assert (
-        apart(compute_pose_at(plan, still, times), clip_pose_at(still, cue.action, times - cue.start)) < 1e-5
-    )
+    assert apart(pose_at(plan, still, times), clip_pose_at(still, cue.action, times - cue.start)) < 1e-5
 
 
 def test_a_loop_comes_round_without_a_jump_with_and_without_a_seam(project: Project, toy: Any) -> None:
@@ -329,8 +318,8 @@ def test_a_loop_comes_round_without_a_jump_with_and_without_a_seam(project: Proj
         assert all(jump(plan, seamed, m) < 1e-3 for m in np.arange(-1.0, 8, 0.05).round(6))
         assert all(jump(plan, seamed, n * period) < 1e-3 for n in range(1, 5))
         a, b = (
-            compute_pose_at(plan, seamed, 2 * period + 0.3),
-            compute_pose_at(plan, seamed, 5 * period + 0.3),
+            pose_at(plan, seamed, 2 * period + 0.3),
+            pose_at(plan, seamed, 5 * period + 0.3),
         )
         assert apart(a, b) < 1e-5, "each round is the same"
     assert jump(make_plan(project, 20, idle=False), project, 2.0) < 1e-3
@@ -387,13 +376,13 @@ def test_loops_of_one_frame_and_odd_seams_stay_within_their_clip(
     elapsed = np.linspace(-3, 9, 200)
     for at in compute_loop_seconds(project, action, elapsed)[:2]:
         assert at.min() >= 0 and at.max() <= seconds + 1e-9
-    assert np.isfinite(compute_pose_at(make_plan(project, 5), project, elapsed).rotations).all()
+    assert np.isfinite(pose_at(make_plan(project, 5), project, elapsed).rotations).all()
 
 
 @given(st.lists(st.floats(-5, 40), min_size=1, max_size=5), st.integers(0, 3))
 @settings(max_examples=25, deadline=None)
 def test_every_pose_is_finite_and_every_rotation_of_unit_length(times: list[float], seed: int) -> None:
-    pose = compute_pose_at(make_plan(PROJECT, 30, seed=seed), PROJECT, np.array(times))
+    pose = pose_at(make_plan(PROJECT, 30, seed=seed), PROJECT, np.array(times))
     assert np.isfinite(pose.translations).all()
     assert np.allclose(np.linalg.norm(pose.rotations, axis=-1), 1, atol=1e-5)
 
@@ -408,7 +397,7 @@ def test_several_rests_at_one_moment_do_not_confuse_it(project: Project, toy: An
         (rest, Rest(rest.stance, rest.action, 1.0, 1.0, 0.0), Rest(rest.stance, rest.action, 1.0, 1.0, 0.5)),
     )
     both = Plan(1, 10.0, {**plan.layers, "arms": twice})
-    assert np.isfinite(compute_pose_at(both, project, np.linspace(0, 3, 31)).rotations).all()
+    assert np.isfinite(pose_at(both, project, np.linspace(0, 3, 31)).rotations).all()
 
 
 # --- morphs
@@ -439,8 +428,8 @@ def test_a_face_that_is_asked_for_after_its_pose_is_the_one_it_would_be_alone(sa
     plan, other = make_plan(sample, 20.0, seed=3), make_plan(sample, 20.0, seed=4)
     alone = {seconds: compute_morphs_at(plan, sample, seconds) for seconds in (2.0, 7.3)}
     for seconds, face in alone.items():
-        compute_pose_at(other, sample, seconds)
+        pose_at(other, sample, seconds)
         assert compute_morphs_at(plan, sample, seconds) == face
-        pose = compute_pose_at(plan, sample, seconds)
+        pose = pose_at(plan, sample, seconds)
         assert compute_morphs_at(plan, sample, seconds) == face
-        assert np.array_equal(compute_pose_at(plan, sample, seconds).rotations, pose.rotations)
+        assert np.array_equal(pose_at(plan, sample, seconds).rotations, pose.rotations)

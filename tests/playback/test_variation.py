@@ -18,7 +18,7 @@ from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
 from metagraph.playback.planner import extend_plan, make_plan
 from metagraph.playback.timing.phases import find_phases
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 
 @pytest.fixture
@@ -204,7 +204,7 @@ def test_a_held_pose_does_not_stop_dead_or_jump(sample: Project) -> None:
         )
         cue = plan.layers["arms"].cues[-1]
         times = np.arange(cue.start - 0.5, cue.end + 0.5, 1 / 60)
-        _, places = sample.skeleton.globals(compute_pose_at(plan, sample, times, alive=False))
+        _, places = sample.skeleton.globals(pose_at(plan, sample, times, alive=False))
         return float(np.linalg.norm(np.diff(places[:, hands], axis=0), axis=-1).max() * 60)
 
     assert fastest(3.0) <= fastest(None) * 1.05

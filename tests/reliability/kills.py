@@ -24,7 +24,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from app.project.document import Document, ProjectPast, make_state_folder  # noqa: E402
+from app.project.document import Document, ProjectPast, state_folder  # noqa: E402
 from app.project.leftovers import list_untitled_journals, look_beside, read_untitled, remove_journal  # noqa: E402
 from app.project.opening import load_recovered, open_whole  # noqa: E402
 from app.project.unsaved import count_lost_steps  # noqa: E402
@@ -236,7 +236,7 @@ def look(folder: Path, named: bool, told: Told, before: int, count: Count) -> in
         count.wrong.append(f"edit {told.saved} was saved, the file holds {on_disk}")
     if told.exported:
         read_export(next((folder / "export").glob("*.json")))
-    for place in (folder, folder / "export", make_state_folder()):
+    for place in (folder, folder / "export", state_folder()):
         count.swept += len(sweep(place))
         rest = list(place.glob(".saving-*")) if place.is_dir() else []
         if rest:

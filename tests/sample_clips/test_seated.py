@@ -22,7 +22,7 @@ from sample_clips.make.mannequin_rig import REACH, REST, SKELETON, at
 from sample_clips.make.measure import Measures, measure
 from sample_clips.make.recipe import animate
 from sample_clips.make.stance_clips import SEAT
-from tests.posing import compute_pose_at, contact_rig
+from tests.posing import contact_rig, pose_at
 from tests.sample_clips.unchanged import only_when_changed
 
 pytestmark = only_when_changed()
@@ -113,7 +113,7 @@ def test_hands_on_the_lap_are_found_there_and_stay_through_every_way_of_sitting(
     assert rig is not None
     asks = [MetaRequest("f", "body", "transition", 8.0, stance=stance("body", "sitting forward"))]
     plan = make_plan(project(), 30.0, asks, seed=2, idle=False)
-    pose = compute_pose_at(plan, project(), times)
+    pose = pose_at(plan, project(), times)
     assert np.percentile(measure_contact_depths(rig, pose).max(-1), 95) < 0.005
     turned, places = SKELETON.globals(pose)
     for side in ("Left", "Right"):

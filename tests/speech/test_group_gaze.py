@@ -17,7 +17,7 @@ from metagraph.motion import rotation
 from metagraph.speech.duet import plan_duet
 from metagraph.speech.gaze_shares import GazeShare, join_shares, measure_gaze_shares
 from metagraph.speech.group_gaze import AT_ADDRESSEE, AT_SPEAKER, LEAST, list_looks
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 from tests.speech.group import group, made_up, said
 from tests.thorough import many
 
@@ -137,9 +137,7 @@ def test_eyes_are_on_the_eyes_of_whom_they_look_at(sample: Project) -> None:
     rest = sample.skeleton.globals(get_base_pose(sample))[0][eye]
     ahead = rotation.rotate_vectors(rotation.conjugate(rest), np.array([0.0, 0.0, 1.0]))
     times = np.arange(1.0, 39.0, 0.2)
-    placed = [
-        p.stand.placed(*sample.skeleton.globals(compute_pose_at(p.plan, sample, times))) for p in made.parts
-    ]
+    placed = [p.stand.placed(*sample.skeleton.globals(pose_at(p.plan, sample, times))) for p in made.parts]
     off = []
     for n, (turned, at) in enumerate(placed):
         for k, time in enumerate(times):

@@ -280,7 +280,7 @@ class PreviewPanel(QWidget):
             )
         elif self._last is not None:
             self.looking.keep_in_picture(shown, self._last[0])
-        return replace(scene, lamp=self._lamp)
+        return scene if self._lamp is None else replace(scene, lamp=self._lamp)
 
     def _run_or_rest(self) -> None:
         """Count the time while it plays; what is paused costs nothing."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 
 import pytest
+from PySide6.QtCore import QSettings
 
 from app.cli.parser import main
+from app.main import prepare_application
 from app.shell import system_report
 from metagraph import __version__
 from metagraph.common.extras import EXTRAS
@@ -19,6 +21,12 @@ def test_the_report_names_versions_drawing_and_folders(capsys):
     report = json.loads(capsys.readouterr().out)
     assert report["Metagraph"].startswith(__version__)
     assert report["OpenGL"].startswith("3.3 or later") and report["numpy"] != "missing"
+
+
+def test_the_settings_are_where_the_window_keeps_them(qapp):
+    application = prepare_application()  # gives both names
+    names = application.organizationName(), application.applicationName()
+    assert system_report.make_system_report()["Settings"] == QSettings(*names).fileName()
 
 
 def test_without_opengl_it_says_what_to_install_and_ends_with_3(monkeypatch, capsys):

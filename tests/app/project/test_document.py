@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from app.project.autosave import find_journal_shelter, make_state_folder
+from app.project.autosave import find_journal_shelter, state_folder
 from app.project.document import UNDO_STEPS, Document, ProjectPast
 from app.project.writing import name_after_file
 from metagraph.errors import FileError
@@ -269,8 +269,8 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, 
     place = document.journal_place
     place.mkdir()
     if shelter_too:
-        shutil.rmtree(find_journal_shelter(make_state_folder()), ignore_errors=True)
-        find_journal_shelter(make_state_folder()).write_text("in the way")
+        shutil.rmtree(find_journal_shelter(state_folder()), ignore_errors=True)
+        find_journal_shelter(state_folder()).write_text("in the way")
     seen = []
     document.changed.connect(lambda a, b: seen.append(b))
     likely(document, beat, 2.0)
@@ -279,7 +279,7 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, 
     assert len(told) == 1
     if shelter_too:
         assert "autosaved" in told[0]
-        find_journal_shelter(make_state_folder()).unlink()
+        find_journal_shelter(state_folder()).unlink()
     else:
         assert "Metagraph's own folder" in told[0]
         found = read_journal(document.journal_place, path)

@@ -12,7 +12,7 @@ import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.project import questions
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import Importing
@@ -657,7 +657,7 @@ def test_recent_projects_are_the_latest_first_and_only_those_that_exist(desk, tm
 @pytest.mark.parametrize("content", ["", "{", "[1, null]", json.dumps({"a": 1}), json.dumps(None)])
 def test_a_broken_list_of_recent_projects_is_an_empty_one(desk, content):
 
-    (make_state_folder() / "recent.json").write_text(content)
+    (state_folder() / "recent.json").write_text(content)
     assert desk.recent() == []
 
 

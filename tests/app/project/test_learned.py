@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QLockFile
 
 from app.project import learned as module
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.project.learned import CLIPS, WORDS, Learned
@@ -32,7 +32,7 @@ def test_nothing_is_known_at_first_and_no_file_is_made(taught: Learned, qapp: ob
         and taught.examples_for(Document()) == []
         and taught.clips == 0
     )
-    assert not (make_state_folder() / WORDS).exists()
+    assert not (state_folder() / WORDS).exists()
 
 
 def test_two_windows_do_not_lose_what_the_other_learned(taught: Learned) -> None:
@@ -59,12 +59,12 @@ def test_while_learning_is_off_nothing_is_remembered_or_used_but_own_patterns_ar
 def test_a_broken_file_is_set_aside_told_and_learning_goes_on(taught: Learned) -> None:
     told: list[str] = []
     taught.failed.connect(told.append)
-    (make_state_folder() / WORDS).write_text('{"learned": 1, "names": {"patterns": 1, "kinds": 3}}')
+    (state_folder() / WORDS).write_text('{"learned": 1, "names": {"patterns": 1, "kinds": 3}}')
     assert taught.patterns.learned == {}
     assert len(told) == 1 and "'names': 'kinds'" in told[0] and "learned-words.broken" in told[0]
     taught.correct("idle_arms_wobble", "kind", "fidget", NAMES)
-    assert "kind" in Learned().patterns.learned and (make_state_folder() / "learned-words.broken").exists()
-    (make_state_folder() / CLIPS).write_bytes(b"\xff\x00 no json")
+    assert "kind" in Learned().patterns.learned and (state_folder() / "learned-words.broken").exists()
+    (state_folder() / CLIPS).write_bytes(b"\xff\x00 no json")
     assert taught.examples_for(Document()) == [] and len(told) == 2
 
 
@@ -74,7 +74,7 @@ def test_a_window_that_holds_the_file_for_long_is_told_of(
     monkeypatch.setattr(module, "LOCK_WAIT", 20)
     told: list[str] = []
     taught.failed.connect(told.append)
-    lock = QLockFile(str(make_state_folder() / "learned-words.lock"))
+    lock = QLockFile(str(state_folder() / "learned-words.lock"))
     assert lock.tryLock(0)
     taught.correct("idle_arms_wobble", "kind", "fidget", NAMES)
     lock.unlock()
@@ -111,11 +111,11 @@ def test_at_closing_only_what_was_saved_and_not_yet_kept_is_kept(taught: Learned
         open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, tmp_path / "a.metagraph.yaml"
     )
     taught.keep(document)
-    assert not (make_state_folder() / CLIPS).exists()
+    assert not (state_folder() / CLIPS).exists()
     stopped = Jobs()
     stopped.stop()
     taught.keep(document, stopped)
     taught.keep(document)
     assert taught.clips == 152
-    assert json.loads((make_state_folder() / CLIPS).read_text())["learned"] == 1
+    assert json.loads((state_folder() / CLIPS).read_text())["learned"] == 1
     document.close_journal()

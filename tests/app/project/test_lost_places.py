@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.project import questions
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from app.project.document import Document
 from app.project.files import Files
 from app.project.jobs import Jobs
@@ -230,7 +230,7 @@ def test_edits_of_a_folder_that_is_gone_are_kept_and_offered(desk, saved, qtbot,
     content = saved.read_bytes()
     shutil.rmtree(saved.parent)
     seed(desk, 8)
-    assert desk.document.secured() and desk.document.journal_place.is_relative_to(make_state_folder())
+    assert desk.document.secured() and desk.document.journal_place.is_relative_to(state_folder())
     qtbot.waitUntil(lambda: bool(desk.notices))
     desk.notices[0][2]()
     assert "Metagraph's own folder" in desk.reports[-1][1][0]
@@ -260,13 +260,13 @@ def test_a_folder_that_goes_and_comes_back_leaves_no_open_files_and_no_journals(
         shutil.copytree(saved.parent, away)
         shutil.rmtree(saved.parent)
         seed(desk, 2 * n + 2)
-        assert desk.document.secured() and desk.document.journal_place.is_relative_to(make_state_folder())
+        assert desk.document.secured() and desk.document.journal_place.is_relative_to(state_folder())
         away.rename(saved.parent)
         desk.document.save()
         assert read_project(saved).settings.seed == 2 * n + 2
         assert not list(saved.parent.glob(".*.journal")), "what it held is saved"
         handles.append(len(list(Path("/proc/self/fd").iterdir())))
-        listed.append(list((make_state_folder() / "journals").glob("*")))
+        listed.append(list((state_folder() / "journals").glob("*")))
     assert len(set(handles)) == 1 and not any(listed)
 
 
@@ -276,7 +276,7 @@ def test_looking_after_it_moves_edits_out_of_a_folder_that_is_gone(desk, saved, 
     shutil.rmtree(saved.parent)
     desk.keeper.refresh()
     qtbot.waitUntil(lambda: bool(desk.notices))
-    assert desk.document.journal_place.is_relative_to(make_state_folder()) and desk.document.secured()
+    assert desk.document.journal_place.is_relative_to(state_folder()) and desk.document.secured()
 
 
 def test_a_removed_lock_is_there_again_and_told(desk, saved, qtbot):

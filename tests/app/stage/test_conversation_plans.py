@@ -373,7 +373,7 @@ def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> N
 @pytest.mark.nightly
 def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: Path) -> None:
     from metagraph.playback.planning.running_plan import plan_performance
-    from tests.posing import compute_pose_at
+    from tests.posing import pose_at
 
     project = open_project(three).project
     shown = ConversationPlans().show(project, "v9000", three.parent)
@@ -385,7 +385,7 @@ def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: 
         looks = {ask.to for ask in kept.asks if isinstance(ask, Look)}
         assert len(looks) == 2 and looks <= {ask.name for ask in kept.asks if isinstance(ask, Place)}
         plan = plan_performance(after, kept.asks, kept.length, kept.seed, idle=kept.idle)
-        mine, theirs = compute_pose_at(plan, after, times), one.pose(times)
+        mine, theirs = pose_at(plan, after, times), one.pose(times)
         assert theirs is not None and np.allclose(mine.rotations, theirs.rotations)
 
 

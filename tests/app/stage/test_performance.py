@@ -17,7 +17,7 @@ from metagraph.graph import edits
 from metagraph.graph import requests as a
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 
 @pytest.fixture(scope="module")
@@ -66,8 +66,8 @@ def test_a_transition_ends_in_the_other_stance(toy, project):
     cue = shown.plan.layers["arms"].cues[0]
     assert (cue.stance, cue.then) == (toy.id(project, "rest"), toy.id(project, "up"))
     low, high = (
-        compute_pose_at(shown.plan, shown.project, 0.0),
-        compute_pose_at(shown.plan, shown.project, shown.length),
+        pose_at(shown.plan, shown.project, 0.0),
+        pose_at(shown.plan, shown.project, shown.length),
     )
     assert not np.allclose(low.rotations, high.rotations, atol=0.1)
 
@@ -79,7 +79,7 @@ def test_a_stances_loop_plays_from_its_start_to_its_end(toy, project):
     shown = play_in_context(project, loop, "arms", stances(project))
     assert shown.plan.layers["arms"].cues == ()
     assert shown.length == pytest.approx(2.0)
-    assert compute_pose_at(shown.plan, shown.project, 0.5) is not None
+    assert pose_at(shown.plan, shown.project, 0.5) is not None
 
 
 def test_a_clip_that_was_placed_is_shown_as_what_it_is(toy, project):
@@ -120,7 +120,7 @@ def test_a_clip_whose_file_is_missing_still_has_a_pose(toy, project, name):
     for ident in (action.id, action.clip):
         shown = play_in_context(missing, ident, "arms", stances(project))
         for seconds in (0.0, 0.9, shown.length):
-            assert np.isfinite(compute_pose_at(shown.plan, shown.project, seconds).rotations).all()
+            assert np.isfinite(pose_at(shown.plan, shown.project, seconds).rotations).all()
 
 
 # --- as the window has it

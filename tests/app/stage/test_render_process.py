@@ -56,7 +56,7 @@ def test_a_range_of_it_is_what_the_whole_has_there(qapp, talk, tmp_path):
 @pytest.mark.nightly
 def test_motion_is_the_performance(qapp, talk, tmp_path):
     from metagraph.playback.planning.running_plan import plan_performance
-    from tests.posing import compute_pose_at
+    from tests.posing import pose_at
 
     project, ident = talk
     write_rendering(
@@ -68,7 +68,7 @@ def test_motion_is_the_performance(qapp, talk, tmp_path):
     clip = read_bvh(tmp_path / "a.bvh")
     assert clip.frames == 31
     kept = project.performances[ident]
-    there = compute_pose_at(plan_performance(project, kept.asks, 1.0), project, 0.7)
+    there = pose_at(plan_performance(project, kept.asks, 1.0), project, 0.7)
     arm = project.skeleton.index("RightUpperArm") if "RightUpperArm" in project.skeleton.names else 10
     name = project.skeleton.names[arm]
     mine = clip.rotations[21, clip.skeleton.index(name)]

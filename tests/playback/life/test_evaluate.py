@@ -23,7 +23,7 @@ from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, Speech, Track, track_of
 from metagraph.playback.planner import make_plan
 from tests import zoo
-from tests.posing import compute_pose_at, enliven, face_weights
+from tests.posing import enliven, face_weights, pose_at
 from tests.thorough import many
 
 Array = np.ndarray[Any, Any]
@@ -44,9 +44,7 @@ def drawn(project: Project, track: Track, end: float = 40.0) -> Schedule:
 
 def layers(project: Project, times: Array, seed: int = 1) -> Pose:
     """What the layers compose, without life."""
-    return compute_pose_at(
-        make_plan(replace(project, life=OFF), 40.0, seed=seed), replace(project, life=OFF), times
-    )
+    return pose_at(make_plan(replace(project, life=OFF), 40.0, seed=seed), replace(project, life=OFF), times)
 
 
 def resting(project: Project, count: int) -> Pose:

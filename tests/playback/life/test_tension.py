@@ -12,7 +12,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.joint_map import find_known_roles
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.mood import MOODS, Mood, bearing
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 
 def standing(project: Project, valence: float, arousal: float) -> tuple[dict[str, int], Any]:
@@ -20,7 +20,7 @@ def standing(project: Project, valence: float, arousal: float) -> tuple[dict[str
     life = msgspec.structs.replace(project.life, valence=valence, arousal=arousal)
     project = replace(project, life=life)
     assert project.skeleton is not None
-    pose = compute_pose_at(make_plan(project, 4.0, seed=1, idle=False), project, 2.0)
+    pose = pose_at(make_plan(project, 4.0, seed=1, idle=False), project, 2.0)
     return find_known_roles(project.skeleton, anatomy.project_roles(project)), project.skeleton.globals(pose)[
         1
     ]

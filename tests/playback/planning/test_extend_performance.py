@@ -19,7 +19,7 @@ from metagraph.playback.planning.extend_performance import answer_ask, drop_ende
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests import thorough
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 END = 30.0
 _SAMPLE: list[Project] = []
@@ -111,9 +111,7 @@ def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -
         assert [c for c in many.cues if c.start < END] == [c for c in one.cues if c.start < END]
         assert [r for r in many.rests if r.start < END] == [r for r in one.rests if r.start < END]
     times = [0.0, 3.3, END / 2, END - 0.01]
-    assert (
-        compute_pose_at(last, project, times).rotations == compute_pose_at(whole, project, times).rotations
-    ).all()
+    assert (pose_at(last, project, times).rotations == pose_at(whole, project, times).rotations).all()
 
 
 @pytest.mark.nightly
@@ -144,8 +142,7 @@ def test_forgetting_the_past_changes_nothing_to_come(asks: list[Any], memory: fl
         assert len(cut.layers[layer].cues) < len(kept.layers[layer].cues)
         assert all(m.end > 70 for m in cut.layers[layer].metas)
     assert (
-        compute_pose_at(kept, project, [100.0, 149.0]).rotations
-        == compute_pose_at(cut, project, [100.0, 149.0]).rotations
+        pose_at(kept, project, [100.0, 149.0]).rotations == pose_at(cut, project, [100.0, 149.0]).rotations
     ).all()
 
 
@@ -394,14 +391,14 @@ def test_poses_are_bit_for_bit_the_same_live_in_ticks_of_16_ms_scrubbed_and_bake
     ]
     end, tick = 12.0, 0.016
     plans = in_ticks(project, heard, end, tick, ahead=4.0, forget=3.0)
-    live = [compute_pose_at(plan, project, n * tick) for n, plan in enumerate(plans)]
+    live = [pose_at(plan, project, n * tick) for n, plan in enumerate(plans)]
     whole = plan_performance(
         project, [a.msgspec.structs.replace(x, id=f"ask{n}") for n, x in enumerate(heard)], end + 8
     )
     times = np.arange(len(plans)) * tick
-    baked = compute_pose_at(whole, project, times)
+    baked = pose_at(whole, project, times)
     shuffled = np.random.default_rng(3).permutation(len(times))
-    scrubbed = {int(n): compute_pose_at(whole, project, times[n]) for n in shuffled[:200]}
+    scrubbed = {int(n): pose_at(whole, project, times[n]) for n in shuffled[:200]}
     for n, pose in enumerate(live):
         assert (pose.rotations == baked.rotations[n]).all() and (
             pose.translations == baked.translations[n]

@@ -40,7 +40,7 @@ from metagraph.playback.planning.mood import (
 from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 from metagraph.playback.planning.vigour import _speed_of, measure_vigour, measure_vigours
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 
@@ -226,8 +226,7 @@ def test_smaller_gestures_keep_hands_nearer_their_stance_and_begin_and_end_in_it
     hands = [roles["left_hand"], roles["right_hand"]]
     assert sample.skeleton is not None
     places = [
-        sample.skeleton.globals(compute_pose_at(p, sample, times, False))[1][:, hands]
-        for p in (plan, small, still)
+        sample.skeleton.globals(pose_at(p, sample, times, False))[1][:, hands] for p in (plan, small, still)
     ]
     away = [np.linalg.norm(x - places[2], axis=-1).max() for x in places[:2]]
     assert 0.4 * away[0] < away[1] < 0.85 * away[0]
@@ -293,7 +292,7 @@ def test_hands_are_faster_and_farther_out_the_more_aroused(sample: Project) -> N
             {"do": "action", "id": f"g{n}", "action": x, "at": 1.0 + 8 * n} for n, x in enumerate(actions)
         ]
         plan = performed(project, *asks, end=42.0)
-        at = sample.skeleton.globals(compute_pose_at(plan, project, np.arange(0, 42, 1 / 30), False))[1]
+        at = sample.skeleton.globals(pose_at(plan, project, np.arange(0, 42, 1 / 30), False))[1]
         hands = at[:, [roles["left_hand"], roles["right_hand"]]] - at[:, [roles["chest"]]]
         speed = np.linalg.norm(np.diff(hands, axis=0), axis=-1) * 30
         speeds.append(float(speed[speed > 0.1].mean()))
@@ -310,7 +309,7 @@ def test_heads_hang_in_sadness_and_life_slows_with_arousal(sample: Project) -> N
     for valence, arousal in ((-1.0, -0.6), (0.0, 0.0), (1.0, 0.6)):
         project = feeling(sample, valence, arousal)
         plan = make_plan(project, 60.0, seed=1, idle=False)
-        pose = compute_pose_at(plan, project, np.arange(5.0, 60.0, 0.5))
+        pose = pose_at(plan, project, np.arange(5.0, 60.0, 0.5))
         places = sample.skeleton.globals(pose)[1]
         ahead.append((places[:, roles["head"], 2] - places[:, roles["hips"], 2]).mean())
         breaths.append(len(plan.life.breaths))

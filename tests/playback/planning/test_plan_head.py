@@ -20,7 +20,7 @@ from metagraph.playback.planner import Revision, extend_plan, make_plan
 from metagraph.playback.planning import plan_head, strand
 from metagraph.playback.planning.strand import Strand
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 PROJECT = Project()
 
@@ -163,12 +163,12 @@ def test_what_a_long_plan_leaves_as_it_was_is_shared_and_the_same(monkeypatch: A
         return plan, more, of(project, more, 395.0, asks, 420.0)
 
     plain = in_three(from_all)
-    poses = compute_pose_at(plain[-1], project, times)
+    poses = pose_at(plain[-1], project, times)
     monkeypatch.setattr(strand, "CHUNK", 8)
     monkeypatch.setattr(strand, "LONG", 16)
     made = in_three(extend_plan)
     assert made == plain and plain == made
-    assert np.array_equal(compute_pose_at(made[-1], project, times).rotations, poses.rotations)
+    assert np.array_equal(pose_at(made[-1], project, times).rotations, poses.rotations)
     for one, other in pairwise(made):
         for a, b in (
             (one.layers["arms"].cues, other.layers["arms"].cues),

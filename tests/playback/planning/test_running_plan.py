@@ -13,7 +13,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import answer_ask, hear_asks
 from metagraph.playback.planning.running_plan import AHEAD, RunningPlan, plan_performance
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 from tests.thorough import many
 
 LENGTH = 150.0
@@ -77,9 +77,7 @@ def test_in_pieces_it_is_what_it_is_at_once(sample):
         for name in ("modes", "breaths", "aversions", "saccades", "blinks", "targets", "end"):
             assert getattr(other.life, name) == getattr(one.life, name), name
         times = np.linspace(0.0, LENGTH - 0.01, 60)
-        assert np.array_equal(
-            compute_pose_at(other, sample, times).rotations, compute_pose_at(one, sample, times).rotations
-        )
+        assert np.array_equal(pose_at(other, sample, times).rotations, pose_at(one, sample, times).rotations)
         for ask in asks:
             assert answer_ask(other, ask.id) == answer_ask(one, ask.id), ask
 

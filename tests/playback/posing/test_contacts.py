@@ -26,7 +26,7 @@ from metagraph.playback.posing.contacts import (
     list_capsule_pairs,
     measure_contact_depths,
 )
-from tests.posing import compute_pose_at, contact_rig
+from tests.posing import contact_rig, pose_at
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
 TIMES = np.arange(0.0, 240.0, 0.41)
@@ -47,14 +47,14 @@ def switched(**changes: bool) -> Project:
 
 
 def plain() -> Pose:
-    return compute_pose_at(plan(), switched(contacts=False, guard=False), TIMES)
+    return pose_at(plan(), switched(contacts=False, guard=False), TIMES)
 
 
 def test_hands_that_are_held_are_where_contacts_say() -> None:
     project = switched(guard=False)
     rig = contact_rig(project)
     assert rig is not None and project.skeleton is not None
-    pose = compute_pose_at(plan(), project, TIMES)
+    pose = pose_at(plan(), project, TIMES)
     turned, at = project.skeleton.globals(pose)
     joints, found = list(rig.joints), 0
     for n, time in enumerate(TIMES.tolist()):
@@ -74,7 +74,7 @@ def test_the_guard_brings_hands_out_of_the_body() -> None:
     assert rig is not None
     before, after = (
         measure_contact_depths(rig, plain()).max(-1),
-        measure_contact_depths(rig, compute_pose_at(plan(), sample(), TIMES)).max(-1),
+        measure_contact_depths(rig, pose_at(plan(), sample(), TIMES)).max(-1),
     )
     assert (after > 0.005).mean() < 0.35 * (before > 0.005).mean()
     assert np.percentile(after, 95) < 0.006 < np.percentile(before, 95)
@@ -85,7 +85,7 @@ def test_nothing_but_arms_moves_and_only_in_their_upper_lower_and_hand_joints() 
     rig = contact_rig(sample())
     assert rig is not None
     arms = {rig.joints[p] for arm in rig.arms for p in (arm.upper, arm.lower, arm.hand)}
-    after, before = compute_pose_at(plan(), sample(), TIMES), plain()
+    after, before = pose_at(plan(), sample(), TIMES), plain()
     others = [j for j in range(after.rotations.shape[1]) if j not in arms]
     assert_array_equal(after.rotations[:, others], before.rotations[:, others])
     assert_array_equal(after.translations, before.translations)
@@ -96,14 +96,14 @@ def test_off_by_its_switches_poses_are_those_of_a_project_without_contacts_to_th
     graph = sample().graphs["arms"]
     bare = graph.with_actions({a.id: replace(a, contacts=()) for a in graph.actions.values()})
     without = replace(sample().with_graph(bare), touch=msgspec.structs.replace(sample().touch, guard=False))
-    assert_array_equal(compute_pose_at(plan(), without, TIMES).rotations, plain().rotations)
+    assert_array_equal(pose_at(plan(), without, TIMES).rotations, plain().rotations)
 
 
 def test_poses_are_the_same_one_by_one_and_all_at_once() -> None:
     some = TIMES[::40]
-    many = compute_pose_at(plan(), sample(), some)
+    many = pose_at(plan(), sample(), some)
     for n, time in enumerate(some.tolist()):
-        assert_allclose(compute_pose_at(plan(), sample(), time).rotations, many.rotations[n], atol=1e-6)
+        assert_allclose(pose_at(plan(), sample(), time).rotations, many.rotations[n], atol=1e-6)
 
 
 @pytest.mark.nightly
@@ -129,8 +129,8 @@ def test_a_skeleton_without_arms_is_left_alone() -> None:
     assert contact_rig(project) is None
     life = msgspec.structs.replace(sample().life, follow_through=0, shoulder_lift=0)  # nor does a body answer
     stiff = replace(switched(contacts=False, guard=False), life=life)
-    expected = compute_pose_at(plan(), stiff, TIMES[:9]).rotations
-    assert_array_equal(compute_pose_at(plan(), project, TIMES[:9]).rotations, expected)
+    expected = pose_at(plan(), stiff, TIMES[:9]).rotations
+    assert_array_equal(pose_at(plan(), project, TIMES[:9]).rotations, expected)
 
 
 @pytest.mark.parametrize("joint", ["Hips", "LeftUpperArm"])
@@ -141,7 +141,7 @@ def test_contacts_with_a_joint_that_is_gone_are_passed_over(joint: str) -> None:
         for a in graph.actions.values()
     }
     project = sample().with_graph(graph.with_actions(lost))
-    assert np.isfinite(compute_pose_at(plan(), project, TIMES[::20]).rotations).all()
+    assert np.isfinite(pose_at(plan(), project, TIMES[::20]).rotations).all()
 
 
 def _one(rig: Any, pose: Pose, n: int) -> ContactPose:

@@ -18,7 +18,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.posing.weight import find_foot_rows
 from sample_clips.make.conformance_projects import stepping
-from tests.posing import compute_pose_at, weight_of
+from tests.posing import pose_at, weight_of
 
 FPS = 60
 LEGS = [[f"{side}_{part}" for part in ("upper_leg", "lower_leg", "foot")] for side in ("left", "right")]
@@ -47,7 +47,7 @@ def asked(name: str) -> Plan:
 def joints(plan: Plan, of: Project, times: Array) -> Array:
     """Return hips, knees and ankles `[N, 2, 3, 3]`."""
     assert of.skeleton is not None
-    at = of.skeleton.globals(compute_pose_at(plan, of, times))[1].astype(float)
+    at = of.skeleton.globals(pose_at(plan, of, times))[1].astype(float)
     roles = anatomy.project_roles(of)
     return at[:, [[roles[r] for r in leg] for leg in LEGS]]
 
@@ -92,7 +92,7 @@ def test_where_nothing_blends_the_pose_is_the_same_to_the_bit() -> None:
     plan = asked("far")
     (cue,) = plan.layers["body"].cues
     times = np.concatenate([np.arange(0.6, cue.start, 0.1), np.arange(cue.start + 0.51, cue.end - 0.51, 0.1)])
-    off, on = (compute_pose_at(plan, project(planted), times) for planted in (0.0, 1.0))
+    off, on = (pose_at(plan, project(planted), times) for planted in (0.0, 1.0))
     assert (off.rotations == on.rotations).all()
     assert (off.translations == on.translations).all()
 
@@ -116,9 +116,9 @@ def test_nothing_pops() -> None:
 
 def test_a_pose_depends_on_plan_and_time_alone() -> None:
     plan, times = asked("far"), np.array([2.1, 2.3, 2.05, 4.2, 2.1])
-    at_once = compute_pose_at(plan, project(), times)
+    at_once = pose_at(plan, project(), times)
     for n in (3, 0, 2, 1, 4):
-        one = compute_pose_at(plan, project(), float(times[n]))
+        one = pose_at(plan, project(), float(times[n]))
         np.testing.assert_allclose(one.rotations, at_once.rotations[n], atol=1e-6)
     assert (at_once.rotations[0] == at_once.rotations[4]).all()
 

@@ -21,7 +21,7 @@ from metagraph.playback.posing.foot_slides import (
     measure_slide_speeds,
 )
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
-from tests.posing import compute_pose_at
+from tests.posing import pose_at
 
 
 def moved(sample: Project, way) -> FeetSeen:
@@ -75,7 +75,7 @@ def test_over_a_performance_nothing_slides_and_what_is_seen_piece_by_piece_is_th
     plan = make_plan(plan_as_in_paper(sample), 30.0, seed=3)
 
     def places(times):
-        return sample.skeleton.globals(compute_pose_at(plan, sample, times))[1]
+        return sample.skeleton.globals(pose_at(plan, sample, times))[1]
 
     whole = FeetWatch(sample, places, 30.0, plan).at(range(int(30 * RATE)))
     assert not whole.sliding().any()

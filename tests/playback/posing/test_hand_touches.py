@@ -12,12 +12,12 @@ import pytest
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.hand_touches import MISSED, HandTouch, find_hand_touches, plan_of_clip
-from tests.posing import compute_pose_at, contact_rig
+from tests.posing import contact_rig, pose_at
 
 
 def seen(project: Project, plan: Plan, seconds: float) -> Any:
     assert project.skeleton is not None
-    return project.skeleton.globals(compute_pose_at(plan, project, seconds))
+    return project.skeleton.globals(pose_at(plan, project, seconds))
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.planner import make_plan
 from metagraph.playback.posing.overlay import BLEND, Overlay, find_overlaid_joints, make_clip_overlay
-from tests.posing import compute_pose_at, overlaid
+from tests.posing import overlaid, pose_at
 
 TIMES = np.linspace(0.0, 6.0, 181)
 
@@ -52,7 +52,7 @@ def full(project: Project, **shares: float) -> Overlay:
 def test_legs_and_root_stay_with_the_plan(sample, plan, clip):
     sample = replace(sample, life=Life(follow_through=0))  # nobody answers arms that are not seen
     plain, made = (
-        compute_pose_at(plan, sample, TIMES),
+        pose_at(plan, sample, TIMES),
         overlaid(plan, sample, TIMES, make_clip_overlay(sample, clip, TIMES)),
     )
     legs = joints(sample, "legs")
@@ -71,7 +71,7 @@ def test_it_comes_and_goes_without_a_jump_and_ends_in_the_plan(sample, plan, cli
     made = overlaid(plan, sample, TIMES, over, alive=False).rotations
     steps = np.abs(np.diff(made, axis=0)).max((1, 2))
     assert steps.max() < 0.12
-    assert np.abs(made[-1] - compute_pose_at(plan, sample, TIMES, alive=False).rotations[-1]).max() < 1e-6
+    assert np.abs(made[-1] - pose_at(plan, sample, TIMES, alive=False).rotations[-1]).max() < 1e-6
 
 
 def test_a_clip_shorter_than_both_blends_still_comes_and_goes(sample, clip):
@@ -81,7 +81,7 @@ def test_a_clip_shorter_than_both_blends_still_comes_and_goes(sample, clip):
 
 def test_what_is_asked_of_the_arms_shows_the_plan_alone(sample, plan):
     asked = overlaid(plan, sample, 2.0, full(sample, arms=1.0))
-    assert np.allclose(asked.rotations, compute_pose_at(plan, sample, 2.0).rotations, atol=1e-5)
+    assert np.allclose(asked.rotations, pose_at(plan, sample, 2.0).rotations, atol=1e-5)
 
 
 def test_what_is_asked_of_the_head_takes_the_head_alone(sample, plan):
@@ -92,9 +92,7 @@ def test_what_is_asked_of_the_head_takes_the_head_alone(sample, plan):
 
 def test_no_overlay_is_the_plan_bit_for_bit(sample, plan):
     for over in (None, full(sample, weight=0.0)):
-        assert (
-            overlaid(plan, sample, 2.0, over).rotations == compute_pose_at(plan, sample, 2.0).rotations
-        ).all()
+        assert (overlaid(plan, sample, 2.0, over).rotations == pose_at(plan, sample, 2.0).rotations).all()
 
 
 def test_one_time_gives_what_many_do(sample, plan, clip):

@@ -30,7 +30,7 @@ from metagraph.playback.posing.follow_through import (
     knot_time,
 )
 from metagraph.playback.posing.weight import find_arm_track_rows
-from tests.posing import compute_pose_at, weight_of
+from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
 TIMES = np.arange(0.0, 40.0, 1 / 15)
@@ -56,7 +56,7 @@ def stiff() -> Project:
 
 @lru_cache(maxsize=2)
 def posed(answers: bool) -> Pose:
-    return compute_pose_at(plan(), sample() if answers else stiff(), TIMES)
+    return pose_at(plan(), sample() if answers else stiff(), TIMES)
 
 
 @lru_cache(maxsize=2)
@@ -95,34 +95,32 @@ def test_the_hips_go_against_the_arms() -> None:
 
 @pytest.mark.nightly
 def test_turned_off_poses_are_the_composed_ones_to_the_bit() -> None:
-    layers = compute_pose_at(plan(), with_dials(stiff(), planted_feet=0.0), TIMES)
+    layers = pose_at(plan(), with_dials(stiff(), planted_feet=0.0), TIMES)
     still = with_dials(sample(), stillness=1.0)
     dead = replace(sample(), life=msgspec.structs.replace(sample().life, on=False))
     for project in (with_dials(still, planted_feet=0.0), dead):
         rigid = with_dials(project, follow_through=0.0, shoulder_lift=0.0)
-        a, b = (compute_pose_at(plan(), p, TIMES[:200]) for p in (project, rigid))
+        a, b = (pose_at(plan(), p, TIMES[:200]) for p in (project, rigid))
         assert_array_equal(a.rotations, b.rotations)
         assert_array_equal(a.translations, b.translations)
-    assert_array_equal(
-        compute_pose_at(plan(), sample(), TIMES, alive=False).translations, layers.translations
-    )
+    assert_array_equal(pose_at(plan(), sample(), TIMES, alive=False).translations, layers.translations)
 
 
 def test_a_stance_at_rest_is_answered_by_nothing() -> None:
     resting = make_plan(sample(), 10.0, [], idle=False)
     times = np.linspace(0, 10, 61)
-    a, b = (compute_pose_at(resting, project, times) for project in (sample(), stiff()))
+    a, b = (pose_at(resting, project, times) for project in (sample(), stiff()))
     assert_array_equal(a.rotations, b.rotations)
     assert_array_equal(a.translations, b.translations)
 
 
 def test_each_pose_depends_on_plan_and_time_alone() -> None:
     order = np.random.default_rng(1).permutation(len(TIMES))
-    shuffled = compute_pose_at(plan(), sample(), TIMES[order])
+    shuffled = pose_at(plan(), sample(), TIMES[order])
     assert_allclose(shuffled.rotations, posed(True).rotations[order], atol=2e-7)
     for n in (40, 13, 300, 299):  # to and fro, with nothing remembered of another plan's object
         fresh = improvise(sample(), 60.0, seed=3)
-        one = compute_pose_at(fresh, sample(), float(TIMES[n]))
+        one = pose_at(fresh, sample(), float(TIMES[n]))
         assert_allclose(one.rotations, posed(True).rotations[n], atol=2e-7)
         assert_allclose(one.translations, posed(True).translations[n], atol=2e-7)
 
@@ -145,7 +143,7 @@ def test_knees_do_not_pop() -> None:
     skeleton = sample().skeleton
     assert skeleton is not None
     for project in (sample(), stiff()):
-        _, at = skeleton.globals(compute_pose_at(plan(), project, times))
+        _, at = skeleton.globals(pose_at(plan(), project, times))
         for side in ("left", "right"):
             hip, knee, foot = (at[:, roles[f"{side}_{p}"]] for p in ("upper_leg", "lower_leg", "foot"))
             a, b = knee - hip, foot - knee
@@ -168,8 +166,8 @@ def test_a_clip_that_the_body_plays_too_brings_its_own_hips() -> None:
     times = np.arange(0, 8, 1 / 15)
     apart = []
     for found in (once, twice):
-        a = compute_pose_at(found, both, times)
-        b = compute_pose_at(found, with_dials(both, follow_through=0.0, shoulder_lift=0.0), times)
+        a = pose_at(found, both, times)
+        b = pose_at(found, with_dials(both, follow_through=0.0, shoulder_lift=0.0), times)
         apart.append(np.abs(a.translations - b.translations).max())
     assert apart[0] > 0.0005
     assert apart[1] < 0.2 * apart[0]
@@ -210,8 +208,8 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
 def test_a_skeleton_that_lacks_what_it_takes_is_left_alone(role: str) -> None:
     project = replace(sample(), roles={role: "nothing"})
     assert weight_of(project).rig is None
-    pose = compute_pose_at(plan(), project, TIMES[:60])
-    rigid = compute_pose_at(plan(), with_dials(project, follow_through=0.0, shoulder_lift=0.0), TIMES[:60])
+    pose = pose_at(plan(), project, TIMES[:60])
+    rigid = pose_at(plan(), with_dials(project, follow_through=0.0, shoulder_lift=0.0), TIMES[:60])
     assert_array_equal(pose.rotations, rigid.rotations)
 
 
@@ -231,7 +229,7 @@ def test_who_sits_does_not_sway() -> None:
         rotations[entry.id] = replace(entry, motion=replace(clip, rotations=turns))
     seated = replace(project, clips={**project.clips, **rotations})
     a, b = (
-        compute_pose_at(found, p, TIMES[:300])
+        pose_at(found, p, TIMES[:300])
         for p in (seated, with_dials(seated, follow_through=0.0, shoulder_lift=0.0))
     )
     assert_array_equal(a.translations, b.translations)

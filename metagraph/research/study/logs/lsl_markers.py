@@ -9,7 +9,9 @@ from typing import Any
 
 import msgspec
 
-REMEDY = "install pylsl (pip install 'metagraph-studio[lab]'), or leave 'lsl: true' out of the study file"
+from metagraph.common.extras import is_bundle
+
+REMEDY = "install pylsl ({command}), or leave 'lsl: true' out of the study file"
 SENT = ("n", "type", "mono", "condition", "task", "name", "number")  # fields of an event
 
 
@@ -24,7 +26,9 @@ def open_marker_outlet(participant: str) -> Callable[[Mapping[str, Any]], None]:
     try:
         import pylsl  # loads its library on being imported
     except (ImportError, OSError, RuntimeError) as error:
-        raise MarkersError(f"the Lab Streaming Layer cannot be had ({error}): {REMEDY}") from None
+        command = "metagraph extras add lab" if is_bundle() else "pip install 'metagraph-studio[lab]'"
+        remedy = REMEDY.format(command=command)
+        raise MarkersError(f"the Lab Streaming Layer cannot be had ({error}): {remedy}") from None
     kind = pylsl.StreamInfo("Metagraph", "Markers", 1, 0, "string", f"metagraph-{participant}")
     stream = pylsl.StreamOutlet(kind)
 

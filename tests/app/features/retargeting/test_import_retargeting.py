@@ -12,7 +12,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.project import watching
-from app.project.autosave import make_state_folder
+from app.project.autosave import state_folder
 from app.project.kept_maps import keep_map, read_joint_maps
 from metagraph.motion.joint_map import JointMap, JointPair, make_fingerprint
 
@@ -265,7 +265,7 @@ def test_maps_are_kept_latest_last_and_damage_spoils_no_other(qapp):
     for n in (1, 2, 1):
         keep_map(made(n))
     assert [m.source for m in read_joint_maps().values()] == ["s2", "s1"]
-    place = make_state_folder() / "joint_maps.json"
+    place = state_folder() / "joint_maps.json"
     rows = json.loads(place.read_text())
     place.write_text(json.dumps([{"source": 1}, *rows]))
     assert [m.source for m in read_joint_maps().values()] == ["s2", "s1"]

@@ -49,6 +49,13 @@ def test_where_there_is_no_layer_the_remedy_is_told(monkeypatch: pytest.MonkeyPa
         open_marker_outlet("P01")
 
 
+def test_in_a_bundle_the_command_that_installs_it_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pylsl", None)
+    monkeypatch.setattr("metagraph.research.study.logs.lsl_markers.is_bundle", lambda: True)
+    with pytest.raises(MarkersError, match="metagraph extras add lab"):
+        open_marker_outlet("P01")
+
+
 def test_markers_reach_a_recorder_on_this_machine() -> None:
     pylsl = pytest.importorskip(
         "pylsl", reason="pylsl is not installed", exc_type=(ImportError, RuntimeError)
