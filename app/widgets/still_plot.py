@@ -29,8 +29,7 @@ def make_number_axes() -> dict[str, NumberAxis]:
 
 def make_still_plot(parent: QWidget) -> Any:
     """Return an empty plot without menu, zoom or focus, with axes that keep their unit."""
-    plot = pg.PlotWidget(parent, axisItems=make_number_axes())
-    plot.setMenuEnabled(False)
+    plot = pg.PlotWidget(parent, axisItems=make_number_axes(), enableMenu=False)
     plot.setMouseEnabled(False, False)
     plot.hideButtons()
     plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)

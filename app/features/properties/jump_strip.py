@@ -28,10 +28,9 @@ class JumpStrip(pg.PlotWidget):
     """A thin plot under the timing's, in step with it."""
 
     def __init__(self, parent: QWidget, above: pg.PlotWidget) -> None:
-        super().__init__(parent)
+        super().__init__(parent, enableMenu=False)
         self.seen: SeenJumps | None = None
         self.subject: tuple[Project, Action] | None = None
-        self.setMenuEnabled(False)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setMouseEnabled(False, False)
         self.hideButtons()

@@ -143,10 +143,11 @@ class PropertiesPanel(QScrollArea):
     def show_selection(self) -> None:
         actions = self.session.selection.selected_actions()
         clips = self.session.selection.clips
+        if self._fetching and actions:  # what was shown stays until it is there
+            return  # not asked of sys.modules, which lists a module while it is still being imported
         if actions and self._action is None and PLOTS not in sys.modules:
-            if not self._fetching:  # what was shown stays until it is there
-                self._fetching = True
-                self._fetch((PLOTS,), self._fetched)
+            self._fetching = True
+            self._fetch((PLOTS,), self._fetched)
             return
         self._turn_to(1 if actions else 2 if clips else 0)
         if actions:

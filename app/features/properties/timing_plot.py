@@ -62,8 +62,7 @@ class TimingPlot(QWidget):
         self.document, self.session = document, session
         self.action: Action | None = None
         self._setting = False
-        self.plot = pg.PlotWidget(self, axisItems=make_number_axes())
-        self.plot.setMenuEnabled(False)
+        self.plot = pg.PlotWidget(self, axisItems=make_number_axes(), enableMenu=False)
         self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the fields beside it have keys
         self.plot.setMouseEnabled(False, False)
         self.plot.hideButtons()

@@ -1,0 +1,31 @@
+"""The page of actions is made when its modules are there; until then nothing waits for them."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+
+from app.features.properties.properties_panel import PLOTS, PropertiesPanel
+from app.project.document import Document
+from app.stage.session import StageSession
+from metagraph.graph import edits
+
+
+def test_an_edit_while_the_plots_are_imported_does_not_wait_for_them(qtbot, monkeypatch, toy):
+    asked = []
+    document = Document()
+    document.load(toy.project(), None)
+    session = StageSession(document)
+    monkeypatch.delitem(sys.modules, PLOTS, raising=False)
+    panel = PropertiesPanel(document, session, lambda modules, go_on: asked.append(go_on), lambda page: None)
+    qtbot.addWidget(panel)
+    action = toy.id(document.project, "rest long")
+    session.selection.select_actions((action,))
+    assert len(asked) == 1 and panel.pages.currentIndex() == 0
+    # From here on the module is listed, but another thread holds its lock until it has been imported.
+    monkeypatch.setitem(sys.modules, PLOTS, ModuleType(PLOTS))
+    document.edit("Change timing", lambda p: edits.update_actions(p, (action,), timing={"blend_in": 0.31}))
+    assert len(asked) == 1 and panel.pages.currentIndex() == 0
+    monkeypatch.delitem(sys.modules, PLOTS)
+    asked[0]()
+    assert len(asked) == 2, "it is asked for again, since it is not there"
