@@ -28,7 +28,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "keypoints",
         type=Path,
-        help="OpenPose's or MediaPipe's keypoints: a JSON file, or a folder of OpenPose frames",
+        help="OpenPose's or MediaPipe's keypoints: a JSON file, or a folder of OpenPose frames; or "
+        "markers of motion capture (.trc, .c3d)",
     )
     parser.add_argument(
         "-o",

@@ -12,6 +12,7 @@ from pathlib import Path
 from metagraph.common.wording import phrase
 from metagraph.formats.face_exports import is_face_json, is_face_table
 from metagraph.formats.live_link_face import is_live_link
+from metagraph.formats.markers.marker_take import is_c3d, is_trc
 from metagraph.motion.clip import Clip
 
 HEAD = 4096  # bytes that show what a file is
@@ -74,6 +75,12 @@ def _read_face_export(path: Path, as_is: Collection[str]) -> list[Clip]:
     return [read_face_export(path)]
 
 
+def _read_markers(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.markers.marker_clips import read_marker_clip
+
+    return [read_marker_clip(path)]
+
+
 def _is_fbx(head: bytes, text: bytes) -> bool:
     return (
         head.startswith(b"Kaydara FBX Binary") or text.startswith(b"; FBX") or b"FBXHeaderExtension" in head
@@ -120,6 +127,8 @@ READERS = [
         lambda head, text: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
         _read_smpl,
     ),
+    ClipReader(phrase("markers (TRC)"), (".trc",), lambda head, text: is_trc(head), _read_markers),
+    ClipReader(phrase("markers (C3D)"), (".c3d",), lambda head, text: is_c3d(head), _read_markers),
 ]
 
 

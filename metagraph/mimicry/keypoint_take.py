@@ -40,9 +40,12 @@ class KeypointTakeError(ValueError):
     """These keypoints cannot be made into motion; the message says why, and what to do."""
 
 
-def make_clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name: str) -> Clip:
-    """Return a clip of the skeleton at `FPS` frames a second that moves as a person's keypoints do. Raises
-    KeypointTakeError if they are flat, too few, or the skeleton lacks arms, legs or a head.
+def make_clip_from_keypoints(
+    keypoints: KeypointTrack, skeleton: Skeleton, name: str, fps: float = FPS, smooth: float = SMOOTH
+) -> Clip:
+    """Return a clip of the skeleton at `fps` frames a second that moves as a person's keypoints do. Places
+    are smoothed over `smooth` seconds, a standard deviation. Raises KeypointTakeError if they are flat, too
+    few, or the skeleton lacks arms, legs or a head.
     """
     if keypoints.dims < 3:
         raise KeypointTakeError(
@@ -53,7 +56,7 @@ def make_clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name:
     missing = [role for role in NEEDED if role not in roles]
     if missing:
         raise KeypointTakeError(f"the skeleton has no {', '.join(missing)}: name them in its joints' roles")
-    times, places = _even(keypoints)
+    times, places = _even(keypoints, fps, smooth)
     seen = {point: places[:, n] for point, n in PLACE.items()}
     turns = _turned(skeleton, roles, seen)
     rest = skeleton.rest
@@ -64,18 +67,18 @@ def make_clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name:
             if parent < 0
             else rotation.multiply(rotation.conjugate(turns[:, parent]), turns[:, joint])
         )
-    root = _placed(skeleton, roles, local, seen)
+    root = _placed(skeleton, roles, local, seen, smooth * fps)
     translations = np.repeat(rest.translations[None, :1], len(times), 0)
     translations[:, 0] = root
-    return Clip(name, skeleton, FPS, rotation.make_continuous(local), translations)
+    return Clip(name, skeleton, fps, rotation.make_continuous(local), translations)
 
 
-def _even(keypoints: KeypointTrack) -> tuple[Array, Array]:
+def _even(keypoints: KeypointTrack, fps: float, smooth: float) -> tuple[Array, Array]:
     """Return even times `[F]` and smoothed places `[F, 17, 3]` of the points, gaps bridged."""
     places, sure = keypoints.canonical
     if len(keypoints) < 2 or keypoints.seconds <= keypoints.times[0]:
         raise KeypointTakeError("one frame is no motion: give a recording")
-    times = np.arange(keypoints.times[0], keypoints.seconds + 1e-9, 1 / FPS)
+    times = np.arange(keypoints.times[0], keypoints.seconds + 1e-9, 1 / fps)
     out = np.empty((len(times), len(PLACE), 3))
     for name, n in PLACE.items():
         there = (sure[:, n] >= SURE) & np.isfinite(places[:, n]).all(-1)
@@ -90,13 +93,14 @@ def _even(keypoints: KeypointTrack) -> tuple[Array, Array]:
         before = np.maximum(after - 1, 0)
         long = (at[after] - at[before] > LONGEST_GAP) & (times < at[after])
         known[long] = of[before[long]]
-        out[:, n] = _smoothed(known)
+        out[:, n] = _smoothed(known, smooth * fps)
     return times - times[0], out
 
 
-def _smoothed(places: Array) -> Array:
-    reach = max(1, round(3 * SMOOTH * FPS))
-    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (SMOOTH * FPS)) ** 2)
+def _smoothed(places: Array, frames: float) -> Array:
+    """Return places `[F, D]` under a bell whose standard deviation is so many frames."""
+    reach = max(1, round(3 * frames))
+    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / frames) ** 2)
     padded = np.pad(places, ((reach, reach), (0, 0)), mode="edge")
     return np.stack(
         [np.convolve(padded[:, axis], kernel / kernel.sum(), "valid") for axis in range(places.shape[1])], -1
@@ -239,7 +243,9 @@ def _head(seen: Mapping[str, Array], chest: Array, skeleton: Skeleton, roles: Ma
     return rotation.multiply(turn, np.broadcast_to(level, turn.shape))
 
 
-def _placed(skeleton: Skeleton, roles: Mapping[str, int], local: Array, seen: Mapping[str, Array]) -> Array:
+def _placed(
+    skeleton: Skeleton, roles: Mapping[str, int], local: Array, seen: Mapping[str, Array], smooth: float
+) -> Array:
     """Return where the root is `[F, 3]`: over the floor on the lower foot, aside as far as the hips went."""
     rest = skeleton.rest
     pose = Pose(local, np.repeat(rest.translations[None], len(local), 0))
@@ -254,5 +260,5 @@ def _placed(skeleton: Skeleton, roles: Mapping[str, int], local: Array, seen: Ma
     scale = own / max(float(np.median(bone)), 1e-6) if own > 0 else 1.0
     root = np.repeat(rest.translations[:1], len(local), 0)
     root[:, [0, 2]] += (hips - hips[0])[:, [0, 2]] * scale
-    root[:, 1] += _smoothed((floor - lowest)[:, None])[:, 0]
+    root[:, 1] += _smoothed((floor - lowest)[:, None], smooth)[:, 0]
     return root

@@ -18,6 +18,8 @@ from metagraph.motion.forward import Forward
 
 Array = NDArray[Any]
 
+FARTHEST = 1e9  # metres between a joint and its parent: more is a broken file
+
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
@@ -54,8 +56,8 @@ class Skeleton:
             raise ValueError("joint names must be unique")
         if parents[0] != -1 or np.any(parents >= np.arange(count)) or np.any(parents < -1):
             raise ValueError("every joint's parent must come before it, and joint 0 must be a root")
-        if not (np.isfinite(rotations).all() and np.isfinite(translations).all()):
-            raise ValueError("the rest pose holds a value that is not a number")
+        if not (np.isfinite(rotations).all() and (np.abs(translations) < FARTHEST).all()):
+            raise ValueError("the rest pose holds a value that is not a number, or far too large")
         for array in (parents, rotations, translations):
             array.setflags(write=False)
         object.__setattr__(self, "parents", parents)

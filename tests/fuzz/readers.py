@@ -254,6 +254,16 @@ def _keypoints() -> dict[str, bytes]:
     return {name: json.dumps(data).encode() for name, data in found.items()}
 
 
+def _markers() -> dict[str, bytes]:
+    from metagraph.formats.clips import read_clips
+    from tests.formats.markers.made_markers import joint_markers, skin_markers, write_c3d, write_trc
+
+    clip = read_clips(min(SAMPLES.glob("clips/*.glb")))[0]
+    few = {name: places[:6] for name, places in skin_markers(clip).items()}
+    joints = {name: places[:6] for name, places in joint_markers(clip).items()}
+    return {"a.trc": write_trc(few, 60), "b.trc": write_trc(joints, 60, "m"), "c.c3d": write_c3d(few, 60)}
+
+
 def every_reader() -> dict[str, Fuzzed]:
     from app.features.lines.line_files import read_lines
     from app.project.pattern_files import read_patterns
@@ -356,6 +366,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
         "faces": Fuzzed(read_clips, _faces, JSON, spoilt_words),
         "smpl": Fuzzed(read_clips, _smpl, (b"PK", b"NUMPY", b"poses.npy", b"<f8"), spoilt_archive),
+        "markers": Fuzzed(read_clips, _markers, (b"\t", b"\n", b"nan", b"1e300", b"LASI", b"POINT", b"\xff\xff"), spoilt_words),
         "acclaim": Fuzzed(acclaim, _acclaim, (b":bonedata", b"begin", b"dof rx", b"root", b"length"), spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),

@@ -36,7 +36,7 @@ from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, place
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-FILTER = tr_noop("Keypoints of OpenPose or MediaPipe (*.json *.jsonl);;All files (*)")
+FILTER = tr_noop("Keypoints of OpenPose or MediaPipe, markers (*.json *.jsonl *.trc *.c3d);;All files (*)")
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints" / "conversation.openpose.json"
 _NUMBERED = re.compile(r"_\d+_keypoints\.json$", re.I)
 

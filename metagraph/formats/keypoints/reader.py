@@ -6,7 +6,8 @@ object that holds one, or one object a line. A frame is OpenPose's (`people`, ea
 `_3d`) or MediaPipe's (33 landmarks of one person or several, however `worldLandmarks`, `poseLandmarks`,
 `pose_landmarks` ... is spelt), or COCO's (`keypoints`), with MMPose's scores beside them (`instances`,
 `keypoint_scores`). OpenPose's people have `pose_keypoints` before 1.2, `body_parts` in 1.0 and `joints` (of
-`bodies`) before. Points count 15, 17, 18, 25, 26, 33 or 133.
+`bodies`) before. Points count 15, 17, 18, 25, 26, 33 or 133. Markers of motion capture (TRC, C3D) are read
+by `metagraph.formats.markers`.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from metagraph.formats.keypoints.frames import (
     normalize_key,
     read_frame,
 )
+from metagraph.formats.markers.marker_clips import read_marker_track
 from metagraph.mimicry.keypoint_layouts import (
     BY_COUNT,
     H36M,
@@ -82,6 +84,8 @@ def read_keypoints(
 @guard_reader
 def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | None) -> KeypointTrack:
     path = Path(path)
+    if path.suffix.lower() in (".trc", ".c3d"):
+        return read_marker_track(path)
     head = _Head()
     found = _folder(path) if path.is_dir() else _file(path, head)
     frames = _joined(islice(found, KEYPOINT_FRAMES + 1))
