@@ -7,11 +7,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from metagraph import engines
-
 AGENTS = Path(__file__).with_name("agents")
 PARTS = ("requests", "moods", "speech")  # what every runtime takes
-PAGE = Path(engines.__file__).with_name("runtimes") / "requests.md"
+PAGE = Path(__file__).parents[1] / "metagraph" / "engines" / "runtimes" / "requests.md"
 SESSION_ONLY = {
     "bml",
     "keypoints",

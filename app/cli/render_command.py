@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from preview.scene import SceneTheme
 
 Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
-MOTION = (".glb", ".usda", ".bvh")  # what `bake_to` writes
+MOTION = (".glb", ".usda", ".bvh", ".npz")  # what `bake_to` writes
 TOGETHER = 32  # poses of a video made at once
 
 
@@ -34,13 +34,27 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     add_performance_arguments(parser, 10.0)
     parser.add_argument(
-        "-o", "--out", type=Path, required=True, help="the .png, .mp4, .glb, .usda or .bvh file to write"
+        "-o",
+        "--out",
+        type=Path,
+        required=True,
+        help="the file to write: .png, .mp4, .glb, .usda, .bvh, or .npz (SMPL-H, as in AMASS)",
     )
     parser.add_argument(
         "--progress", action="store_true", help="report progress after each picture of a video"
     )
     parser.add_argument(
         "--start", type=float, default=0.0, help="second of the performance to start at (default: 0)"
+    )
+    parser.add_argument(
+        "--bvh-order",
+        type=str.upper,
+        default="ZXY",
+        choices=["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"],
+        help="order of rotations in a .bvh file (default: ZXY; Xsens and Axis Neuron write YXZ)",
+    )
+    parser.add_argument(
+        "--bvh-metres", action="store_true", help="write a .bvh file in metres (default: centimetres)"
     )
     parser.add_argument("--clip", help="draw only this clip of the project")
     parser.add_argument(
@@ -226,7 +240,8 @@ def run(options: Namespace) -> int:
     if options.out.suffix not in (".png", ".mp4", *MOTION):
         name = options.out.suffix or options.out.name
         raise ValueError(
-            f"pictures can be written as .png, videos as .mp4, motion as .glb, .usda or .bvh, not as '{name}'"
+            "pictures can be written as .png, videos as .mp4, motion as .glb, .usda, .bvh or .npz, not as "
+            f"'{name}'"
         )
     size, folder = read_size(options.size), options.project.resolve().parent
     clip = None
@@ -248,7 +263,8 @@ def run(options: Namespace) -> int:
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
-            bake_to(out, one, options.seconds, options.fps, one.folder or folder, options.start)
+            style = options.bvh_order, options.bvh_metres
+            bake_to(out, one, options.seconds, options.fps, one.folder or folder, options.start, style)
     else:
         from preview.looks import look_of
 
@@ -388,15 +404,22 @@ def draw_to(
 
 
 def bake_to(
-    out: Path, shown: ShownPlayback, seconds: float, fps: float, folder: Path, start: float = 0.0
+    out: Path,
+    shown: ShownPlayback,
+    seconds: float,
+    fps: float,
+    folder: Path,
+    start: float = 0.0,
+    bvh: tuple[str, bool] = ("ZXY", False),
 ) -> None:
     """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a
-    planner.
+    planner. bvh: the order of rotations in a BVH file, and whether it is in metres.
 
     A GLB and a USD stage have the character in them, where the project has one.
     """
-    from metagraph.formats.bvh.file import write_bvh
+    from metagraph.formats.bvh.file import BvhStyle, write_bvh
     from metagraph.formats.gltf.writer import write_glb
+    from metagraph.formats.smpl_writer import write_smpl
     from metagraph.formats.usd.writer import write_usd
 
     project = shown.project
@@ -409,7 +432,9 @@ def bake_to(
     assert motion is not None
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".bvh":
-        write_bvh(motion, out)
+        write_bvh(motion, out, BvhStyle(*bvh))
+    elif out.suffix == ".npz":
+        write_smpl(motion, out)
     else:
         body = None
         if project.character is not None:

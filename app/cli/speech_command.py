@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.model import Project
     from metagraph.speech.duet import DuetPart
 
-OUT = (".eaf", ".TextGrid", ".json")
+OUT = (".eaf", ".TextGrid", ".vtt", ".srt", ".tsv", ".json")  # `CONVERSATION_OUTPUTS`, imported when written
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -42,7 +42,13 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="transcripts with times: TextGrid, ELAN, subtitles, JSON of a speech service and others; one "
         "for all, or one per speaker (default: use loudness)",
     )
-    parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=Path,
+        help="write words, segments and peaks (.eaf, .TextGrid, .json), captions (.vtt, .srt), or the mouth "
+        "shapes of one speaker as Rhubarb writes them (.tsv)",
+    )
     add_language_arguments(parser, "the project's language, else auto")
     parser.add_argument(
         "--speakers",
@@ -193,14 +199,10 @@ def _write(out: Path, read: Read, folder: Path | None) -> None:
     import msgspec
 
     from metagraph.common.xml_text import describe_replaced
-    from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
+    from metagraph.formats.conversations.output_kinds import find_conversation_output, write_conversation
 
-    kind = out.suffix.casefold()
-    if kind == ".eaf":
-        write_elan(read.conversation, out, folder)
-        if (lost := describe_replaced([msgspec.to_builtins(read.conversation)])) is not None:
-            print(f"note: {lost}", file=sys.stderr)
-    elif kind == ".json":
-        write_json(read.conversation, out)
-    else:
-        write_textgrid(read.conversation, out)
+    write_conversation(read.conversation, out, folder)
+    kind = find_conversation_output(out)
+    lost = describe_replaced([msgspec.to_builtins(read.conversation)])
+    if kind is not None and kind.xml and lost is not None:
+        print(f"note: {lost}", file=sys.stderr)

@@ -69,7 +69,7 @@ def read_smpl(path: str | Path) -> Clip:
     places = _places(path, arrays, frames, notes)
     turned = _from_vectors(poses)
     places, turned[:, 0] = _upright(places, turned[:, 0], notes)
-    skeleton = _skeleton(joints)
+    skeleton = make_smpl_figure(joints)
     left = [k for k in ("betas", "dmpls", "expressions") if k in arrays]
     if left:
         notes.append(phrase("left out: {names}", names=", ".join(left)))
@@ -217,8 +217,10 @@ def _upright(places: Array, root: Array, notes: list[str]) -> tuple[Array, Array
     return rotation.rotate_vectors(turns, places), rotation.multiply(turns, root)
 
 
-def _skeleton(joints: int) -> Skeleton:
-    """Return the figure at rest: arms to the sides, looking along +Z."""
+def make_smpl_figure(joints: int) -> Skeleton:
+    """Return the figure of a model with so many joints (22, 24, 52 or 55) at rest: arms to the sides, looking
+    along +Z.
+    """
     h = _HEIGHT
     waist, hip, shoulder = 0.556, 0.53, 0.818  # heights as shares of the stature
     at = {

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog
 from app.project.document import Edit
 from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, find_transcripts_beside, sort_speech_files
-from app.translation import tr, tr_error, tr_noop
+from app.translation import tr, tr_error, tr_phrase
 from metagraph.errors import FileError
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import MOST_SPEAKERS, Conversation
@@ -22,8 +22,6 @@ from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
-
-ELAN, TEXTGRID = tr_noop("ELAN annotation (*.eaf)"), tr_noop("Praat TextGrid (*.TextGrid)")
 
 
 def _filter() -> str:
@@ -142,22 +140,24 @@ def write_segments(shell: Shell) -> None:
     found = get_conversation(shell)
     if found is None:
         return
+    from metagraph.formats.conversations.output_kinds import (
+        CONVERSATION_OUTPUTS,
+        find_conversation_output,
+        write_conversation,
+    )
+
     start = (shell.document.folder or Path.home()) / f"{found[1].name}.eaf"
-    name, kind = QFileDialog.getSaveFileName(
-        shell.widget, tr("Export segments"), str(start), f"{tr(ELAN)};;{tr(TEXTGRID)}"
+    endings = {f"{tr_phrase(kind.name)} (*{kind.ending})": kind.ending for kind in CONVERSATION_OUTPUTS}
+    name, chosen = QFileDialog.getSaveFileName(
+        shell.widget, tr("Export conversation"), str(start), ";;".join(endings)
     )
     if not name:
         return
     path = Path(name)
-    if path.suffix.lower() not in (".eaf", ".textgrid"):
-        path = path.with_name(path.name + (".TextGrid" if kind == tr(TEXTGRID) else ".eaf"))
-    from metagraph.formats.conversations.writers import write_elan, write_textgrid
-
+    if find_conversation_output(path) is None:
+        path = path.with_name(path.name + endings.get(chosen, ".eaf"))
     try:
-        if path.suffix.lower() == ".textgrid":
-            write_textgrid(found[1], path)
-        else:
-            write_elan(found[1], path, shell.document.folder)
+        write_conversation(found[1], path, shell.document.folder)
     except (FileError, OSError) as error:
         shell.tell(tr_error(error))
         return

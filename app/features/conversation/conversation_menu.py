@@ -178,7 +178,7 @@ COMMANDS = (
         "write_segments",
         MENU,
         "write",
-        tr_noop("&Export segments…"),
+        tr_noop("&Export conversation…"),
         partial(ConversationFeature.do, name="write_segments"),
         enabled=is_conversation_staged,
         tip=tr_noop("Save the segments as ELAN or Praat TextGrid"),

@@ -528,25 +528,43 @@ def _turn_up(roots: Array, rotations: Array, offsets: Array, placed: dict[int, A
             placed[i] = rotation.rotate_vectors(_TO_Y_UP, placed[i])
 
 
-def write_bvh(clip: Clip, path: str | Path) -> None:
-    """Write a clip as BVH in centimetres, with rotations in ZXY order and positions for every joint that has
-    translations.
-
-    BVH has no rest rotations and no morph targets: these are lost, the motion is not. Raises FileError.
+@dataclass(frozen=True)
+class BvhStyle:
+    """How a BVH file is written. order: of its rotations, the outermost first, three of XYZ in any order.
+    metres: whether lengths are metres, as Blender takes them, and not centimetres, as most programs do.
+    every_place: whether each joint has positions, and not only those that move.
     """
+
+    order: str = "ZXY"
+    metres: bool = False
+    every_place: bool = False
+
+
+def write_bvh(clip: Clip, path: str | Path, style: BvhStyle | None = None) -> None:
+    """Write a clip as BVH, in centimetres and ZXY unless a style says otherwise.
+
+    BVH has no rest rotations and no morph targets: these are lost, the motion is not. Raises FileError, and
+    ValueError for an order that is none.
+    """
+    style = style or BvhStyle()
+    if sorted(style.order) != ["X", "Y", "Z"]:
+        raise ValueError(f"the order of rotations has each of X, Y and Z once, '{style.order}' has not")
     skeleton = clip.skeleton
+    scale = 1.0 if style.metres else 100.0
+    placed = range(len(skeleton)) if style.every_place else clip.translated
+    turns = " ".join(f"{axis}rotation" for axis in style.order)
     lines = ["HIERARCHY"]
 
     def describe(joint: int, depth: int) -> None:
         tab = "\t" * depth
-        offset = skeleton.rest_translations[joint] * 100
+        offset = skeleton.rest_translations[joint] * scale
         lines.append(
             f"{tab}{'ROOT' if skeleton.parents[joint] < 0 else 'JOINT'} "
             f"{skeleton.names[joint].replace(' ', '_')}"
         )
         lines.extend((f"{tab}{{", f"{tab}\tOFFSET {offset[0]:.6f} {offset[1]:.6f} {offset[2]:.6f}"))
-        position = "6 Xposition Yposition Zposition" if joint in clip.translated else "3"
-        lines.append(f"{tab}\tCHANNELS {position} Zrotation Xrotation Yrotation")
+        position = "6 Xposition Yposition Zposition" if joint in placed else "3"
+        lines.append(f"{tab}\tCHANNELS {position} {turns}")
         order.append(joint)
 
     order: list[int] = []
@@ -561,7 +579,7 @@ def write_bvh(clip: Clip, path: str | Path) -> None:
         stack.append((-1, depth))
         stack.extend((child, depth + 1) for child in reversed(skeleton.children[joint]))
         if not skeleton.children[joint]:
-            tip = skeleton.rest_translations[joint] * (50 if skeleton.parents[joint] >= 0 else 0)
+            tip = skeleton.rest_translations[joint] * (scale / 2 if skeleton.parents[joint] >= 0 else 0)
             lines.extend(
                 (
                     f"{tab}\tEnd Site",
@@ -571,11 +589,12 @@ def write_bvh(clip: Clip, path: str | Path) -> None:
                 )
             )
     lines.extend(("MOTION", f"Frames: {clip.frames}", f"Frame Time: {1 / clip.fps:.12f}"))
-    angles = np.degrees(rotation.to_euler(clip.rotations.astype(np.float64), "ZXY"))
+    angles = np.degrees(rotation.to_euler(clip.rotations.astype(np.float64), style.order))
+    places = clip.poses().translations.astype(np.float64)
     blocks = []
     for joint in order:
-        if joint in clip.translated:
-            blocks.append(clip.translations[:, clip.translated.index(joint)].astype(np.float64) * 100)
+        if joint in placed:
+            blocks.append(places[:, joint] * scale)
         blocks.append(angles[:, joint])
     rows = np.concatenate(blocks, 1)
     pattern = " ".join(["%.6f"] * rows.shape[1])

@@ -87,7 +87,7 @@ def test_bad_usage_says_what_is_right(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["speech", str(files[0]), "-o", str(tmp_path / "a.mp4")]) == 1
-    assert ".eaf, .TextGrid, .json" in capsys.readouterr().err
+    assert ".eaf, .TextGrid, .vtt, .srt, .tsv, .json" in capsys.readouterr().err
     assert main(["speech", *[str(files[0])] * 9]) == 1
     assert "up to 8 sound files" in capsys.readouterr().err
     assert main(["speech", *[str(files[0])] * 3, "--words", *[str(files[1])] * 2]) == 1

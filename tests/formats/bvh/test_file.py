@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.bvh.file import read_bvh, write_bvh
+from metagraph.formats.bvh.file import BvhStyle, read_bvh, write_bvh
 from metagraph.formats.takes import FRAME_TIME, FROM_OFFSET
 from metagraph.motion import rotation
 from metagraph.motion.adopt import describe_difference
@@ -414,15 +414,20 @@ def test_a_bind_pose_left_on_the_first_frame_is_dropped_with_a_note(tmp_path: Pa
 # --- writing
 
 
-def test_written_and_read_back_the_motion_is_the_same(path: Path) -> None:
+@pytest.mark.parametrize(
+    "style",
+    [BvhStyle(), BvhStyle("YXZ", every_place=True), BvhStyle("XYZ", metres=True), BvhStyle("ZYX")],
+    ids=lambda style: f"{style.order}{' metres' * style.metres}",
+)
+def test_written_and_read_back_the_motion_is_the_same(path: Path, style: BvhStyle) -> None:
     rng = np.random.default_rng(3)
     skeleton = mannequin_skeleton()
     rotations = rotation.normalize(rng.normal(size=(20, len(skeleton), 4))).astype(np.float32)
     translated = (0, 5, 9)
     translations = skeleton.rest_translations[list(translated)] + rng.normal(size=(20, 3, 3))
     clip = Clip("wild", skeleton, 24, rotation.make_continuous(rotations), translations, translated)
-    write_bvh(clip, path)
-    back = read_bvh(path, 0.01)
+    write_bvh(clip, path, style)
+    back = read_bvh(path, 1.0 if style.metres else 0.01)
     assert back.fps == 24 and back.frames == 20
     mine, theirs = skeleton.globals(clip.poses()), back.skeleton.globals(back.poses())
     order = [back.skeleton.index(name) for name in skeleton.names]
@@ -430,6 +435,14 @@ def test_written_and_read_back_the_motion_is_the_same(path: Path) -> None:
     assert (
         rotation.measure_angle_between(theirs[0][:, order].astype(float), mine[0].astype(float)).max() < 1e-5
     )
+
+
+def test_an_order_that_is_none_is_refused(path: Path) -> None:
+    still = Clip(
+        "x", mannequin_skeleton(), 30, mannequin_skeleton().rest.rotations[None], np.zeros((1, 1, 3))
+    )
+    with pytest.raises(ValueError, match="each of X, Y and Z once, 'XXY' has not"):
+        write_bvh(still, path, BvhStyle("XXY"))
 
 
 def test_writing_into_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
