@@ -105,7 +105,7 @@ def note_unused_channels(gltf: Gltf, table: ChannelTable, number: int) -> list[s
     own = slice(table.begins[number], table.begins[number + 1])
     unknown = np.flatnonzero((table.nodes[own] < 0) | (table.paths[own] == UNKNOWN)).tolist()
     channels = gltf.json.animations[number].channels if unknown else []
-    paths = sorted({channels[channel].target.path for channel in unknown})
+    paths = sorted({channels[channel].target.resolved.path for channel in unknown})
     return [f"channels for '{path[:40]}' were left out" for path in paths]
 
 

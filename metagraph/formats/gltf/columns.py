@@ -122,8 +122,9 @@ class ChannelTable:
         every = [c for animation in animations for c in animation.channels]
         samplers = [s for animation in animations for s in animation.samplers]
         which = make_column([c.sampler for c in every])
-        nodes = make_column([-1 if c.target.node is None else c.target.node for c in every])
-        paths = make_column([PATHS.get(c.target.path, UNKNOWN) for c in every])
+        targets = [c.target if c.target.extensions is None else c.target.resolved for c in every]
+        nodes = make_column([-1 if t.node is None else t.node for t in targets])
+        paths = make_column([PATHS.get(t.path, UNKNOWN) for t in targets])
         inputs, outputs = make_column([s.input for s in samplers]), make_column([s.output for s in samplers])
         modes = make_column([MODES.get(s.interpolation, NO_MODE) for s in samplers])
         of = np.repeat(np.arange(len(animations)), counts)

@@ -44,6 +44,7 @@ _KNOWN = (
     "KHR_xmp",
     "VRM",
     "KHR_node_visibility",
+    "KHR_animation_pointer",
 )
 DRACO = "KHR_draco_mesh_compression"
 _REMEDIES = {

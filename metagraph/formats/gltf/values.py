@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated
 
 import msgspec
 
 from metagraph.formats.gltf.meshopt import MeshoptFilter, MeshoptMode
 
+_POINTER = re.compile(r"/nodes/(\d{1,9})/(translation|rotation|scale|weights)")  # KHR_animation_pointer's
 Index = Annotated[int, msgspec.Meta(ge=0)]
 Vec3 = tuple[float, float, float]
 Vec4 = tuple[float, float, float, float]
@@ -97,9 +99,31 @@ class Skin(_Value):
     skeleton: Index | None = None
 
 
+class PointerTarget(_Value):
+    """The KHR_animation_pointer extension of a target: a JSON pointer to what moves."""
+
+    pointer: str
+
+
+class TargetExtensions(msgspec.Struct, gc=False):
+    pointed: PointerTarget | None = msgspec.field(name="KHR_animation_pointer", default=None)
+
+
 class GltfTarget(_Value):
     path: str
     node: Index | None = None
+    extensions: TargetExtensions | None = None
+
+    @property
+    def resolved(self) -> GltfTarget:
+        """Return what a pointer to a node's own transform or weights says in glTF 2.0's words; of another
+        pointer, a target without a node whose path is the pointer.
+        """
+        if self.path != "pointer" or self.extensions is None or self.extensions.pointed is None:
+            return self
+        pointer = self.extensions.pointed.pointer
+        found = _POINTER.fullmatch(pointer)
+        return GltfTarget(found[2], int(found[1])) if found is not None else GltfTarget(pointer)
 
 
 class Channel(_Value):

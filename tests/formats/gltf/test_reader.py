@@ -629,6 +629,35 @@ def test_the_motion_of_a_file_packed_with_draco_is_read_and_its_mesh_refused_wit
         read_character(tmp_path / "file.glb")
 
 
+def by_pointers(scene: Scene, **others: str) -> Scene:
+    """The same animations with KHR_animation_pointer; others: pointers instead of those to nodes, by path."""
+    for animation in scene.json["animations"]:
+        for channel in animation["channels"]:
+            target = channel["target"]
+            pointer = f"/nodes/{target['node']}/{target['path']}"
+            said = {"KHR_animation_pointer": {"pointer": others.get(target["path"], pointer)}}
+            channel["target"] = {"path": "pointer", "extensions": said}
+    scene.json["extensionsUsed"] = scene.json["extensionsRequired"] = ["KHR_animation_pointer"]
+    return scene
+
+
+def test_animation_pointers_to_joints_and_weights_move_what_they_point_to(tmp_path: Path) -> None:
+    for made in (bending, smiling):
+        plain, pointed = read_one(made(), tmp_path), read_one(by_pointers(made()), tmp_path, "pointed.glb")
+        assert np.array_equal(plain.rotations, pointed.rotations)
+        assert plain.morphs == pointed.morphs and np.array_equal(plain.weights, pointed.weights)
+
+
+def test_a_pointer_to_something_else_is_left_out_by_name(tmp_path: Path) -> None:
+    scene = bending()
+    more = [(1, "translation", [0, 1], [[0, 1, 0], [0, 1.2, 0]], "LINEAR")]
+    scene.animate("lit", (1, "rotation", [0, 1], TURN, "LINEAR"), *more)
+    by_pointers(scene, translation="/materials/0/emissiveFactor")
+    clips = read_gltf_clips(scene.glb(tmp_path / "a.glb"))
+    assert any("'/materials/0/emissiveFactor' were left out" in note for note in clips[1].notes)
+    assert len(clips[0].rotations) == len(clips[1].rotations)
+
+
 def test_quantised_meshes_are_welcome(tmp_path: Path) -> None:
     scene = bending()
     scene.json["extensionsRequired"] = ["KHR_mesh_quantization"]
