@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.cli.perceive_command import add_arguments as perceive_arguments
+from app.cli.study_agreement import add_arguments as agreement_arguments
 from app.cli.study_people import add_arguments as people_arguments
 from app.cli.study_planning import add_arguments as plan_arguments
 from app.cli.study_replaying import add_arguments as replay_arguments
@@ -62,6 +63,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     plan_arguments(action)
     replay_arguments(action)
     watch_arguments(action)
+    agreement_arguments(action)
     words = "studies of preferences and ratings of videos: stimuli, page, answers, report"
     perceive_arguments(
         actions.add_parser("perceive", help=words, description=f"{words[:1].upper()}{words[1:]}.")

@@ -232,7 +232,7 @@ def _clarity(tier: AnnotationTier) -> tuple[bool, float]:
 
 _NOTHING = frozenset(
     """
-    |rest|resting|rest position|rp|home|home position|still|none|no|no gesture|n a|na|xxx|x|idle|nothing|neutral|stance
+    |no movement|rest|resting|rest position|rp|home|home position|still|none|no|no gesture|n a|na|xxx|x|idle|nothing|neutral|stance
     |ruhe|ruheposition|keine|repos|aucun|reposo|ninguno
 """.replace("\n", "")
     .replace("    ", "")
@@ -244,7 +244,7 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     (
         "fidget",
         r"fidget|scratch|adapt[oe]r|self "
-        r"?touch|touch(es|ing)?|groom|rub(s|bing)?|fiddl|tics?|ticks?|kratz|nestel|autoadap",
+        r"?touch|touch(es|ing)?|groom|rub(s|bing)?|fiddl|tics?|ticks?|kratz|nestel|autoadap|irregular|aborted",
     ),
     ("hold", r"hold|holding|psh|halten|houd|tenue"),
     ("preparation", r"prep|vorb|anlauf"),
@@ -253,7 +253,8 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     (
         "gesture",
         r"gest|beats?|batons?|iconic|ikonisch|deictic|deiktisch|metaphori|emblem|pragmatic|point|wav(e|es|ing)|shrug|nod|nick"
-        r"|shak(e|es|ing)|schüttel|clap|thumb|illustrator|raise|count",
+        r"|shak(e|es|ing)|schüttel|clap|thumb|illustrator|raise|count|phasic|repetitive|emphasis|pantomime"
+        r"|(form|spatial relation|motion quality) presentation|egocentric",
     ),
 )
 _POSITIVE = _set("positive pos yes ja oui sí agree agreement affirm affirmative affirmation nod nods nodding")

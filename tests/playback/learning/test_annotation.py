@@ -185,6 +185,14 @@ MEANT = {
     ("arms", "pre-stroke hold"): "hold",
     ("arms", "post-stroke-hold"): "hold",
     ("arms", "retr"): "retraction",
+    ("left arm", "phasic"): "gesture",  # NEUROGES, as the next ones
+    ("left arm", "repetitive"): "gesture",
+    ("left arm", "irregular"): "fidget",
+    ("left arm", "no movement"): "ignore",
+    ("left arm", "shift"): "transition",
+    ("arms", "spatial relation presentation"): "gesture",
+    ("arms", "partial retraction"): "retraction",  # LASG, as the next ones
+    ("arms", "rest position"): "ignore",
     ("head action", "nodding"): "gesture positive",
     ("head action", "Nod"): "gesture positive",
     ("head action", "yes"): "gesture positive",
