@@ -47,7 +47,7 @@ def compare(options: Namespace) -> int:
     """Print the agreement of each pair of tiers."""
     from app.cli.command_output import say
     from metagraph.formats.elan import read_elan
-    from metagraph.research.agreement import measure_agreement, pair_tiers
+    from metagraph.research.agreement import measure_agreement, match_tiers
 
     chosen = []
     for words in options.tiers:
@@ -57,7 +57,7 @@ def compare(options: Namespace) -> int:
         chosen.append((first, second))
     one = read_elan(options.one)
     other = read_elan(options.other) if options.other is not None else None
-    found = [measure_agreement(a, b, options.tolerance) for a, b in pair_tiers(one, other, chosen)]
+    found = [measure_agreement(a, b, options.tolerance) for a, b in match_tiers(one, other, chosen)]
     rows = [
         {
             **asdict(x),

@@ -23,7 +23,7 @@ TOLERANCE = 0.25  # seconds that starts, and ends, may lie apart
 @dataclass(frozen=True)
 class Agreement:
     """What two tiers have in common. seconds: how much time was looked at. same: share of it with one label,
-    0..1; kappa: corrected for chance, at most 1, None where chance alone gives all. counts: annotations of
+    0..1; kappa: corrected for chance, at most 1, None if chance alone gives all. counts: annotations of
     either. matched: pairs within the tolerance. labels_same: share of those pairs with one label;
     labels_kappa: as kappa. starts, ends: median seconds by which the second is later, None without pairs.
     confusion: (label of the first, of the second) -> seconds, the longest first.
@@ -72,7 +72,7 @@ def measure_agreement(one: AnnotationTier, other: AnnotationTier, tolerance: flo
     )
 
 
-def pair_tiers(
+def match_tiers(
     one: Annotation, other: Annotation | None, chosen: Sequence[tuple[str, str]] = ()
 ) -> list[tuple[AnnotationTier, AnnotationTier]]:
     """Return the tiers to compare: those chosen by name; else, of two files, those with one name, and of one
@@ -151,7 +151,7 @@ def _match(
 
 
 def _agree(counts: Mapping[tuple[str, str], float]) -> tuple[float, float | None]:
-    """Return the share that is the same, and Cohen's kappa; None where chance alone makes all the same."""
+    """Return the share that is the same, and Cohen's kappa; None if chance alone makes all the same."""
     total = float(sum(counts.values()))
     seen = sum(v for (a, b), v in counts.items() if a == b) / total
     first, second = Counter[str](), Counter[str]()

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.playback.learning.annotation import Annotation, AnnotationInterval, AnnotationTier
-from metagraph.research.agreement import measure_agreement, pair_tiers
+from metagraph.research.agreement import measure_agreement, match_tiers
 
 
 def tier(name: str, *rows: tuple[float, float, str]) -> AnnotationTier:
@@ -85,23 +85,23 @@ def test_nobody_agrees_more_than_with_himself_and_either_may_come_first(
 def test_tiers_are_paired_by_name_in_two_files_and_by_annotator_in_one() -> None:
     rows = ((0, 1, "a"),)
     two = Annotation((tier("Arms", *rows), tier("Speech", *rows))), Annotation((tier("arms", *rows),))
-    assert [(a.name, b.name) for a, b in pair_tiers(*two)] == [("Arms", "arms")]
+    assert [(a.name, b.name) for a, b in match_tiers(*two)] == [("Arms", "arms")]
     one = Annotation(
         (tier("Arms@Ann", *rows), tier("Arms@Ben", *rows), tier("Head_1", *rows), tier("Head_2", *rows))
     )
-    assert [(a.name, b.name) for a, b in pair_tiers(one, None)] == [
+    assert [(a.name, b.name) for a, b in match_tiers(one, None)] == [
         ("Arms@Ann", "Arms@Ben"),
         ("Head_1", "Head_2"),
     ]
-    assert pair_tiers(one, None, [("Head_1", "Arms@Ben")])[0][1].name == "Arms@Ben"
+    assert match_tiers(one, None, [("Head_1", "Arms@Ben")])[0][1].name == "Arms@Ben"
 
 
 def test_what_cannot_be_compared_is_refused_with_the_names_that_there_are() -> None:
     rows = ((0, 1, "a"),)
     with pytest.raises(ValueError, match=r"name them with --tiers A=B\. There are 'Arms'"):
-        pair_tiers(Annotation((tier("Arms", *rows),)), None)
+        match_tiers(Annotation((tier("Arms", *rows),)), None)
     with pytest.raises(ValueError, match="there is no tier 'Legs'; there are 'Arms'"):
-        pair_tiers(Annotation((tier("Arms", *rows),)), None, [("Legs", "Arms")])
+        match_tiers(Annotation((tier("Arms", *rows),)), None, [("Legs", "Arms")])
     with pytest.raises(ValueError, match="'Empty' has no annotations"):
         measure_agreement(tier("x", *rows), tier("Empty"))
     with pytest.raises(ValueError, match="0 to 60 seconds"):
