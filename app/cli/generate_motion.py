@@ -106,7 +106,7 @@ def read_heard(options: Namespace, tracks: int) -> HeardInput:
     """Return what is heard. Raises FileError, ValueError."""
     import numpy as np
 
-    from metagraph.generation.features import frames_of
+    from metagraph.generation.features import count_sound_frames
 
     paths: list[Path] = options.speech or []
     if len(paths) > 2 or len(options.words or ()) > 2:
@@ -116,7 +116,7 @@ def read_heard(options: Namespace, tracks: int) -> HeardInput:
         print(f"note: {note}", file=sys.stderr)
     samples = np.atleast_2d(speech.samples)
     _check(speech, samples, str(paths[0]) if paths else name)
-    activity = _activity(options, speech, samples, frames_of(samples.shape[1]))
+    activity = _activity(options, speech, samples, count_sound_frames(samples.shape[1]))
     if options.activity is not None:
         activity = as_role(activity, options.activity)
     if tracks == 2 and len(samples) == 1:
@@ -186,7 +186,7 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
 
 def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:
     """Return who speaks when: `[T, 4]`, of the words if there are any, else of the sound."""
-    from metagraph.generation.features import conversation_activity
+    from metagraph.generation.features import compute_conversation_activity
     from metagraph.generation.sampler import hear_activity
 
     if speech.conversation is None:
@@ -195,7 +195,7 @@ def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int)
         return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
         print(f"note: side {options.side} does not speak, so it listens", file=sys.stderr)
-    return conversation_activity(speech.conversation, options.side - 1, frames)
+    return compute_conversation_activity(speech.conversation, options.side - 1, frames)
 
 
 def as_role(activity: Any, role: str) -> Any:
@@ -217,7 +217,7 @@ def make_motion(options: Namespace, model: Model, heard: HeardInput, seed: int) 
     from metagraph.errors import FileError
     from metagraph.formats.clips import read_clips
     from metagraph.generation.chunks import GUIDANCE
-    from metagraph.generation.sampler import first_pose, sample_whole
+    from metagraph.generation.sampler import read_first_pose, sample_whole
 
     first = None
     if options.first is not None:
@@ -228,7 +228,7 @@ def make_motion(options: Namespace, model: Model, heard: HeardInput, seed: int) 
                 "has another skeleton than the model",
                 remedy="Retarget it to the model's skeleton.",
             )
-        first = first_pose(stance)
+        first = read_first_pose(stance)
     return sample_whole(
         model,
         heard.samples,
@@ -353,11 +353,11 @@ def print_model(options: Namespace) -> int:
     import msgspec
 
     from app.cli.command_output import say
-    from metagraph.generation.networks import parameters
+    from metagraph.generation.networks import count_parameters
     from metagraph.generation.stored import read_model
 
     card = read_model(options.model).card  # its weights are read as well: a damaged file is reported here
-    count = parameters(card.sizes)
+    count = count_parameters(card.sizes)
     data = {**msgspec.to_builtins(card), "parameters": count}
     say(options, "\n".join(_told(options.model, card, count)), data)
     return 0

@@ -130,13 +130,13 @@ def train(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.outputs import declare_updates
     from metagraph.generation.stored import SUFFIX, read_model
-    from metagraph.generation.train_plan import folder_of
+    from metagraph.generation.train_plan import find_training_folder
 
     out: Path = options.out
     if out.suffix.lower() != SUFFIX:
         raise ValueError(f"a model can be written as {SUFFIX}, not as '{out.suffix or out.name}'")
     require_trainable(options)
-    declare_updates(out, folder_of(out))  # what is there is gone on with, or refused
+    declare_updates(out, find_training_folder(out))  # what is there is gone on with, or refused
     _go_on(options) if options.resume else _begin(options)
     process, stopped = _trained(options, out)
     card = read_model(out).card
@@ -161,7 +161,7 @@ def train(options: Namespace) -> int:
     if stopped:
         lines.append("to continue, add --resume")
     else:
-        lines.append(f"to continue it later, keep {folder_of(out)}")
+        lines.append(f"to continue it later, keep {find_training_folder(out)}")
     say(options, "\n".join(lines), data)
     return 0
 
@@ -170,13 +170,19 @@ def _begin(options: Namespace) -> None:
     """Read the takes and write the training's folder. Raises ValueError if that would lose something."""
     from app.cli.generate_takes import read_all
     from metagraph.generation.takes import split_takes
-    from metagraph.generation.train_plan import PLAN, folder_of, plan_of, settings_for, write_training
+    from metagraph.generation.train_plan import (
+        PLAN,
+        choose_settings,
+        find_training_folder,
+        plan_of,
+        write_training,
+    )
 
     out: Path = options.out
     if not options.takes:
         raise ValueError("give takes to learn from, or --resume to continue")
-    if out.exists() or (folder_of(out) / PLAN).exists():
-        what = out if out.exists() else folder_of(out)
+    if out.exists() or (find_training_folder(out) / PLAN).exists():
+        what = out if out.exists() else find_training_folder(out)
         raise ValueError(f"{what} exists already: choose another name, or continue with --resume")
     tracks = 2 if options.two_tracks else 1
     batch = read_all(options, tracks=tracks)
@@ -192,12 +198,12 @@ def _begin(options: Namespace) -> None:
         options.model,
         options.size,
         tracks,
-        settings=settings_for(options.loss, options.model),
+        settings=choose_settings(options.loss, options.model),
         seed=options.seed,
         **_limits(options),
     )
     out.parent.mkdir(parents=True, exist_ok=True)
-    write_training(folder_of(out), plan, learned, held)
+    write_training(find_training_folder(out), plan, learned, held)
 
 
 def _limits(options: Namespace) -> dict[str, Any]:
@@ -210,9 +216,9 @@ def _go_on(options: Namespace) -> None:
     """Set the new limits of a training that was stopped."""
     from msgspec.structs import replace
 
-    from metagraph.generation.train_plan import folder_of, read_training_plan, write_plan
+    from metagraph.generation.train_plan import find_training_folder, read_training_plan, write_plan
 
-    folder = folder_of(options.out)
+    folder = find_training_folder(options.out)
     plan = read_training_plan(folder)
     new = _limits(options)
     if options.minutes is None and options.seconds is None:
@@ -292,7 +298,7 @@ def run_ablation(options: Namespace) -> int:
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.outputs import claim
     from metagraph.generation.features import MELS
-    from metagraph.generation.networks import sizes_of
+    from metagraph.generation.networks import make_sizes
     from metagraph.generation.take_files import find_takes
     from metagraph.generation.takes import split_takes
     from metagraph.research.generation import ablation
@@ -308,7 +314,7 @@ def run_ablation(options: Namespace) -> int:
     rig = batch.rig
     learned, held = split_takes(batch.takes)
     files, _ = find_takes(options.takes, [p for p in options.speech if p.is_dir()])
-    sizes = sizes_of(options.model, options.size, rig.numbers, tracks * MELS)
+    sizes = make_sizes(options.model, options.size, rig.numbers, tracks * MELS)
     done = ablation.ablate_model(
         options.out,
         lambda job: _train_one(options, rig, tracks, job),
@@ -369,16 +375,16 @@ def _train_one(options: Namespace, rig: Any, tracks: int, job: AblationJob) -> N
 
     from metagraph.errors import FileError
     from metagraph.generation.train_plan import (
-        folder_of,
+        choose_settings,
+        find_training_folder,
         plan_of,
         read_training_plan,
-        settings_for,
         write_plan,
         write_training,
     )
     from metagraph.generation.train_process import TrainingProcess
 
-    folder = folder_of(job.out)
+    folder = find_training_folder(job.out)
     plan = plan_of(
         rig,
         job.learned,
@@ -388,7 +394,7 @@ def _train_one(options: Namespace, rig: Any, tracks: int, job: AblationJob) -> N
         options.size,
         tracks,
         job.sizes,
-        settings=replace(settings_for(job.settings.get("loss"), job.kind), **job.settings),
+        settings=replace(choose_settings(job.settings.get("loss"), job.kind), **job.settings),
         seed=job.seed,
         minutes=0.0,
         seconds=job.seconds,

@@ -47,7 +47,7 @@ def compare(options: Namespace) -> int:
     """Print the agreement of each pair of tiers."""
     from app.cli.command_output import say
     from metagraph.formats.elan import read_elan
-    from metagraph.research.agreement import measure_agreement, match_tiers
+    from metagraph.research.agreement import match_tiers, measure_agreement
 
     chosen = []
     for words in options.tiers:

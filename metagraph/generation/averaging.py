@@ -18,7 +18,7 @@ MOVING, RESTING = 1.0, 2.1  # frames: deviations of Gaussians
 SLOW, FAST = 0.015, 0.04  # standardised, a frame: how fast a joint's numbers change that rests, that moves
 
 
-def gaussian(deviation: float) -> Array:
+def make_gaussian(deviation: float) -> Array:
     """Return the weights of a Gaussian over frames, an odd count, sum 1. deviation: frames; 0 gives one."""
     reach = int(np.ceil(3 * deviation)) if deviation > 0 else 0
     at = np.arange(-reach, reach + 1)
@@ -32,8 +32,8 @@ class Averaging:
     """
 
     def __init__(self, moving: float = MOVING, resting: float | None = RESTING) -> None:
-        self._moving = gaussian(moving).astype(np.float32)
-        self._resting = None if resting is None else gaussian(resting).astype(np.float32)
+        self._moving = make_gaussian(moving).astype(np.float32)
+        self._resting = None if resting is None else make_gaussian(resting).astype(np.float32)
         self.reach = len(self._moving) // 2
         if self._resting is not None:
             self.reach = max(self.reach, len(self._resting) // 2 + 1)  # and one, to see how fast it is

@@ -63,13 +63,13 @@ class Joining:
         return self._poses(np.concatenate([self._kept, last]))[: self.delay]
 
     def _poses(self, row: Array) -> Array:
-        told = neighbours(row, self.sizes.around)
+        told = gather_neighbours(row, self.sizes.around)
         return np.asarray(
             (told @ self.w["tokens.joined"] + self.w["tokens.mean"]).reshape(-1, self.sizes.pose)
         )
 
 
-def neighbours(tokens: Array, around: int) -> Array:
+def gather_neighbours(tokens: Array, around: int) -> Array:
     """Return `[n - 2 around, (2 around + 1) D]`: every token of `[n, D]` that has neighbours, with them."""
     count = len(tokens) - 2 * around
     return np.concatenate([tokens[k : k + count] for k in range(2 * around + 1)], 1)
@@ -84,14 +84,14 @@ def join_by_least_squares(rows: Iterable[tuple[Array, Array]], around: int) -> A
     count = 0
     for tokens, frames in rows:
         if len(tokens) > 2 * around:
-            told = neighbours(tokens, around).astype(np.float64)
+            told = gather_neighbours(tokens, around).astype(np.float64)
             inner, outer = inner + told.T @ told, outer + told.T @ frames[around : len(frames) - around]
             count += len(told)
     square = np.asarray(inner)
     return np.linalg.solve(square + RIDGE**2 * count * np.eye(len(square)), outer).astype(np.float32)
 
 
-def tokens_of_still_pose(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
+def make_still_tokens(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
     """Return the past of somebody who holds a pose `[X]`, standardised: `[past, D]`."""
     return make_tokens(w, sizes, np.repeat(pose[None], sizes.past * sizes.frames, 0))
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, apply_linear, apply_lstm, lstm_state
+from metagraph.generation.layers import Layers, apply_linear, apply_lstm, make_lstm_state
 from metagraph.generation.networks import CvaeSizes
 from metagraph.generation.prepared import Cells, Dense
 
@@ -20,7 +20,7 @@ def encode_cvae(w: Layers, sizes: CvaeSizes, poses: Array, context: Array) -> tu
     """Return mean and log variance `[..., T, D]` of each frame's code. poses: `[..., T, X]`, standardised;
     context: `[..., T, C]`.
     """
-    state = lstm_state(w, "encoder", sizes.layers, poses.shape[:-2])
+    state = make_lstm_state(w, "encoder", sizes.layers, poses.shape[:-2])
     hidden, _ = apply_lstm(w, "encoder", np.concatenate([poses, context], -1), state)
     told = apply_linear(w, "encoder_out", hidden)
     return told[..., : sizes.dims], told[..., sizes.dims :]
@@ -28,7 +28,7 @@ def encode_cvae(w: Layers, sizes: CvaeSizes, poses: Array, context: Array) -> tu
 
 def decode_cvae(w: Layers, sizes: CvaeSizes, codes: Array, context: Array) -> Array:
     """Return poses `[..., T, X]`, standardised, of codes `[..., T, D]`."""
-    state = lstm_state(w, "decoder", sizes.layers, codes.shape[:-2])
+    state = make_lstm_state(w, "decoder", sizes.layers, codes.shape[:-2])
     hidden, _ = apply_lstm(w, "decoder", np.concatenate([codes, context], -1), state)
     return apply_linear(w, "decoder_out", hidden)
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.loudness import gain_of
+from metagraph.generation.loudness import compute_gain
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import Standardisation
 from metagraph.graph.conversation.model import Conversation, list_other_sides
@@ -45,7 +45,7 @@ def as_heard(features: Array, audio: Standardisation) -> Array:
     return np.concatenate([sound, features[..., -ACTIVITY:]], -1).astype(np.float32)
 
 
-def frames_of(samples: int) -> int:
+def count_sound_frames(samples: int) -> int:
     """Return how many frames so many samples at RATE have: one every HOP, the first at the first sample."""
     return samples // HOP + 1 if samples else 0
 
@@ -85,7 +85,7 @@ def _mels(windows: Array) -> Array:
     return np.array([np.log(bank @ power + FLOOR) for power in powers], np.float32).reshape(-1, MELS)
 
 
-def silence(audio: int = MELS) -> Array:
+def make_silence(audio: int = MELS) -> Array:
     """Return the frame `[audio + 4]` in which nobody is heard."""
     out = np.zeros(audio + ACTIVITY, np.float32)
     out[:audio] = np.log(FLOOR)
@@ -95,7 +95,7 @@ def silence(audio: int = MELS) -> Array:
 
 class AudioStream:
     """Mels of samples as they come in. tracks: 1 mixes the voices, 2 keeps both. gains: what brings each
-    channel to the same loudness (`loudness.gain_of`), 1 for each unless given.
+    channel to the same loudness (`loudness.compute_gain`), 1 for each unless given.
     """
 
     def __init__(self, channels: int = 2, tracks: int = 1, gains: Sequence[float] | None = None) -> None:
@@ -175,7 +175,7 @@ class FeatureStream:
     def finish(self) -> Array:
         """Return what is left, as far as there is sound; where activity was not told, nobody speaks."""
         self._mels = np.concatenate([self._mels, self.audio.finish()])
-        quiet = np.tile(one_hot(np.zeros(1, bool), np.zeros(1, bool)), (len(self._mels), 1))
+        quiet = np.tile(encode_activity(np.zeros(1, bool), np.zeros(1, bool)), (len(self._mels), 1))
         self._activity = np.concatenate([self._activity, quiet])
         return self._ready(len(self._mels))
 
@@ -193,7 +193,7 @@ def compute_features(
     """
     samples = np.atleast_2d(np.asarray(samples, np.float64))
     if gains is None:
-        gains = [gain_of(channel, RATE) for channel in samples]
+        gains = [compute_gain(channel, RATE) for channel in samples]
     stream = FeatureStream(len(samples), tracks, gains)
     return np.concatenate([stream.push(samples, activity), stream.finish()])
 
@@ -203,14 +203,14 @@ def resample_for_features(samples: Array, rate: int) -> Array:
     return np.stack([resample_sound(channel, rate, RATE) for channel in np.atleast_2d(samples)])
 
 
-def one_hot(own: Array, partner: Array) -> Array:
+def encode_activity(own: Array, partner: Array) -> Array:
     """Return activity `[T, 4]` float32 of who speaks `[T]`."""
     own, partner = np.asarray(own, bool), np.asarray(partner, bool)
     kinds = [own & ~partner, partner & ~own, own & partner, ~own & ~partner]
     return np.stack(kinds, 1).astype(np.float32)
 
 
-def speaking(stretches: Iterable[tuple[float, float]], frames: int) -> Array:
+def find_speaking(stretches: Iterable[tuple[float, float]], frames: int) -> Array:
     """Return in which frames `[T]` somebody speaks. stretches: start and end, seconds; gaps shorter than
     CLOSED between them count.
     """
@@ -225,13 +225,13 @@ def speaking(stretches: Iterable[tuple[float, float]], frames: int) -> Array:
     return out
 
 
-def conversation_activity(conversation: Conversation, side: int, frames: int) -> Array:
+def compute_conversation_activity(conversation: Conversation, side: int, frames: int) -> Array:
     """Return activity `[T, 4]` of a conversation as one side lives it: all of its segments are own speech."""
     found = [
-        speaking([(s.start, s.end) for s in conversation.sides[n].segments], frames)
+        find_speaking([(s.start, s.end) for s in conversation.sides[n].segments], frames)
         for n in (side, *list_other_sides(conversation, side))
     ]
-    return one_hot(found[0], np.any(found[1:], axis=0))  # of several, whoever answers is the partner
+    return encode_activity(found[0], np.any(found[1:], axis=0))  # of several, whoever answers is the partner
 
 
 def detect_voice_activity(own: Array, partner: Array | None, rate: int, frames: int) -> Array:
@@ -244,11 +244,11 @@ def detect_voice_activity(own: Array, partner: Array | None, rate: int, frames: 
     for n in range(2):
         other = heard[1 - n] if len(heard) == 2 else None
         told = spoken(heard[n], tones[n], other) if n < len(heard) else ()
-        found.append(speaking([(s.start, s.end) for s in told], frames))
-    return one_hot(*found)
+        found.append(find_speaking([(s.start, s.end) for s in told], frames))
+    return encode_activity(*found)
 
 
 def with_edges(frames: Array, before: int, after: int) -> Array:
     """Return frames with silence before and after them, so that every one has a whole window."""
-    quiet = silence(frames.shape[1] - ACTIVITY)
+    quiet = make_silence(frames.shape[1] - ACTIVITY)
     return np.concatenate([np.tile(quiet, (before, 1)), frames, np.tile(quiet, (after, 1))])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, State, apply_linear, apply_lstm, lstm_state, sigmoid
+from metagraph.generation.layers import Layers, State, apply_linear, apply_lstm, make_lstm_state, sigmoid
 from metagraph.generation.networks import FlowSizes
 from metagraph.generation.prepared import Cells, Dense
 
@@ -35,7 +35,7 @@ class FlowWeights:
         self._inverses: list[Array] = []
         self._logs: list[float] = []
         for step in self.steps:
-            matrix = matrix_of(weights, f"{step}.linear")
+            matrix = build_flow_matrix(weights, f"{step}.linear")
             self._matrices.append(matrix.astype(dtype))
             self._inverses.append(np.linalg.inv(matrix).astype(dtype))
             logs = weights[f"{step}.actnorm.logs"].astype(np.float64)
@@ -43,7 +43,7 @@ class FlowWeights:
 
     def start(self, batch: tuple[int, ...] = ()) -> FlowState:
         """Return the state at a sequence's start."""
-        return [lstm_state(self.weights, f"{step}.lstm", self.layers, batch) for step in self.steps]
+        return [make_lstm_state(self.weights, f"{step}.lstm", self.layers, batch) for step in self.steps]
 
     def forward(
         self, codes: Array, context: Array, state: FlowState | None = None
@@ -124,7 +124,7 @@ class FlowDrawing:
             bias = weights[f"{step}.out.bias"] * half
             bias[self._count :] += 1
             out = Dense(weights[f"{step}.out.weight"].T * half, bias, dtype)
-            inverse = np.linalg.inv(matrix_of(weights, f"{step}.linear"))
+            inverse = np.linalg.inv(build_flow_matrix(weights, f"{step}.linear"))
             logs = weights[f"{step}.actnorm.logs"].astype(np.float64)
             back = Dense(inverse.T * np.exp(-logs), -weights[f"{step}.actnorm.bias"], dtype)
             self._steps.append((cells, out, back))
@@ -165,7 +165,7 @@ class FlowDrawing:
         return z
 
 
-def matrix_of(weights: Layers, name: str) -> Array:
+def build_flow_matrix(weights: Layers, name: str) -> Array:
     """Return W = P L (U + diag(s)) `[D, D]`, float64, of an invertible linear layer."""
     p, lower, upper, sign, log_s = (
         weights[f"{name}.{part}"].astype(np.float64) for part in ("p", "lower", "upper", "sign", "log_s")

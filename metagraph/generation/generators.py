@@ -16,7 +16,7 @@ from metagraph.generation import chunks, cvae, vae
 from metagraph.generation.encoder import BLOCK, ChunkHearing, EncoderHearing
 from metagraph.generation.flow import FlowDrawing
 from metagraph.generation.networks import Control, CvaeSizes, FlowSizes, MatchingSizes, Sizes, Weights
-from metagraph.generation.noise import Noise, noise
+from metagraph.generation.noise import Noise, draw_noise
 from metagraph.generation.poses import FURTHEST
 from metagraph.generation.prepared import Dense
 
@@ -146,7 +146,7 @@ class MatchingGenerator(Generator):
             chunks.TokenDrawing(w, sizes, guidance),
         )
         self.pieces = self.drawing.pieces + 2
-        self.past = chunks.tokens_of_still_pose(w, sizes, first)
+        self.past = chunks.make_still_tokens(w, sizes, first)
         self._joining = chunks.Joining(w, sizes, kept)
         self.delay = self._joining.delay
 
@@ -161,7 +161,7 @@ class MatchingGenerator(Generator):
         window[: len(heard)] = heard[: self.most]
         told = self.hearing.of(window)
         yield None
-        z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
+        z = draw_noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
         tokens = z * (chunks.SPREAD * self.temperature)
         for n, drawn in enumerate(self.drawing.drawing(tokens, self.past, told)):
             tokens = drawn
@@ -180,7 +180,7 @@ def _near(poses: Array) -> Array:
     return np.asarray(np.minimum(np.maximum(poses, -FURTHEST), FURTHEST))
 
 
-def generator(
+def make_generator(
     w: Weights,
     sizes: Sizes,
     first: Array,

@@ -6,17 +6,17 @@ from math import prod
 
 import numpy as np
 
-from metagraph.generation.networks import MatchingSizes, Sizes, Weights, shapes_of
+from metagraph.generation.networks import MatchingSizes, Sizes, Weights, list_weight_shapes
 
 
-def initial(sizes: Sizes, seed: int = 1) -> Weights:
+def make_initial_weights(sizes: Sizes, seed: int = 1) -> Weights:
     """Return weights to begin with, float32: torch's own ranges (uniform within 1 / sqrt(inputs)), rotations
     as the flow's matrices, zero where a layer should begin by doing nothing, as a guess does. What is
     computed from the data (means, deviations, bases, actnorm) leaves it as it is.
     """
     chance = np.random.default_rng(seed)
     out: Weights = {}
-    shapes = shapes_of(sizes)
+    shapes = list_weight_shapes(sizes)
     for name, shape in shapes.items():
         last = name.rsplit(".", 1)[-1]
         if name in out:

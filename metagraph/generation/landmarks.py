@@ -74,7 +74,7 @@ def _small(rig: PoseRig) -> _Small:
     )
 
 
-def landmarks_of(rig: PoseRig, poses: Array) -> Array:
+def place_landmarks(rig: PoseRig, poses: Array) -> Array:
     """Return where the LANDMARKS are `[T, 9, 3]`, metres. poses: `[T, X]`, not standardised."""
     small = _small(rig)
     used = [n for n, place in enumerate(small.places) if place >= 0]

@@ -36,7 +36,7 @@ def apply_linear(w: Layers, name: str, x: Array) -> Array:
     return np.asarray((flat @ weight.T).reshape(*x.shape[:-1], len(weight)) + w[f"{name}.bias"])
 
 
-def lstm_state(w: Layers, name: str, layers: int, batch: tuple[int, ...] = ()) -> State:
+def make_lstm_state(w: Layers, name: str, layers: int, batch: tuple[int, ...] = ()) -> State:
     """Return the state at a sequence's start: zeros."""
     out: State = []
     for n in range(layers):

@@ -17,7 +17,7 @@ from metagraph.generation.stored import Model
 Array = NDArray[Any]
 
 
-def contexts(
+def make_flow_contexts(
     model: Model, sizes: FlowSizes, poses: Array, features: Array, lookahead: int | None = None
 ) -> Array:
     """Return what enters a flow at each step of time `[T // span, C]`. poses: `[T, X]`, standardised, those
@@ -50,7 +50,7 @@ def _contexts(
     return np.concatenate([encode_past(model.weights, control, before), told], -1), before
 
 
-def noise_of(
+def find_noise(
     model: Model, poses: Array, features: Array, lookahead: int | None = None
 ) -> tuple[Array, Array]:
     """Return the noise `[n, D]` that would have made poses `[T, X]`, not standardised, and the natural

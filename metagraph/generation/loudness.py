@@ -39,7 +39,7 @@ def measure_integrated_loudness(samples: Array, rate: int) -> float:
     return float(_lufs(power.mean()))
 
 
-def gain_of(samples: Array, rate: int) -> float:
+def compute_gain(samples: Array, rate: int) -> float:
     """Return the factor that brings a channel `[N]` to TARGET; 1 for silence."""
     level = measure_integrated_loudness(samples, rate)
     return 1.0 if not np.isfinite(level) else float(10 ** (min(TARGET - level, LOUDEST) / 20))

@@ -10,14 +10,14 @@ are nested as below is what is stored, without renaming:
     ...
                   gates in the order input, forget, cell, output; one direction; state 0 at a sequence's start
 
-`shapes_of(sizes)` gives every name with its shape, in order; a file that has more, fewer or others is
-refused. `initial.initial(sizes, seed)` gives weights to begin with. What only training needs (the head that
-predicts speeds, running means) has no name here and is not exported.
+`list_weight_shapes(sizes)` gives every name with its shape, in order; a file that has more, fewer or others
+is refused. `initial.make_initial_weights(sizes, seed)` gives weights to begin with. What only training needs
+(the head that predicts speeds, running means) has no name here and is not exported.
 
 **What goes in.** All is standardised: poses `[T, X]` (X = 6 numbers a joint) by the model's means and
 deviations, audio `[T, A]` (A = 27 mels, 54 with two tracks) in the same way; activity `[T, 4]` (self,
-partner, both, none) is as it is. Before a recording begins and after it ends there are `features.silence`
-rows. `Control` says how frame t hears them:
+partner, both, none) is as it is. Before a recording begins and after it ends there are rows of
+`features.make_silence`. `Control` says how frame t hears them:
 
     window    what the paper does: `before + 1 + ahead` frames of [audio, activity], frame by frame from the
               past to the future, flat, after the `past` poses, oldest first.
@@ -252,7 +252,7 @@ Kind = Literal["flow-vae", "moglow", "cvae", "matching"]
 Size = Literal["small", "paper"]
 
 
-def sizes_of(
+def make_sizes(
     kind: Kind, size: Size = "small", pose: int = 78, audio: int = 27, as_published: bool = False
 ) -> Sizes:
     """Return the sizes of a model. pose: numbers a frame (6 a joint). audio: numbers of audio a frame.
@@ -281,7 +281,7 @@ def sizes_of(
     return FlowSizes(pose=pose, control=far, between=128, dims=dims, steps=4, units=96, span=16, guess=True)
 
 
-def shapes_of(sizes: Sizes) -> Shapes:
+def list_weight_shapes(sizes: Sizes) -> Shapes:
     """Return the name and shape of every weight, in order."""
     if isinstance(sizes, FlowSizes):
         return _flow(sizes)
@@ -290,11 +290,11 @@ def shapes_of(sizes: Sizes) -> Shapes:
     return _matching(sizes)
 
 
-def parameters(sizes: Sizes) -> int:
+def count_parameters(sizes: Sizes) -> int:
     """Return how many numbers are learned or computed from the data: all but the fixed ones."""
     fixed = (".linear.p", ".linear.sign", "code.mean", "code.deviation")
     out = 0
-    for name, shape in shapes_of(sizes).items():
+    for name, shape in list_weight_shapes(sizes).items():
         if name.endswith((".linear.lower", ".linear.upper")):
             out += shape[0] * (shape[0] - 1) // 2
         elif not name.endswith(fixed):
@@ -302,11 +302,11 @@ def parameters(sizes: Sizes) -> int:
     return out
 
 
-def linear_shapes(name: str, inputs: int, outputs: int) -> Shapes:
+def list_linear_shapes(name: str, inputs: int, outputs: int) -> Shapes:
     return {f"{name}.weight": (outputs, inputs), f"{name}.bias": (outputs,)}
 
 
-def lstm_shapes(name: str, inputs: int, units: int, layers: int) -> Shapes:
+def list_lstm_shapes(name: str, inputs: int, units: int, layers: int) -> Shapes:
     out: Shapes = {}
     for n in range(layers):
         out[f"{name}.weight_ih_l{n}"] = (4 * units, units if n else inputs)
@@ -328,8 +328,8 @@ def _control(control: Control, told: int) -> Shapes:
         return {}
     out = _convolutions(control.inputs + 1, control.width, control.dilations)
     if control.past:
-        out |= linear_shapes("past.0", control.past * told, control.width)
-        out |= linear_shapes("past.2", control.width, control.width)
+        out |= list_linear_shapes("past.0", control.past * told, control.width)
+        out |= list_linear_shapes("past.2", control.width, control.width)
     return out
 
 
@@ -338,13 +338,19 @@ def _flow(s: FlowSizes) -> Shapes:
     out: Shapes = {}
     if s.code in ("variational", "autoencoder"):
         given = 2 * s.dims if s.code == "variational" else s.dims
-        out |= linear_shapes("encode.0", whole, s.between) | linear_shapes("encode.2", s.between, given)
-        out |= linear_shapes("decode.0", s.dims, s.between) | linear_shapes("decode.2", s.between, whole)
+        out |= list_linear_shapes("encode.0", whole, s.between) | list_linear_shapes(
+            "encode.2", s.between, given
+        )
+        out |= list_linear_shapes("decode.0", s.dims, s.between) | list_linear_shapes(
+            "decode.2", s.between, whole
+        )
         out |= {"code.mean": (s.dims,), "code.deviation": (s.dims,)}
     elif s.code == "pca":
         out |= {"code.mean": (whole,), "code.basis": (s.dims, whole), "code.deviation": (s.dims,)}
     if s.guess:
-        out |= linear_shapes("guess", s.control.past * s.dims, s.dims) | {"guess.spread": (s.dims, s.dims)}
+        out |= list_linear_shapes("guess", s.control.past * s.dims, s.dims) | {
+            "guess.spread": (s.dims, s.dims)
+        }
     out |= _control(s.control, s.told)
     half = s.dims // 2
     for k in range(s.steps):
@@ -352,8 +358,8 @@ def _flow(s: FlowSizes) -> Shapes:
         out |= {f"{step}.actnorm.bias": (s.dims,), f"{step}.actnorm.logs": (s.dims,)}
         out |= {f"{step}.linear.{m}": (s.dims, s.dims) for m in ("p", "lower", "upper")}
         out |= {f"{step}.linear.{m}": (s.dims,) for m in ("sign", "log_s")}
-        out |= lstm_shapes(f"{step}.lstm", half + s.control.context(s.told), s.units, s.layers)
-        out |= linear_shapes(f"{step}.out", s.units, 2 * (s.dims - half))
+        out |= list_lstm_shapes(f"{step}.lstm", half + s.control.context(s.told), s.units, s.layers)
+        out |= list_linear_shapes(f"{step}.out", s.units, 2 * (s.dims - half))
     return out
 
 
@@ -361,10 +367,10 @@ def _cvae(s: CvaeSizes) -> Shapes:
     context = s.control.context(s.pose)
     return {
         **_control(s.control, s.pose),
-        **lstm_shapes("encoder", s.pose + context, s.units, s.layers),
-        **linear_shapes("encoder_out", s.units, 2 * s.dims),
-        **lstm_shapes("decoder", s.dims + context, s.units, s.layers),
-        **linear_shapes("decoder_out", s.units, s.pose),
+        **list_lstm_shapes("encoder", s.pose + context, s.units, s.layers),
+        **list_linear_shapes("encoder_out", s.units, 2 * s.dims),
+        **list_lstm_shapes("decoder", s.dims + context, s.units, s.layers),
+        **list_linear_shapes("decoder_out", s.units, s.pose),
     }
 
 
@@ -377,20 +383,22 @@ def _matching(s: MatchingSizes) -> Shapes:
     if s.around:
         out["tokens.joined"] = ((2 * s.around + 1) * s.dims, s.frames * s.pose)
     out |= _convolutions(s.audio + ACTIVITY + 1, s.width, s.dilations)
-    out |= linear_shapes("control.token", s.frames * s.width, s.hidden)
-    out |= linear_shapes("embed_past", s.dims, s.hidden) | linear_shapes("embed_new", s.dims, s.hidden)
+    out |= list_linear_shapes("control.token", s.frames * s.width, s.hidden)
+    out |= list_linear_shapes("embed_past", s.dims, s.hidden) | list_linear_shapes(
+        "embed_new", s.dims, s.hidden
+    )
     out |= {"place": (s.tokens, s.hidden), "no_past": (s.hidden,), "no_sound": (s.hidden,)}
-    out |= linear_shapes("time.0", s.time, s.time) | linear_shapes("time.2", s.time, s.time)
+    out |= list_linear_shapes("time.0", s.time, s.time) | list_linear_shapes("time.2", s.time, s.time)
     for n in range(s.layers):
         block = f"blocks.{n}"
-        out |= linear_shapes(f"{block}.modulation", s.time, 4 * s.hidden)
-        out |= linear_shapes(f"{block}.qkv", s.hidden, 3 * s.hidden) | linear_shapes(
+        out |= list_linear_shapes(f"{block}.modulation", s.time, 4 * s.hidden)
+        out |= list_linear_shapes(f"{block}.qkv", s.hidden, 3 * s.hidden) | list_linear_shapes(
             f"{block}.proj", s.hidden, s.hidden
         )
-        out |= linear_shapes(f"{block}.mlp.0", s.hidden, s.ratio * s.hidden)
-        out |= linear_shapes(f"{block}.mlp.2", s.ratio * s.hidden, s.hidden)
+        out |= list_linear_shapes(f"{block}.mlp.0", s.hidden, s.ratio * s.hidden)
+        out |= list_linear_shapes(f"{block}.mlp.2", s.ratio * s.hidden, s.hidden)
     return (
         out
-        | linear_shapes("final.modulation", s.time, 2 * s.hidden)
-        | linear_shapes("final.out", s.hidden, s.dims)
+        | list_linear_shapes("final.modulation", s.time, 2 * s.hidden)
+        | list_linear_shapes("final.out", s.hidden, s.dims)
     )

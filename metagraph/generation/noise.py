@@ -12,12 +12,12 @@ Array = NDArray[Any]
 BLOCK = 16  # frames whose noise is made at once, from multiples of it on
 
 
-def noise(seed: int, take: int, frame: int, count: int) -> Array:
+def draw_noise(seed: int, take: int, frame: int, count: int) -> Array:
     """Return standard normal numbers `[count]` float32. seed, take, frame: 0..2^64 - 1."""
-    return np.asarray(noise_rows(seed, take, frame, 1, count)[0])
+    return np.asarray(draw_noise_rows(seed, take, frame, 1, count)[0])
 
 
-def noise_rows(seed: int, take: int, frame: int, frames: int, count: int) -> Array:
+def draw_noise_rows(seed: int, take: int, frame: int, frames: int, count: int) -> Array:
     """Return standard normal numbers `[frames, count]` float32, those of `frame` first.
 
     Philox (4x64, 10 rounds) with key (seed, take) from counter (0, frame, 0, 0) on; pairs of its 64 bits,
@@ -51,5 +51,5 @@ class Noise:
         """Return standard normal numbers `[count]` float32: to a bit those of any other way to this frame."""
         block = (seed, take, frame - frame % BLOCK)
         if block != self._have:
-            self._have, self._rows = block, noise_rows(*block, BLOCK, self.count)
+            self._have, self._rows = block, draw_noise_rows(*block, BLOCK, self.count)
         return np.asarray(self._rows[frame % BLOCK])

@@ -18,13 +18,13 @@ from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.features import (
     FeatureError,
-    conversation_activity,
-    frames_of,
+    compute_conversation_activity,
+    count_sound_frames,
     resample_for_features,
 )
-from metagraph.generation.loudness import gain_of
+from metagraph.generation.loudness import compute_gain
 from metagraph.generation.poses import PoseError, PoseRig, find_rig
-from metagraph.generation.sampler import TakeSampler, clip_of, hear_activity
+from metagraph.generation.sampler import TakeSampler, hear_activity, make_clip_from_poses
 from metagraph.generation.stored import Model
 from metagraph.graph import anatomy
 from metagraph.graph.conversation.model import Conversation, get_side_name, list_other_sides
@@ -149,8 +149,10 @@ class HeardSpeech:
 def hear_side(project: Project, ident: str, side: int, folder: Path) -> HeardSpeech:
     """Return what is heard in a conversation, as `read_side_sound` does. Raises FileError."""
     samples, notes = read_side_sound(project.conversations[ident], side, folder)
-    count = frames_of(samples.shape[1])
-    return HeardSpeech(samples, conversation_activity(project.conversations[ident], side, count), notes)
+    count = count_sound_frames(samples.shape[1])
+    return HeardSpeech(
+        samples, compute_conversation_activity(project.conversations[ident], side, count), notes
+    )
 
 
 def hear_file(path: Path) -> HeardSpeech:
@@ -186,10 +188,10 @@ def generate_motion(
         take=chance.take,
         guidance=chance.guidance,
         channels=len(samples),
-        gains=[gain_of(channel, SOUND_RATE) for channel in samples],
+        gains=[compute_gain(channel, SOUND_RATE) for channel in samples],
         first=first,
     )
-    told = heard.activity[: frames_of(size)]
+    told = heard.activity[: count_sound_frames(size)]
     ready = []
     for n, start in enumerate(range(0, size, AT_ONCE)):
         if cancelled is not None and cancelled():
@@ -198,10 +200,10 @@ def generate_motion(
             progress(n, -(-size // AT_ONCE))
         ready.append(sampler.push(samples[:, start : start + AT_ONCE], told if start == 0 else told[:0]))
     ready.append(sampler.finish())
-    return clip_of(model, np.concatenate(ready), name, first, chance.seed)
+    return make_clip_from_poses(model, np.concatenate(ready), name, first, chance.seed)
 
 
-def side_clip(
+def make_side_clip(
     model: Model,
     project: Project,
     heard: HeardSpeech,

@@ -99,7 +99,7 @@ def decode_poses(rig: PoseRig, poses: Array) -> Array:
     between them is in the base pose. Rows need neither be of length 1 nor at a right angle.
     """
     rows = np.reshape(poses, (*np.shape(poses)[:-1], len(rig.joints), 2, 3))
-    relative = rotation.from_matrix(gram_schmidt(rows))
+    relative = rotation.from_matrix(orthonormalise_rows(rows))
     return rotation.multiply(rig.base[list(rig.joints)], relative)
 
 
@@ -111,7 +111,7 @@ def _line(rotations: Array, line: tuple[int, ...]) -> Array:
     return np.asarray(out)
 
 
-def gram_schmidt(rows: Array) -> Array:
+def orthonormalise_rows(rows: Array) -> Array:
     """Return rotation matrices `[..., 3, 3]`, float64, whose first two rows are nearest to `rows [..., 2,
     3]`: the first keeps its direction. Rows of length 0, or in one line, give some rotation.
     """

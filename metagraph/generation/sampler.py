@@ -16,13 +16,13 @@ from metagraph.generation.features import (
     MELS,
     RATE,
     FeatureStream,
-    conversation_activity,
+    compute_conversation_activity,
+    count_sound_frames,
     detect_voice_activity,
-    frames_of,
-    silence,
+    make_silence,
 )
-from metagraph.generation.generators import generator
-from metagraph.generation.loudness import gain_of
+from metagraph.generation.generators import make_generator
+from metagraph.generation.loudness import compute_gain
 from metagraph.generation.networks import FPS, FlowSizes, MatchingSizes
 from metagraph.generation.poses import PoseError, decode_poses, encode_rotations
 from metagraph.generation.stored import Model
@@ -79,12 +79,12 @@ class TakeSampler:
             if rotations.shape != (len(model.rig.skeleton), 4) or not np.isfinite(rotations).all():
                 raise PoseError("the first pose is one of another skeleton")
             before = model.poses.apply(encode_rotations(model.rig, rotations))
-        self._made = generator(model.weights, sizes, before, temperature, lookahead, guidance)
+        self._made = make_generator(model.weights, sizes, before, temperature, lookahead, guidance)
         adaptive = smooth is None and (
             isinstance(sizes, MatchingSizes) or (isinstance(sizes, FlowSizes) and sizes.span > 1)
         )
         self._averaging = Averaging() if adaptive else Averaging(smooth or 0.0, None)
-        quiet = silence(model.card.tracks * MELS)
+        quiet = make_silence(model.card.tracks * MELS)
         # Features that are still needed, from `before` frames before the next one made.
         self._heard = model.heard(np.tile(quiet, (self._made.before, 1)))
         self._quiet = model.heard(quiet[None])
@@ -176,7 +176,9 @@ class TakeSampler:
         return self.model.poses.undo(out)
 
 
-def poses_to(model: Model, features: Array, seed: int = 1, temperature: float = 1.0, **options: Any) -> Array:
+def generate_recording_poses(
+    model: Model, features: Array, seed: int = 1, temperature: float = 1.0, **options: Any
+) -> Array:
     """Return the poses `[T, X]`, not standardised, to a whole recording's features `[T, audio + 4]`. options:
     as for `Sampler`.
     """
@@ -199,8 +201,8 @@ def sample_whole(
     name: str = "generated",
 ) -> Clip:
     """Return the motion to a recording, as long as it is. samples: `[C, N]` at `features.RATE`, own voice
-    first; activity: `[T, 4]`, as `features.conversation_activity` or `detect_voice_activity` give it. Joints
-    that the model does not move are in its base pose, or as `first` has them. Raises FeatureError.
+    first; activity: `[T, 4]`, as `features.compute_conversation_activity` or `detect_voice_activity` give it.
+    Joints that the model does not move are in its base pose, or as `first` has them. Raises FeatureError.
     """
     samples = np.atleast_2d(samples)
     if not samples.shape[1]:
@@ -213,12 +215,12 @@ def sample_whole(
         lookahead=lookahead,
         guidance=guidance,
         channels=len(samples),
-        gains=[gain_of(channel, RATE) for channel in samples],
+        gains=[compute_gain(channel, RATE) for channel in samples],
         first=first,
         smooth=smooth,
     )
-    ready = [sampler.push(samples, activity[: frames_of(samples.shape[1])]), sampler.finish()]
-    return clip_of(model, np.concatenate(ready), name, first, seed)
+    ready = [sampler.push(samples, activity[: count_sound_frames(samples.shape[1])]), sampler.finish()]
+    return make_clip_from_poses(model, np.concatenate(ready), name, first, seed)
 
 
 def make_conversation_motion(
@@ -227,8 +229,8 @@ def make_conversation_motion(
     """Return the motion of one side of a conversation. samples: `[C, N]` at `features.RATE`, that side's
     voice first. options: as for `whole`.
     """
-    count = frames_of(np.atleast_2d(samples).shape[1])
-    activity = conversation_activity(conversation, side, count)
+    count = count_sound_frames(np.atleast_2d(samples).shape[1])
+    activity = compute_conversation_activity(conversation, side, count)
     name = conversation.sides[side].name or f"{conversation.name}, side {side + 1}"
     return sample_whole(model, samples, activity, seed=seed, **{"name": name, **options})
 
@@ -237,10 +239,10 @@ def hear_activity(samples: Array) -> Array:
     """Return activity `[T, 4]` of a recording without words: samples `[C, N]` at `features.RATE`."""
     samples = np.atleast_2d(samples)
     partner = samples[1] if len(samples) > 1 else None
-    return detect_voice_activity(samples[0], partner, RATE, frames_of(samples.shape[1]))
+    return detect_voice_activity(samples[0], partner, RATE, count_sound_frames(samples.shape[1]))
 
 
-def clip_of(
+def make_clip_from_poses(
     model: Model, turns: Array, name: str, first: Array | None = None, seed: int | None = None
 ) -> Clip:
     """Return a clip of rotations `[T, joints, 4]` of the rig's joints."""
@@ -262,7 +264,7 @@ def clip_of(
     )
 
 
-def first_pose(clip: Clip, seconds: float = 0.0) -> Array:
+def read_first_pose(clip: Clip, seconds: float = 0.0) -> Array:
     """Return the local rotations `[J, 4]` of a clip, a stance say, at a moment."""
     pose: Pose = clip.pose_at(seconds)
     return np.asarray(pose.rotations, np.float64)

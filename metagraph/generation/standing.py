@@ -69,13 +69,13 @@ def find_begun_trainings(folder: Path) -> list[Standing]:
     """
     found = []
     for training in sorted(folder.glob(f"*{SUFFIX}{FOLDER}")):
-        standing = standing_of(training)
+        standing = read_standing(training)
         if standing is not None:
             found.append(standing)
     return sorted(found, key=lambda s: s.share >= 1)
 
 
-def standing_of(training: Path) -> Standing | None:
+def read_standing(training: Path) -> Standing | None:
     """Return how far the training in a folder got, or None if there is none to continue."""
     try:
         plan = read_training_plan(training)

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.generation.features import PARTNER, SELF
-from metagraph.generation.landmarks import HEAD, NOSE, WRISTS, landmarks_of
+from metagraph.generation.landmarks import HEAD, NOSE, WRISTS, place_landmarks
 from metagraph.generation.networks import FPS
 from metagraph.generation.poses import PoseRig, Standardisation, scale_of
 from metagraph.generation.takes import NO_MARKS, Take, TakeMarks
-from metagraph.generation.vae import principal
+from metagraph.generation.vae import find_principal_components
 
 Array = NDArray[Any]
 
@@ -66,7 +66,7 @@ def make_motion_sample(rig: PoseRig, poses: Array, take: Take) -> MotionSample:
     """
     count = min(len(poses), len(take.features))
     poses = np.asarray(poses[:count], np.float64)
-    return MotionSample(landmarks_of(rig, poses), poses, take.activity[:count], take.marks)
+    return MotionSample(place_landmarks(rig, poses), poses, take.activity[:count], take.marks)
 
 
 def cut_blocks(motion: Sequence[MotionSample], seconds: float = BLOCK) -> list[MotionSample]:
@@ -89,7 +89,7 @@ def mean_landmarks(motion: Sequence[MotionSample]) -> Array:
     return np.asarray(np.concatenate([m.landmarks for m in motion]).mean(0))
 
 
-def wasserstein(a: Array, b: Array) -> float:
+def measure_wasserstein(a: Array, b: Array) -> float:
     """Return the distance W1 between two sets of numbers: the mean difference of their quantiles; nan where
     one is empty.
     """
@@ -124,7 +124,7 @@ class _Truth:
 def _truth(motion: tuple[MotionSample, ...]) -> _Truth:
     poses = np.concatenate([m.poses for m in motion])
     scale = scale_of(poses)
-    parts = principal(scale.apply(poses), min(SCORES, poses.shape[1]), "scores")
+    parts = find_principal_components(scale.apply(poses), min(SCORES, poses.shape[1]), "scores")
     return _Truth(mean_landmarks(motion), scale, parts["scores.mean"], parts["scores.basis"])
 
 
@@ -285,7 +285,7 @@ def _root(matrix: Array) -> Array:
     return np.asarray((vectors * np.sqrt(np.maximum(values, 0))) @ vectors.T)
 
 
-def diversity(performances: Sequence[Sequence[MotionSample]]) -> float:
+def measure_diversity(performances: Sequence[Sequence[MotionSample]]) -> float:
     """Return how far landmarks are apart between two of several takes to the same speech, cm: the mean over
     pairs and frames; nan for fewer than two.
     """
@@ -332,7 +332,7 @@ class MeasureRow:
     spread: Mapping[str, tuple[float, float]]
 
 
-def row(
+def measure_system(
     name: str,
     generated: Sequence[Sequence[MotionSample]],
     true: Sequence[MotionSample],
@@ -344,7 +344,7 @@ def row(
     """
     whole = [compute_measures(each, true) for each in generated]
     values = {m: float(np.mean([w[m] for w in whole])) for m in MEASURES}
-    values["diversity"] = diversity(generated)
+    values["diversity"] = measure_diversity(generated)
     truth = _truth(tuple(true))
     pieces = [[_parts(b, truth) for b in cut_blocks(each)] for each in generated]
     recorded = [_parts(b, truth) for b in cut_blocks(true)]
@@ -372,17 +372,17 @@ def tabulate_measures(
     floor: Sequence[MotionSample] | None = None,
     draws: int = DRAWS,
 ) -> list[MeasureRow]:
-    """Return a row of each system, below what stands beside them. systems: as `row`'s `generated`. floor:
-    other true motion to the same speech; None: the first half of the recorded blocks is measured against the
-    other.
+    """Return a row of each system, below what stands beside them. systems: as `measure_system`'s
+    `generated`. floor: other true motion to the same speech; None: the first half of the recorded blocks is
+    measured against the other.
     """
     if floor is not None:
-        rows = [row("floor", [floor], true, draws=draws)]
+        rows = [measure_system("floor", [floor], true, draws=draws)]
     else:
         halves = cut_blocks(true)
         rows = []
         if len(halves) > 1:
             rows = [MeasureRow("floor", compute_measures(halves[::2], halves[1::2]), {})]
-    rows.append(row("mismatched", [mismatch_speech(true)], true, draws=draws))
-    rows.append(row("mean pose", [mean_pose(true)], true, draws=draws))
-    return rows + [row(name, made, true, draws=draws) for name, made in systems.items()]
+    rows.append(measure_system("mismatched", [mismatch_speech(true)], true, draws=draws))
+    rows.append(measure_system("mean pose", [mean_pose(true)], true, draws=draws))
+    return rows + [measure_system(name, made, true, draws=draws) for name, made in systems.items()]

@@ -36,7 +36,7 @@ from metagraph.generation.networks import (
     Kind,
     MatchingSizes,
     Weights,
-    shapes_of,
+    list_weight_shapes,
 )
 from metagraph.generation.poses import NUMBERS, PoseError, PoseRig, Standardisation, find_rig
 from metagraph.motion.skeleton import Skeleton
@@ -118,7 +118,7 @@ class ModelCard(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A model, ready to be used. weights: as `networks.shapes_of` names them, float32."""
+    """A model, ready to be used. weights: as `networks.list_weight_shapes` names them, float32."""
 
     card: ModelCard
     weights: Weights
@@ -147,7 +147,7 @@ def _scale(mean: _Numbers, deviation: _Numbers) -> Standardisation:
     return Standardisation(np.array(mean, np.float32), np.array(deviation, np.float32))
 
 
-def skeleton_card(rig: PoseRig) -> SkeletonCard:
+def make_skeleton_card(rig: PoseRig) -> SkeletonCard:
     """Return what is kept of a skeleton."""
     skeleton = rig.skeleton
     above = int(skeleton.parents[rig.lines[0][0]])
@@ -162,7 +162,7 @@ def skeleton_card(rig: PoseRig) -> SkeletonCard:
     )
 
 
-def versions() -> dict[str, str]:
+def list_versions() -> dict[str, str]:
     """Return what a model was made with."""
     return {"python": platform.python_version(), "numpy": np.__version__}
 
@@ -171,7 +171,7 @@ def check_model(model: Model) -> Model:
     """Return the model. Raises ValueError, in words, where its card and weights do not fit together."""
     card, weights = model.card, model.weights
     _check_card(card)
-    expected = shapes_of(card.sizes)
+    expected = list_weight_shapes(card.sizes)
     if odd := sorted(set(weights) ^ set(expected)):
         raise ValueError(f"its weights are not those of its sizes ('{odd[0]}')")
     for name, shape in expected.items():
@@ -229,7 +229,9 @@ def write_model(model: Model, path: str | Path, half: bool = False) -> None:
                 + ("" if half else "; 16 bits would halve them")
             )
         with np.errstate(over="ignore"):
-            arrays = {n: np.ascontiguousarray(model.weights[n], kept) for n in shapes_of(model.card.sizes)}
+            arrays = {
+                n: np.ascontiguousarray(model.weights[n], kept) for n in list_weight_shapes(model.card.sizes)
+            }
         if any(not np.isfinite(a).all() for a in arrays.values()):
             raise ValueError("a weight is too large for 16 bits")
     except (ValueError, PoseError) as error:
@@ -310,7 +312,7 @@ def _card(path: Path, archive: zipfile.ZipFile) -> ModelCard:
 
 def _weights(path: Path, archive: zipfile.ZipFile, card: ModelCard) -> Weights:
     """Return the weights; nothing is read before all names and sizes are as they must be."""
-    expected = shapes_of(card.sizes)
+    expected = list_weight_shapes(card.sizes)
     members = {f"weights/{name}.npy": name for name in expected}
     infos = {info.filename: info for info in archive.infolist()}
     odd = sorted(set(infos) - set(members) - {_JSON})

@@ -84,11 +84,11 @@ def find_takes(folders: Iterable[Path], speech: Sequence[Path] = ()) -> tuple[li
     found = list(folders)
     clips = [c for f in found for c in ([f] if f.is_file() else find_clip_files(f))]
     beside = [p for f in (*found, *speech) for p in _files(f.parent if f.is_file() else f)]
-    named = {id_of(p): p for p in beside if p.suffix.lower() in SOUNDS}
-    words = {id_of(p): p for p in beside if p.suffix.lower() in _WORDS}
+    named = {identify_file(p): p for p in beside if p.suffix.lower() in SOUNDS}
+    words = {identify_file(p): p for p in beside if p.suffix.lower() in _WORDS}
     takes, without = [], []
     for clip in dict.fromkeys(clips):
-        key, side = id_of(clip), 0
+        key, side = identify_file(clip), 0
         mark = _SIDE.search(clip.stem)
         if _match(named, key) is None and mark:
             key = (key[0], key[1][: -len(mark[0])])
@@ -100,12 +100,12 @@ def find_takes(folders: Iterable[Path], speech: Sequence[Path] = ()) -> tuple[li
                 "where the speech is"
             )
             continue
-        told = _match(words, id_of(sound))
+        told = _match(words, identify_file(sound))
         takes.append(TakeFiles(clip, (sound,), (told,) if told else (), side))
     return takes, without
 
 
-def id_of(path: Path) -> tuple[str, str]:
+def identify_file(path: Path) -> tuple[str, str]:
     """Return what makes files belong together: their folder and their name."""
     return str(path.parent.resolve()), path.stem.casefold()
 

@@ -18,20 +18,20 @@ from metagraph.generation.features import (
     PARTNER,
     RATE,
     SELF,
+    compute_conversation_activity,
     compute_features,
-    conversation_activity,
+    count_sound_frames,
     detect_voice_activity,
-    frames_of,
     resample_for_features,
 )
-from metagraph.generation.loudness import gain_of, measure_integrated_loudness
+from metagraph.generation.loudness import compute_gain, measure_integrated_loudness
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import (
     PoseError,
     PoseRig,
     Standardisation,
     encode_clip,
-    gram_schmidt,
+    orthonormalise_rows,
     scale_of,
 )
 from metagraph.graph.conversation.model import Conversation, list_segments_heard_by
@@ -158,14 +158,14 @@ def make_take(
     if not np.isfinite(sound).all() or not np.isfinite(poses).all():
         raise TakeError(f"{who} holds a value that is not a number: export it anew")
     sound = resample_for_features(sound, heard.rate)[:2]
-    count = min(len(poses), frames_of(sound.shape[1]))
+    count = min(len(poses), count_sound_frames(sound.shape[1]))
     if count < SHORTEST * FPS:
-        shorter = "motion" if len(poses) <= frames_of(sound.shape[1]) else "sound"
+        shorter = "motion" if len(poses) <= count_sound_frames(sound.shape[1]) else "sound"
         raise TakeError(
             f"{who}: its {shorter} lasts {count / FPS:.1f} s, too short to learn from (at least "
             f"{SHORTEST:g} s)"
         )
-    if abs(len(poses) - frames_of(sound.shape[1])) > FPS:
+    if abs(len(poses) - count_sound_frames(sound.shape[1])) > FPS:
         notes.append(
             phrase(
                 "{who}: the motion lasts {count:.1f} s but the sound {shape:.1f} s; the rest is "
@@ -188,7 +188,7 @@ def make_take(
         partner = sound[1] if len(sound) > 1 else None
         activity, marks = detect_voice_activity(sound[0], partner, RATE, count), TakeMarks()
     else:
-        activity, marks = conversation_activity(conversation, side, count), _marks(conversation, side)
+        activity, marks = compute_conversation_activity(conversation, side, count), _marks(conversation, side)
     own = activity[:, SELF].sum() / FPS
     if activity[:, NONE].sum() / FPS > count / FPS - SPOKEN:
         raise TakeError(f"{who}: nobody speaks in it. Check which sound belongs to it")
@@ -196,7 +196,7 @@ def make_take(
         notes.append(phrase("{who}: this speaker hardly speaks and teaches only listening.", who=who))
     elif not activity[:, PARTNER].any():
         notes.append(phrase("{who}: the partner never speaks, so it teaches only speaking.", who=who))
-    gains = [gain_of(channel, RATE) for channel in sound]
+    gains = [compute_gain(channel, RATE) for channel in sound]
     audio = compute_features(sound, activity, tracks, gains)[:count]
     if float(poses[:count].std(0).max()) < 1e-3:
         raise TakeError(f"{who} does not move above the hips: there is nothing to learn")
@@ -263,7 +263,7 @@ def mirror_take(rig: PoseRig, clip: Clip, take: Take) -> Take:
     )
 
 
-def scales_of(takes: Sequence[Take]) -> tuple[Standardisation, Standardisation]:
+def measure_scales(takes: Sequence[Take]) -> tuple[Standardisation, Standardisation]:
     """Return what standardises poses, and audio, of takes."""
     audio = np.concatenate([t.features[:, :-ACTIVITY] for t in takes])
     return scale_of(np.concatenate([t.poses for t in takes])), scale_of(audio, LEAST_SOUND)
@@ -359,7 +359,7 @@ def _near(a: Take, b: Take) -> bool:
     return same and a.source.start - slack < ends[1] and b.source.start - slack < ends[0]
 
 
-def shares_stretch(a: Take, b: Take) -> bool:
+def share_stretch(a: Take, b: Take) -> bool:
     """Whether BLOCK seconds of two takes sound and move alike at the same moments, left and right exchanged
     or not. Either alone is no sign: the same speech is performed twice, and the same gesture made again.
     """
@@ -382,7 +382,7 @@ def _alike(a: tuple[Array, Array], b: tuple[Array, Array]) -> bool:
 
 def _signature(take: Take) -> tuple[Array, Array]:
     """Return how loud each frame is, and how far its joints are turned: the same for mirror twins."""
-    matrices = gram_schmidt(take.poses.reshape(len(take.poses), -1, 2, 3))
+    matrices = orthonormalise_rows(take.poses.reshape(len(take.poses), -1, 2, 3))
     cosine = (np.trace(matrices, axis1=-2, axis2=-1) - 1) / 2
     heard = take.features[:, :MELS].mean(1, dtype=np.float64)
     return heard, np.arccos(np.clip(cosine, -1, 1)).sum(-1)

@@ -19,9 +19,9 @@ from metagraph.common.network_paths import find_refusal
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.generation.features import MELS
-from metagraph.generation.networks import Kind, Size, Sizes, sizes_of
+from metagraph.generation.networks import Kind, Size, Sizes, make_sizes
 from metagraph.generation.poses import PoseRig
-from metagraph.generation.stored import SkeletonCard, TakeCard, skeleton_card
+from metagraph.generation.stored import SkeletonCard, TakeCard, make_skeleton_card
 from metagraph.generation.takes import Take, TakeMarks, TakeSource, check_split
 
 Loss = Literal["paper", "finished", "matching", "evidence"]
@@ -76,7 +76,7 @@ class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     turns: Annotated[float, Meta(ge=0, le=8)] = 1.5
 
 
-def settings_for(loss: Loss | None, kind: Kind = "matching") -> TrainingSettings:
+def choose_settings(loss: Loss | None, kind: Kind = "matching") -> TrainingSettings:
     """Return the settings of a training by a loss: by the paper's nothing is done that the paper does not.
     kind: what is trained; a Flow-VAE that is not the paper's learns longer crops at a rate that stays high
     for longer.
@@ -147,22 +147,22 @@ def plan_of(
     options: further fields of the plan. Raises SplitError if a take held out is learned from.
     """
     check_split(takes, held)
-    options = {"settings": settings_for(None, kind), **options}
+    options = {"settings": choose_settings(None, kind), **options}
     published = options["settings"].loss == "paper"
     return TrainingPlan(
         kind=kind,
         size=size,
-        sizes=sizes_of(kind, size, rig.numbers, tracks * MELS, published) if sizes is None else sizes,
+        sizes=make_sizes(kind, size, rig.numbers, tracks * MELS, published) if sizes is None else sizes,
         tracks=tracks,
-        skeleton=skeleton_card(rig),
-        takes=tuple(card_of(t) for t in takes),
-        held=tuple(card_of(t) for t in held),
+        skeleton=make_skeleton_card(rig),
+        takes=tuple(make_take_card(t) for t in takes),
+        held=tuple(make_take_card(t) for t in held),
         out=str(out.resolve()),
         **options,
     )
 
 
-def card_of(take: Take) -> TakeCard:
+def make_take_card(take: Take) -> TakeCard:
     """Return what a model keeps of a take that it has seen."""
     s = take.source
     return TakeCard(
@@ -170,7 +170,7 @@ def card_of(take: Take) -> TakeCard:
     )
 
 
-def folder_of(out: Path) -> Path:
+def find_training_folder(out: Path) -> Path:
     """Return the folder that a model's training works in, beside its file."""
     return out.with_name(out.name + FOLDER)
 

@@ -19,7 +19,7 @@ from msgspec import Struct
 from metagraph.common.extras import is_bundle
 from metagraph.common.programs import make_python_command, start
 from metagraph.common.wording import phrase
-from metagraph.generation.train_plan import STOP, folder_of
+from metagraph.generation.train_plan import STOP, find_training_folder
 
 TORCH = phrase(
     "Training needs torch, which is not installed: 200 MB to download, 750 MB on disk. Install it with\n"
@@ -85,7 +85,7 @@ class TrainingProcess:
     ) -> None:
         if told := find_missing_tools():
             raise TrainingFailedError(told)
-        self.folder = folder_of(out)
+        self.folder = find_training_folder(out)
         (self.folder / STOP).unlink(missing_ok=True)
         words = [str(self.folder.resolve()), "--watched"]
         words += [] if resume else ["--afresh"]

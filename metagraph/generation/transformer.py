@@ -86,13 +86,13 @@ class _Block:
         """Return `[B, t, N]`, of some places, of all places `[B, T, N]` at moment number n."""
         batch, count, width = x.shape
         q, k, v = np.moveaxis(self._qkv.of(n, x).reshape(batch, count, 3, self.heads, -1), 2, 0)
-        heard = attention(q[:, places], k, v)
+        heard = attend(q[:, places], k, v)
         x = x[:, places] + self._proj.rows(heard.reshape(batch, -1, width))
-        x += self._outer.rows(twice_gelu(self._inner.of(n, x)))
+        x += self._outer.rows(compute_twice_gelu(self._inner.of(n, x)))
         return x
 
 
-def attention(q: Array, k: Array, v: Array) -> Array:
+def attend(q: Array, k: Array, v: Array) -> Array:
     """Return `[B, t, heads, N]`: each place's mean of the values `[B, T, heads, N]`, by how its query `[B, t,
     heads, N]`, scaled already, fits the keys `[B, T, heads, N]`.
     """
@@ -104,7 +104,7 @@ def attention(q: Array, k: Array, v: Array) -> Array:
     return np.asarray(out.transpose(0, 2, 1, 3))
 
 
-def twice_gelu(x: Array) -> Array:
+def compute_twice_gelu(x: Array) -> Array:
     """Return twice the Gaussian error linear unit, as approximated by tanh."""
     inner = x * x
     inner *= 0.044715 * 0.7978845608028654

@@ -129,7 +129,7 @@ def list_spans(poses: Array, span: int) -> Array:
     return np.asarray(poses[: count * span].reshape(count, -1))
 
 
-def principal(rows: Array, dims: int, prefix: str) -> Weights:
+def find_principal_components(rows: Array, dims: int, prefix: str) -> Weights:
     """Return mean, basis and deviation of the first principal components, in closed form, float32. rows: `[N,
     M]`. Signs are such that each component's largest number is positive, so that the same rows give the same
     basis. Raises ValueError if there are fewer rows than components.

@@ -40,7 +40,7 @@ class GeneratedMotion(LaidMotion):
 
     def __init__(self, client: int, name: str, model: Model, wish: Generate, project: Project, now: float):
         from metagraph.generation.features import HOP, RATE
-        from metagraph.generation.networks import FPS, parameters
+        from metagraph.generation.networks import FPS, count_parameters
         from metagraph.generation.performing import find_first_pose, moves_skeleton
         from metagraph.generation.sampler import TakeSampler
 
@@ -49,7 +49,7 @@ class GeneratedMotion(LaidMotion):
                 f"the model '{name}' was trained for another skeleton, so it cannot move "
                 "this character live. Train a model from this character's clips"
             )
-        if (size := parameters(model.card.sizes)) > MOST:
+        if (size := count_parameters(model.card.sizes)) > MOST:
             raise ValueError(
                 f"the model '{name}' has {size / 1e6:.1f} million parameters, too many for live use (at most "
                 f"{MOST / 1e6:g} million): train a small one"
@@ -135,7 +135,7 @@ class GeneratedMotion(LaidMotion):
 
     def _feed(self, plan: Plan, seconds: float) -> None:
         """Let the model hear one frame; silence where no sound has come."""
-        from metagraph.generation.features import one_hot
+        from metagraph.generation.features import encode_activity
 
         heard, self._sound = self._sound[:, : self._hop], self._sound[:, self._hop :]
         heard = np.pad(heard, ((0, 0), (0, self._hop - heard.shape[1])))
@@ -143,7 +143,7 @@ class GeneratedMotion(LaidMotion):
         own, partner = self._speaks if self._speaks is not None else found
         if self._speaks is None:  # what the character says itself nobody need tell it
             own = own or any(s.start <= seconds < s.end for s in plan.track.speeches)
-        self.sampler.feed(heard, one_hot(np.array([own]), np.array([partner])))
+        self.sampler.feed(heard, encode_activity(np.array([own]), np.array([partner])))
         self._fed += 1
 
     # --- what is to be seen

@@ -22,10 +22,10 @@ sys.path.insert(0, str(ROOT))
 
 import numpy as np  # noqa: E402
 
-from metagraph.generation.features import compute_features, conversation_activity, frames_of  # noqa: E402
-from metagraph.generation.loudness import gain_of  # noqa: E402
-from metagraph.generation.networks import FPS, parameters, sizes_of  # noqa: E402
-from metagraph.generation.sampler import TakeSampler, poses_to, sample_whole  # noqa: E402
+from metagraph.generation.features import compute_conversation_activity, compute_features, count_sound_frames  # noqa: E402
+from metagraph.generation.loudness import compute_gain  # noqa: E402
+from metagraph.generation.networks import FPS, count_parameters, make_sizes  # noqa: E402
+from metagraph.generation.sampler import TakeSampler, generate_recording_poses, sample_whole  # noqa: E402
 from tests.generation.makers import babble, conversation, untrained  # noqa: E402
 
 SYSTEMS = (
@@ -41,16 +41,16 @@ SYSTEMS = (
 
 def main(seconds: float) -> None:
     sound = np.stack([babble(seconds, 1), babble(seconds, 2)])
-    told = conversation_activity(conversation(seconds), 0, frames_of(sound.shape[1]))
+    told = compute_conversation_activity(conversation(seconds), 0, count_sound_frames(sound.shape[1]))
     began = time.process_time()
-    gains = [gain_of(channel, 16000) for channel in sound]
+    gains = [compute_gain(channel, 16000) for channel in sound]
     measured = time.process_time() - began
     began = time.process_time()
     frames = compute_features(sound, told, gains=gains)
     heard = time.process_time() - began
     print(f"{seconds:g} s: loudness {seconds / measured:.0f} x real time, features {seconds / heard:.0f} x")
     for kind, name, share in SYSTEMS:
-        sizes = sizes_of(kind, name)
+        sizes = make_sizes(kind, name)
         model = untrained(kind, 0.0, sizes)
         count = int(share * seconds * FPS)
         size = 640 * count
@@ -58,7 +58,7 @@ def main(seconds: float) -> None:
             count / FPS / min(spent(run) for _ in range(3))
             for run in (
                 lambda model=model, n=count, size=size: sample_whole(model, sound[:, :size], told[:n]),
-                lambda model=model, n=count: poses_to(model, frames[:n]),
+                lambda model=model, n=count: generate_recording_poses(model, frames[:n]),
             )
         ]
         sampler = TakeSampler(model, gains=gains)
@@ -78,7 +78,7 @@ def main(seconds: float) -> None:
                     break
                 pieces.append(1000 * (time.process_time() - began))
         print(
-            f"{kind:9} {name:6} {parameters(sizes) / 1e6:7.2f} M  whole {speeds[0]:6.1f} x real time, "
+            f"{kind:9} {name:6} {count_parameters(sizes) / 1e6:7.2f} M  whole {speeds[0]:6.1f} x real time, "
             f"poses {speeds[1]:6.1f} x; pushed {made / FPS / total:6.1f} x, "
             f"{1000 * total / max(made, 1):6.2f} ms a frame, at most {1000 * worst:6.1f} ms a push, "
             f"{sampler.delay} frames late; live piece {np.median(pieces):5.2f} ms, "

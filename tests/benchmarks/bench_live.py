@@ -274,7 +274,7 @@ def generate(seconds: float) -> None:
     import numpy as np
 
     from metagraph.formats.store import open_project
-    from metagraph.generation.networks import Kind, sizes_of
+    from metagraph.generation.networks import Kind, make_sizes
     from metagraph.generation.stored import write_model
     from metagraph.live.live_session import LiveSession
     from tests.generation.makers import babble, rig, untrained
@@ -289,7 +289,7 @@ def generate(seconds: float) -> None:
         for kind in kinds:
             path = Path(scratch) / f"{kind}.mgmodel"
             if kind is not None:
-                write_model(untrained(kind, sizes=sizes_of(kind, pose=rig().numbers)), path)
+                write_model(untrained(kind, sizes=make_sizes(kind, pose=rig().numbers)), path)
             session = LiveSession(open_project(SAMPLE).project, models={str(kind): path})
             session.warm()
             session.receive(1, json.dumps({"do": "generate", "model": kind}))

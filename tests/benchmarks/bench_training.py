@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT))
 import msgspec  # noqa: E402
 import torch  # noqa: E402
 
-from metagraph.generation.networks import parameters, sizes_of  # noqa: E402
+from metagraph.generation.networks import count_parameters, make_sizes  # noqa: E402
 from metagraph.generation.train_plan import TrainingSettings  # noqa: E402
 from metagraph.generation.training.flow_net import ControlNet  # noqa: E402
 from metagraph.generation.training.learner import Learner  # noqa: E402
@@ -50,7 +50,7 @@ def main(steps: int) -> None:
     for kind, each, known in SYSTEMS:
         ControlNet.heard = alone if each else shared  # type: ignore[method-assign]
         settings = TrainingSettings(known=known)
-        sizes = sizes_of(kind)
+        sizes = make_sizes(kind)
         own = Learner(
             msgspec.structs.replace(plan(takes[:1], takes[1:], kind, sizes=sizes), settings=settings),
             takes[:1],
@@ -62,7 +62,7 @@ def main(steps: int) -> None:
         took = time.process_time() - began
         how = "each window by itself" if each else f"shared, all known in {100 * known:.0f} %"
         print(
-            f"{kind:10} {parameters(sizes) / 1e6:.2f} M  {how:32} "
+            f"{kind:10} {count_parameters(sizes) / 1e6:.2f} M  {how:32} "
             f"{steps * own.objective.frames / took:9,.0f} frames/CPU-s",
             flush=True,
         )

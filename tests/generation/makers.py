@@ -10,7 +10,7 @@ import numpy as np
 
 from metagraph.formats.clips import read_clips
 from metagraph.generation.features import FLOOR, MELS, RATE
-from metagraph.generation.initial import initial
+from metagraph.generation.initial import make_initial_weights
 from metagraph.generation.networks import (
     Control,
     CvaeSizes,
@@ -19,11 +19,11 @@ from metagraph.generation.networks import (
     MatchingSizes,
     Sizes,
     Weights,
-    parameters,
-    shapes_of,
+    count_parameters,
+    list_weight_shapes,
 )
 from metagraph.generation.poses import PoseRig, find_rig
-from metagraph.generation.stored import Model, ModelCard, skeleton_card, versions
+from metagraph.generation.stored import Model, ModelCard, list_versions, make_skeleton_card
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -59,7 +59,7 @@ def shaken(sizes: Sizes, by: float = 0.3, seed: int = 5, dtype: Any = np.float32
     chance = np.random.default_rng(seed)
     fixed = (".p", ".sign", "deviation", "basis", ".mean")
     out: Weights = {}
-    for n, w in initial(sizes, seed).items():
+    for n, w in make_initial_weights(sizes, seed).items():
         far = 0 if n.endswith(fixed) else by / len(w) if n.endswith(("lower", "upper")) else by
         out[n] = (w + far * chance.standard_normal(w.shape)).astype(dtype)
     return out
@@ -69,17 +69,17 @@ def untrained(kind: Kind = "flow-vae", by: float = 0.05, sizes: Sizes | None = N
     """A model with weights by chance, whose poses stay near the base pose."""
     own = rig()
     sizes = tiny(kind, own.numbers) if sizes is None else sizes
-    assert parameters(sizes) and shapes_of(sizes)
+    assert count_parameters(sizes) and list_weight_shapes(sizes)
     identity = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     card = ModelCard(
         kind=kind,
         sizes=sizes,
-        skeleton=skeleton_card(own),
+        skeleton=make_skeleton_card(own),
         pose_mean=identity * (own.numbers // 6),
         pose_deviation=(0.05,) * own.numbers,
         audio_mean=(float(np.log(FLOOR)) / 2,) * MELS,
         audio_deviation=(4.0,) * MELS,
-        versions=versions(),
+        versions=list_versions(),
     )
     return Model(card, shaken(sizes, by))
 

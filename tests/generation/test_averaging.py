@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from metagraph.generation.averaging import FAST, MOVING, Averaging, gaussian
+from metagraph.generation.averaging import FAST, MOVING, Averaging, make_gaussian
 
 PLAIN = Averaging(1.5, None)
 
@@ -26,9 +26,9 @@ def test_what_stands_still_stays_and_what_trembles_is_gone():
 
 
 def test_weights_are_a_whole():
-    assert gaussian(1.5).sum() == pytest.approx(1)
-    assert len(gaussian(1.5)) == 11
-    assert gaussian(0).tolist() == [1.0]
+    assert make_gaussian(1.5).sum() == pytest.approx(1)
+    assert len(make_gaussian(1.5)) == 11
+    assert make_gaussian(0).tolist() == [1.0]
 
 
 def test_a_joint_that_moves_is_averaged_over_fewer_frames_than_one_that_rests():

@@ -14,7 +14,7 @@ CHANCE = np.random.default_rng(8)
 
 def test_components_tell_most_of_what_varies_together():
     source = CHANCE.standard_normal((400, 3)) @ CHANCE.standard_normal((3, 20)) + 5
-    w = vae.principal(source, 3, "code")
+    w = vae.find_principal_components(source, 3, "code")
     sizes = FlowSizes(pose=20, code="pca", dims=3)
     codes = vae.encode_spans(w, sizes, source)
     assert np.allclose(codes.mean(0), 0, atol=1e-5)
@@ -23,14 +23,14 @@ def test_components_tell_most_of_what_varies_together():
     assert np.abs(vae.Decoder(w, sizes).one(codes[7].astype(np.float32)) - source[7]).max() < 1e-4
     assert np.allclose(w["code.basis"] @ w["code.basis"].T, np.eye(3), atol=1e-5)
     assert (np.diff(w["code.deviation"]) <= 0).all()
-    again = vae.principal(source, 3, "code")
+    again = vae.find_principal_components(source, 3, "code")
     assert all((again[n] == w[n]).all() for n in w)
 
 
 def test_components_of_too_few_rows_are_refused():
     with pytest.raises(ValueError, match=r"3 stretches .*3 components"):
-        vae.principal(np.zeros((3, 9)), 3, "code")
-    assert np.isfinite(vae.principal(np.ones((9, 4)), 2, "code")["code.deviation"]).all()
+        vae.find_principal_components(np.zeros((3, 9)), 3, "code")
+    assert np.isfinite(vae.find_principal_components(np.ones((9, 4)), 2, "code")["code.deviation"]).all()
 
 
 @pytest.mark.parametrize("code", ["none", "autoencoder", "variational"])
@@ -92,11 +92,11 @@ def test_frames_are_put_in_rows_and_the_rest_is_left_out():
 def test_tokens_of_all_components_give_their_poses_back():
     sizes = MatchingSizes(pose=5, dims=20)
     poses = np.cumsum(CHANCE.standard_normal((400, 5)), 0)
-    w = vae.principal(vae.list_spans(poses, 4), 20, "tokens")
+    w = vae.find_principal_components(vae.list_spans(poses, 4), 20, "tokens")
     tokens = chunks.make_tokens(w, sizes, poses)
     assert tokens.shape == (100, 20)
     assert np.abs(chunks.join_token_poses(w, sizes, tokens) - poses).max() < 1e-3
-    held = chunks.tokens_of_still_pose(w, sizes, poses[7])
+    held = chunks.make_still_tokens(w, sizes, poses[7])
     assert held.shape == (6, 20)
     assert np.ptp(held, axis=0).max() == 0
 
@@ -106,7 +106,7 @@ def _few_components():
     sizes = MatchingSizes(pose=5, dims=7, around=1)
     rows = np.cumsum(CHANCE.standard_normal((4000, 5)), 0)
     poses = np.stack([np.convolve(r, np.ones(5) / 5, "same") for r in rows.T], 1)
-    w = vae.principal(vae.list_spans(poses, 4), 7, "tokens")
+    w = vae.find_principal_components(vae.list_spans(poses, 4), 7, "tokens")
     tokens = chunks.make_tokens(w, sizes, poses)
     w["tokens.joined"] = chunks.join_by_least_squares(
         [(tokens, vae.list_spans(poses, 4) - w["tokens.mean"])], 1

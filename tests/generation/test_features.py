@@ -17,13 +17,13 @@ from metagraph.generation.features import (
     FeatureError,
     FeatureStream,
     as_heard,
+    compute_conversation_activity,
     compute_features,
-    conversation_activity,
+    count_sound_frames,
     detect_voice_activity,
-    frames_of,
-    one_hot,
-    silence,
-    speaking,
+    encode_activity,
+    find_speaking,
+    make_silence,
     with_edges,
 )
 from metagraph.generation.poses import Standardisation
@@ -31,7 +31,7 @@ from metagraph.graph.conversation.model import Conversation, Segment, Side
 from tests.generation.makers import babble
 
 SOUND = np.stack([babble(1.3, 1), babble(1.3, 2)])
-TOLD = one_hot(np.arange(60) % 7 < 3, np.arange(60) % 5 < 2)
+TOLD = encode_activity(np.arange(60) % 7 < 3, np.arange(60) % 5 < 2)
 
 
 @settings(max_examples=60)
@@ -43,7 +43,7 @@ TOLD = one_hot(np.arange(60) % 7 < 3, np.arange(60) % 5 < 2)
 )
 def test_in_pieces_features_are_the_same_to_the_bit(cuts, told, length, tracks):
     sound = SOUND[:, :length]
-    activity = TOLD[: frames_of(length)]
+    activity = TOLD[: count_sound_frames(length)]
     whole = compute_features(sound, activity, tracks, gains=(0.7, 1.9))
     stream = FeatureStream(2, tracks, (0.7, 1.9))
     edges = [0, *sorted(min(c, length) for c in cuts), length]
@@ -56,7 +56,7 @@ def test_in_pieces_features_are_the_same_to_the_bit(cuts, told, length, tracks):
     parts.append(stream.finish())
     out = np.concatenate(parts)
     assert out.tobytes() == whole.tobytes()
-    assert out.shape == (frames_of(length), 27 * tracks + 4)
+    assert out.shape == (count_sound_frames(length), 27 * tracks + 4)
 
 
 def test_sample_by_sample_is_the_whole():
@@ -78,8 +78,8 @@ def test_a_frame_is_ready_as_soon_as_its_window_is_heard():
 
 
 def test_silence_is_the_floor_and_no_sound_has_no_frames():
-    quiet = compute_features(np.zeros((1, 2000)), one_hot(np.zeros(4, bool), np.zeros(4, bool)))
-    assert quiet.tobytes() == np.tile(silence(), (4, 1)).tobytes()
+    quiet = compute_features(np.zeros((1, 2000)), encode_activity(np.zeros(4, bool), np.zeros(4, bool)))
+    assert quiet.tobytes() == np.tile(make_silence(), (4, 1)).tobytes()
     assert quiet[0, 0] == np.float32(np.log(FLOOR))
     assert compute_features(np.zeros((2, 0)), np.zeros((0, 4))).shape == (0, 31)
     assert with_edges(quiet, 5, 25).shape == (34, 31)
@@ -128,24 +128,24 @@ def test_what_cannot_be_heard_is_told():
 
 
 def test_short_gaps_in_speech_are_none():
-    own = speaking([(1.0, 2.0), (2.19, 2.5), (2.75, 3.0)], 100)
+    own = find_speaking([(1.0, 2.0), (2.19, 2.5), (2.75, 3.0)], 100)
     assert own[25:63].all()
     assert not own[63:69].any()
     assert own[69:75].all()
     assert not own[:25].any()
     assert not own[75:].any()
-    assert not speaking([], 5).any()
+    assert not find_speaking([], 5).any()
 
 
 def test_a_long_stretch_is_not_forgotten_for_a_short_one_inside():
-    assert speaking([(0.0, 4.0), (1.0, 1.1), (4.1, 5.0)], 130)[:125].all()
+    assert find_speaking([(0.0, 4.0), (1.0, 1.1), (4.1, 5.0)], 130)[:125].all()
 
 
 def test_who_speaks_is_one_of_four():
     told = Side(segments=(Segment("clause", 0.0, 1.0), Segment("hesitation", 1.5, 2.0)))
     other = Side(segments=(Segment("response", 0.8, 1.2),))
     talk = Conversation(name="t", length=3, sides=(told, other))
-    first, second = (conversation_activity(talk, side, 75) for side in (0, 1))
+    first, second = (compute_conversation_activity(talk, side, 75) for side in (0, 1))
     assert (first.sum(1) == 1).all()
     assert [int(first[n].argmax()) for n in (0, 22, 27, 34, 40, 60)] == [0, 2, 1, 3, 0, 3]
     assert (second[:, [1, 0, 2, 3]] == first).all()
@@ -154,7 +154,7 @@ def test_who_speaks_is_one_of_four():
 def test_of_three_whoever_else_speaks_is_the_partner():
     sides = [Side(segments=(Segment("clause", n, n + 1.5),)) for n in (0.0, 1.0, 3.0)]
     talk = Conversation(name="t", length=6, sides=tuple(sides))
-    first = conversation_activity(talk, 0, 150)
+    first = compute_conversation_activity(talk, 0, 150)
     assert [int(first[n].argmax()) for n in (0, 30, 40, 70, 80, 130)] == [0, 2, 1, 3, 1, 3]
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.generation.flow import FlowDrawing, FlowWeights, matrix_of
-from metagraph.generation.initial import initial
-from metagraph.generation.networks import Control, FlowSizes, sizes_of
+from metagraph.generation.flow import FlowDrawing, FlowWeights, build_flow_matrix
+from metagraph.generation.initial import make_initial_weights
+from metagraph.generation.networks import Control, FlowSizes, make_sizes
 from tests.generation.makers import shaken
 
 SIZES = FlowSizes(pose=8, control=Control(width=4), code="none", dims=8, steps=3, units=10, layers=2)
@@ -25,7 +25,7 @@ def _given(frames: int, sizes: FlowSizes, seed: int = 3, batch: tuple[int, ...] 
 @pytest.mark.parametrize("dims", [7, 8, 24])
 def test_codes_come_back_from_their_noise(dtype, by, within, dims):
     sizes = FlowSizes(pose=8, dims=dims, steps=6, units=32)
-    flow = FlowWeights(shaken(sizes, by, dtype=dtype) if by else initial(sizes), sizes, dtype)
+    flow = FlowWeights(shaken(sizes, by, dtype=dtype) if by else make_initial_weights(sizes), sizes, dtype)
     codes, context = _given(50, sizes)
     noise, _, _ = flow.forward(codes, context)
     back, _ = flow.inverse(noise, context)
@@ -35,9 +35,9 @@ def test_codes_come_back_from_their_noise(dtype, by, within, dims):
 
 
 def test_of_the_papers_size_codes_come_back():
-    sizes = sizes_of("flow-vae", "paper", 54)
+    sizes = make_sizes("flow-vae", "paper", 54)
     assert isinstance(sizes, FlowSizes)
-    flow = FlowWeights(initial(sizes), sizes)
+    flow = FlowWeights(make_initial_weights(sizes), sizes)
     codes, context = _given(4, sizes)
     back, _ = flow.inverse(flow.forward(codes, context)[0], context)
     assert np.abs(back - codes).max() < 1e-5
@@ -107,9 +107,9 @@ def test_the_density_of_one_number_sums_to_one():
 
 
 def test_begun_anew_a_flow_only_turns():
-    weights = initial(SIZES)
+    weights = make_initial_weights(SIZES)
     flow = FlowWeights(weights, SIZES, np.float64)
-    matrix = matrix_of(weights, "flow.steps.0.linear")
+    matrix = build_flow_matrix(weights, "flow.steps.0.linear")
     assert np.abs(matrix @ matrix.T - np.eye(8)).max() < 1e-5
     codes, context = _given(3, SIZES)
     scale = np.log(1 / (1 + np.exp(-2.0)) + 1e-6)
@@ -118,7 +118,7 @@ def test_begun_anew_a_flow_only_turns():
 
 def test_what_is_below_the_diagonal_of_the_upper_matrix_does_not_count():
     weights = shaken(SIZES)
-    before = matrix_of(weights, "flow.steps.1.linear")
+    before = build_flow_matrix(weights, "flow.steps.1.linear")
     weights["flow.steps.1.linear.upper"] += np.tril(np.ones((8, 8), np.float32))
     weights["flow.steps.1.linear.lower"] += np.triu(np.ones((8, 8), np.float32))
-    assert (matrix_of(weights, "flow.steps.1.linear") == before).all()
+    assert (build_flow_matrix(weights, "flow.steps.1.linear") == before).all()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.generation.loudness import TARGET, gain_of, measure_integrated_loudness
+from metagraph.generation.loudness import TARGET, compute_gain, measure_integrated_loudness
 
 
 @pytest.mark.parametrize("rate", [16000, 44100, 48000])
@@ -46,13 +46,13 @@ def test_every_voice_is_brought_to_the_same_level():
     noise = chance.standard_normal(5 * 16000)
     for level in (0.9, 0.01, 1e-3):
         assert measure_integrated_loudness(
-            level * noise * gain_of(level * noise, 16000), 16000
+            level * noise * compute_gain(level * noise, 16000), 16000
         ) == pytest.approx(TARGET, abs=0.01)
 
 
 def test_silence_and_less_than_a_block_are_no_trouble():
     assert measure_integrated_loudness(np.zeros(0), 16000) == -np.inf
     assert measure_integrated_loudness(np.zeros(16000), 16000) == -np.inf
-    assert gain_of(np.zeros(16000), 16000) == 1
+    assert compute_gain(np.zeros(16000), 16000) == 1
     assert np.isfinite(measure_integrated_loudness(np.full(100, 0.5) * (-1.0) ** np.arange(100), 16000))
-    assert gain_of(1e-5 * np.sin(np.arange(16000)), 16000) == 1  # below the gate: not raised to a roar
+    assert compute_gain(1e-5 * np.sin(np.arange(16000)), 16000) == 1  # below the gate: not raised to a roar

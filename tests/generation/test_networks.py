@@ -8,15 +8,22 @@ import sys
 import numpy as np
 import pytest
 
-from metagraph.generation.initial import initial
-from metagraph.generation.networks import Control, FlowSizes, MatchingSizes, parameters, shapes_of, sizes_of
+from metagraph.generation.initial import make_initial_weights
+from metagraph.generation.networks import (
+    Control,
+    FlowSizes,
+    MatchingSizes,
+    count_parameters,
+    list_weight_shapes,
+    make_sizes,
+)
 
 
 @pytest.mark.parametrize(
     ("kind", "millions"), [("flow-vae", 31.53), ("moglow", 180.30), ("cvae", 3.04), ("matching", 0.672)]
 )
 def test_the_papers_sizes_have_as_many_numbers_as_counted(kind, millions):
-    assert parameters(sizes_of(kind, "paper", 54)) / 1e6 == pytest.approx(millions, abs=0.005)
+    assert count_parameters(make_sizes(kind, "paper", 54)) / 1e6 == pytest.approx(millions, abs=0.005)
 
 
 def test_the_papers_control_has_1231_numbers():
@@ -25,20 +32,20 @@ def test_the_papers_control_has_1231_numbers():
 
 @pytest.mark.parametrize("kind", ["flow-vae", "moglow", "cvae", "matching"])
 def test_weights_begin_with_the_names_and_shapes_that_are_said(kind):
-    sizes = sizes_of(kind, "small", 78)
-    weights = initial(sizes)
-    assert {n: w.shape for n, w in weights.items()} == shapes_of(sizes)
-    assert list(weights) == list(shapes_of(sizes))
+    sizes = make_sizes(kind, "small", 78)
+    weights = make_initial_weights(sizes)
+    assert {n: w.shape for n, w in weights.items()} == list_weight_shapes(sizes)
+    assert list(weights) == list(list_weight_shapes(sizes))
     assert all(w.dtype == np.float32 and np.isfinite(w).all() for w in weights.values())
-    again = initial(sizes)
+    again = make_initial_weights(sizes)
     assert all((again[n] == w).all() for n, w in weights.items())
-    assert any((initial(sizes, 2)[n] != w).any() for n, w in weights.items())
+    assert any((make_initial_weights(sizes, 2)[n] != w).any() for n, w in weights.items())
 
 
 @pytest.mark.parametrize("joints", [1, 3, 10])
 def test_few_joints_have_sizes_too(joints):
     for kind in ("flow-vae", "moglow", "cvae", "matching"):
-        assert parameters(sizes_of(kind, "small", 6 * joints)) > 0
+        assert count_parameters(make_sizes(kind, "small", 6 * joints)) > 0
 
 
 def test_sizes_that_cannot_be_are_told():
@@ -67,9 +74,9 @@ def test_using_models_brings_in_no_torch():
 
 def test_a_flow_vae_is_on_pieces_of_motion_unless_it_is_the_published_one():
     ours, published, whole = (
-        sizes_of("flow-vae"),
-        sizes_of("flow-vae", as_published=True),
-        sizes_of("flow-vae", "paper"),
+        make_sizes("flow-vae"),
+        make_sizes("flow-vae", as_published=True),
+        make_sizes("flow-vae", "paper"),
     )
     assert (ours.span, ours.guess, ours.before) == (16, True, 32)
     assert (published.span, published.guess, published.before) == (1, False, 5)

@@ -22,10 +22,10 @@ from metagraph.generation.performing import (
     generate_motion,
     hear_file,
     hear_side,
+    make_side_clip,
     moves_skeleton,
     project_rig,
     read_side_sound,
-    side_clip,
 )
 from metagraph.generation.poses import PoseError
 from metagraph.generation.sampler import hear_activity, sample_whole
@@ -70,7 +70,7 @@ def taller(by: float = 1.2) -> Project:
 def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path):
     project = talking(sample, tmp_path)
     assert moves_skeleton(model, project)
-    clip, notes = side_clip(model, project, hear_side(project, "v1", 0, tmp_path), Chance(3), "ada")
+    clip, notes = make_side_clip(model, project, hear_side(project, "v1", 0, tmp_path), Chance(3), "ada")
     assert clip.skeleton == project.skeleton and clip.duration == pytest.approx(6.0, abs=0.05) and not notes
     base = anatomy.get_base_pose(project)
     moved = {j for line in project_rig(project).lines for j in line}
@@ -83,7 +83,7 @@ def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path)
 def test_another_figure_gets_the_motion_retargeted_and_is_told(model, tmp_path):
     project = talking(taller(), tmp_path)
     assert not moves_skeleton(model, project)
-    clip, notes = side_clip(model, project, hear_side(project, "v1", 1, tmp_path), Chance(), "ben")
+    clip, notes = make_side_clip(model, project, hear_side(project, "v1", 1, tmp_path), Chance(), "ben")
     assert clip.skeleton == project.skeleton and "retargeted" in notes[-1]
     arm = anatomy.project_roles(project)["left_upper_arm"]
     assert np.ptp(clip.rotations[:, arm], axis=0).max() > 0.01

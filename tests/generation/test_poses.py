@@ -15,7 +15,7 @@ from metagraph.generation.poses import (
     encode_clip,
     encode_rotations,
     find_rig,
-    gram_schmidt,
+    orthonormalise_rows,
     resample_rotations,
     scale_of,
 )
@@ -122,14 +122,14 @@ def test_fewer_spines_and_no_collar_bones_will_do():
 
 @given(st.lists(st.floats(-9, 9), min_size=6, max_size=6))
 def test_whatever_a_network_gives_is_a_rotation(numbers):
-    matrix = gram_schmidt(np.array(numbers).reshape(2, 3))
+    matrix = orthonormalise_rows(np.array(numbers).reshape(2, 3))
     assert np.allclose(matrix @ matrix.T, np.eye(3), atol=1e-6)
     assert np.linalg.det(matrix) == pytest.approx(1)
 
 
 def test_noise_on_the_rows_leaves_the_first_ones_direction():
     rows = np.array([[2.0, 0, 0], [0.5, 3.0, 0]])
-    assert np.allclose(gram_schmidt(rows), np.eye(3))
+    assert np.allclose(orthonormalise_rows(rows), np.eye(3))
 
 
 @pytest.mark.parametrize("fps", [24.0, 30.0, 60.0, 120.0])

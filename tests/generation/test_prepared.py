@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.generation import layers
-from metagraph.generation.networks import lstm_shapes
+from metagraph.generation.networks import list_lstm_shapes
 from metagraph.generation.prepared import Cells, Dense
 
 CHANCE = np.random.default_rng(2)
@@ -19,9 +19,9 @@ def _weights(shapes):
 @pytest.mark.parametrize("own", [0, 2, 5])
 @pytest.mark.parametrize("depth", [1, 3])
 def test_an_lstm_moment_by_moment_is_the_whole(own, depth):
-    w = _weights(lstm_shapes("l", 5, 7, depth))
+    w = _weights(list_lstm_shapes("l", 5, 7, depth))
     x = CHANCE.standard_normal((11, 5))
-    whole, _ = layers.apply_lstm(w, "l", x, layers.lstm_state(w, "l", depth))
+    whole, _ = layers.apply_lstm(w, "l", x, layers.make_lstm_state(w, "l", depth))
     cells = Cells(w, "l", depth, own, np.float64)
     told = cells.told(x[:, own:])
     for _ in range(2):
@@ -32,7 +32,7 @@ def test_an_lstm_moment_by_moment_is_the_whole(own, depth):
 
 
 def test_an_lstms_gates_are_input_forget_cell_output():
-    w = {name: np.zeros(shape) for name, shape in lstm_shapes("l", 1, 1, 1).items()}
+    w = {name: np.zeros(shape) for name, shape in list_lstm_shapes("l", 1, 1, 1).items()}
 
     def outs(*biases):
         cells = Cells(w, "l", 1, 0, np.float64)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.formats.clips import find_clip_files, read_clips
-from metagraph.generation.landmarks import HEAD, NOSE, landmarks_of
+from metagraph.generation.landmarks import HEAD, NOSE, place_landmarks
 from metagraph.generation.poses import PoseError, decode_poses, encode_clip, find_rig, resample_rotations
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -43,7 +43,7 @@ def test_a_talkers_upper_body_comes_back(folder, numbers):
         still = np.repeat(clip.skeleton.rest_translations[None], len(turns), 0)
         there, again = (clip.skeleton.globals(Pose(r, still))[0][:, list(rig.joints)] for r in (turns, back))
         assert np.degrees(rotation.measure_angle_between(there, again).max()) < 0.05
-        marks = landmarks_of(rig, encode_clip(rig, clip, 25.0)[:1])
+        marks = place_landmarks(rig, encode_clip(rig, clip, 25.0)[:1])
         assert np.linalg.norm(marks[:, NOSE] - marks[:, HEAD]) == pytest.approx(0.12)
     assert seen == numbers
 

@@ -9,16 +9,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.generation.features import RATE, conversation_activity, frames_of, one_hot
-from metagraph.generation.networks import Control, FlowSizes, sizes_of
-from metagraph.generation.noise import noise
+from metagraph.generation.features import (
+    RATE,
+    compute_conversation_activity,
+    count_sound_frames,
+    encode_activity,
+)
+from metagraph.generation.networks import Control, FlowSizes, make_sizes
+from metagraph.generation.noise import draw_noise
 from metagraph.generation.poses import PoseError
 from metagraph.generation.sampler import (
     TakeSampler,
-    clip_of,
-    first_pose,
     hear_activity,
+    make_clip_from_poses,
     make_conversation_motion,
+    read_first_pose,
     sample_whole,
 )
 from metagraph.generation.stored import Model
@@ -28,7 +33,7 @@ from tests.generation.makers import babble, conversation, moving, stance, untrai
 KINDS = ("flow-vae", "moglow", "cvae", "matching")
 MODELS = {kind: untrained(kind) for kind in KINDS}
 SOUND = np.stack([babble(3, 1), babble(3, 2)])
-TOLD = conversation_activity(conversation(3), 0, frames_of(SOUND.shape[1]))
+TOLD = compute_conversation_activity(conversation(3), 0, count_sound_frames(SOUND.shape[1]))
 
 
 def _made(kind, **given):
@@ -78,7 +83,7 @@ def test_of_the_sizes_in_use_too_frames_one_by_one_are_the_same_to_the_bit(kind,
     if kind == "window":
         sizes = FlowSizes(pose=78, control=Control(kind="window"), dims=35, steps=2, units=150, layers=2)
     else:
-        sizes = sizes_of(kind)
+        sizes = make_sizes(kind)
     model = untrained("flow-vae" if kind == "window" else kind, sizes=sizes)
     pushed, at_once, fed = (TakeSampler(model, 5, lookahead=lookahead, start=3) for _ in range(3))
     out, made = [], []
@@ -129,7 +134,7 @@ def test_what_is_not_yet_said_changes_nothing(kind):
 def test_it_goes_on_from_a_stance(kind):
     """Poses before the first frame are heard, and what the model does not move stays as the stance has it."""
     raised = moving(2, seed=9)
-    first = first_pose(raised, 1.0)
+    first = read_first_pose(raised, 1.0)
     own, mean = _made(kind, first=first), _made(kind)
     assert np.abs(own.rotations[0] - mean.rotations[0]).max() > 1e-5
     rig = MODELS[kind].rig
@@ -176,7 +181,9 @@ def test_the_shortest_sounds_are_moved_to():
     for samples in (1, 639, 640, 1000):
         for kind in KINDS:
             sound = SOUND[:, :samples]
-            assert sample_whole(MODELS[kind], sound, TOLD[: frames_of(samples)]).frames == frames_of(samples)
+            assert sample_whole(
+                MODELS[kind], sound, TOLD[: count_sound_frames(samples)]
+            ).frames == count_sound_frames(samples)
     with pytest.raises(ValueError, match="no sound"):
         sample_whole(MODELS["cvae"], SOUND[:, :0], TOLD[:0])
     assert len(TakeSampler(MODELS["cvae"]).finish()) == 0
@@ -184,7 +191,7 @@ def test_the_shortest_sounds_are_moved_to():
 
 def test_one_voice_alone_will_do():
     told = hear_activity(SOUND[0])
-    assert told.shape == (frames_of(SOUND.shape[1]), 4)
+    assert told.shape == (count_sound_frames(SOUND.shape[1]), 4)
     assert sample_whole(MODELS["flow-vae"], SOUND[0], told).frames == 76
 
 
@@ -201,16 +208,18 @@ def test_what_cannot_be_sampled_is_told():
 
 
 def test_noise_is_of_seed_take_and_frame_alone():
-    assert (noise(1, 2, 3, 9) == noise(1, 2, 3, 9)).all()
-    assert (noise(1, 2, 3, 5)[:2] == noise(1, 2, 3, 5)[:2]).all()
-    rows = [noise(s, t, f, 64) for s, t, f in ((1, 2, 3), (2, 2, 3), (1, 3, 3), (1, 2, 4), (2**64 - 1, 0, 0))]
+    assert (draw_noise(1, 2, 3, 9) == draw_noise(1, 2, 3, 9)).all()
+    assert (draw_noise(1, 2, 3, 5)[:2] == draw_noise(1, 2, 3, 5)[:2]).all()
+    rows = [
+        draw_noise(s, t, f, 64) for s, t, f in ((1, 2, 3), (2, 2, 3), (1, 3, 3), (1, 2, 4), (2**64 - 1, 0, 0))
+    ]
     for n, one in enumerate(rows):
         assert all(abs(np.corrcoef(one, other)[0, 1]) < 0.5 for other in rows[n + 1 :])
-    many = np.concatenate([noise(7, 0, f, 101) for f in range(1000)])
+    many = np.concatenate([draw_noise(7, 0, f, 101) for f in range(1000)])
     assert abs(many.mean()) < 0.01
     assert abs(many.std() - 1) < 0.01
     assert abs((many**4).mean() - 3) < 0.1
-    assert noise(1, 1, 1, 3)[:3] == pytest.approx(noise(1, 1, 1, 3))
+    assert draw_noise(1, 1, 1, 3)[:3] == pytest.approx(draw_noise(1, 1, 1, 3))
 
 
 def test_what_begins_later_has_the_chance_of_its_own_frames():
@@ -230,7 +239,7 @@ def test_what_begins_later_has_the_chance_of_its_own_frames():
 
 
 def test_nobody_speaking_is_a_take_too():
-    quiet = one_hot(np.zeros(26, bool), np.zeros(26, bool))
+    quiet = encode_activity(np.zeros(26, bool), np.zeros(26, bool))
     clip = sample_whole(MODELS["flow-vae"], np.zeros((2, RATE)), quiet)
     assert clip.frames == 26
-    assert clip_of(MODELS["flow-vae"], np.zeros((1, 13, 4)) + rotation.IDENTITY, "x").frames == 1
+    assert make_clip_from_poses(MODELS["flow-vae"], np.zeros((1, 13, 4)) + rotation.IDENTITY, "x").frames == 1

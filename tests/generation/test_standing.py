@@ -17,10 +17,10 @@ from metagraph.generation.standing import (
     hold,
     is_busy,
     measure_training_share,
-    standing_of,
+    read_standing,
 )
 from metagraph.generation.takes import Take, TakeMarks, TakeSource
-from metagraph.generation.train_plan import TrainingPlan, folder_of, plan_of, write_training
+from metagraph.generation.train_plan import TrainingPlan, find_training_folder, plan_of, write_training
 from tests.generation.makers import rig
 from tests.processes import started
 
@@ -37,14 +37,14 @@ def made(out: Path, **limits: float) -> TrainingPlan:
         for n in (1, 2)
     ]
     plan = plan_of(own, takes[:1], takes[1:], out, **limits)
-    folder_of(out).mkdir(parents=True)
-    write_training(folder_of(out), plan, takes[:1], takes[1:])
+    find_training_folder(out).mkdir(parents=True)
+    write_training(find_training_folder(out), plan, takes[:1], takes[1:])
     return plan
 
 
 def checkpoint(out: Path, n: int, plan: TrainingPlan, step: int, minutes: float = 0.0) -> Path:
     told = CheckpointNote(plan=plan.fingerprint(), step=step, seconds=60 * minutes, minutes=minutes)
-    path = folder_of(out) / f"checkpoint.{n}.npz"
+    path = find_training_folder(out) / f"checkpoint.{n}.npz"
     np.savez(path, told=np.frombuffer(msgspec.json.encode(told), np.uint8), big=np.zeros(1000))
     return path
 
@@ -52,13 +52,16 @@ def checkpoint(out: Path, n: int, plan: TrainingPlan, step: int, minutes: float 
 def test_the_later_checkpoint_counts_and_a_damaged_one_does_not(tmp_path: Path) -> None:
     out = tmp_path / "a.mgmodel"
     plan = made(out, minutes=10.0)
-    assert (found := standing_of(folder_of(out))) is not None and (found.step, found.share) == (0, 0.0)
+    assert (found := read_standing(find_training_folder(out))) is not None and (found.step, found.share) == (
+        0,
+        0.0,
+    )
     checkpoint(out, 0, plan, 100, 2.0)
     later = checkpoint(out, 1, plan, 250, 5.0)
-    found = standing_of(folder_of(out))
+    found = read_standing(find_training_folder(out))
     assert found is not None and (found.step, found.share, found.kept) == (250, 0.5, False)
     later.write_bytes(later.read_bytes()[:200])
-    found = standing_of(folder_of(out))
+    found = read_standing(find_training_folder(out))
     assert found is not None and (found.step, found.share) == (100, 0.2)
 
 
@@ -66,7 +69,7 @@ def test_a_checkpoint_of_another_training_does_not_count(tmp_path: Path) -> None
     out = tmp_path / "a.mgmodel"
     plan = made(out)
     checkpoint(out, 0, msgspec.structs.replace(plan, seed=9), 100, 2.0)
-    found = standing_of(folder_of(out))
+    found = read_standing(find_training_folder(out))
     assert found is not None and found.step == 0
 
 
@@ -93,7 +96,7 @@ def test_what_is_over_first_counts(tmp_path: Path, limits: dict[str, float], sha
 def test_a_folder_is_held_by_one_process_until_that_ends_however_it_ends(tmp_path: Path) -> None:
     out = tmp_path / "a.mgmodel"
     made(out)
-    folder = folder_of(out)
+    folder = find_training_folder(out)
     code = (
         "import sys; from pathlib import Path; from metagraph.generation.standing import hold\n"
         "held = hold(Path(sys.argv[1])); print(held is not None, flush=True); sys.stdin.read()"

@@ -7,21 +7,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from metagraph.generation.features import one_hot
-from metagraph.generation.landmarks import HEAD, LANDMARKS, NOSE, WRISTS, landmarks_of
+from metagraph.generation.features import encode_activity
+from metagraph.generation.landmarks import HEAD, LANDMARKS, NOSE, WRISTS, place_landmarks
 from metagraph.generation.poses import encode_clip, encode_rotations, find_rig
 from metagraph.generation.statistics import (
     MEASURES,
     MotionSample,
     compute_measures,
     cut_blocks,
-    diversity,
     make_motion_sample,
     mean_pose,
+    measure_diversity,
+    measure_system,
+    measure_wasserstein,
     mismatch_speech,
-    row,
     tabulate_measures,
-    wasserstein,
 )
 from metagraph.generation.takes import Take, TakeMarks, TakeSource
 from metagraph.motion import rotation
@@ -52,7 +52,7 @@ def _talker(seed: int, seconds: float = 60, hear: int | None = None, wander: flo
         speaking |= np.abs(t - peak) < 1.5
     poses = points.reshape(count, 27)
     return MotionSample(
-        points, poses, one_hot(speaking, ~speaking), TakeMarks(tuple(peaks), tuple(responses))
+        points, poses, encode_activity(speaking, ~speaking), TakeMarks(tuple(peaks), tuple(responses))
     )
 
 
@@ -142,17 +142,17 @@ def test_half_the_size_is_half_the_speed():
 def test_the_distance_between_sets_is_how_far_one_is_moved():
     chance = np.random.default_rng(1)
     a = chance.standard_normal(3000)
-    assert wasserstein(a, a + 2) == pytest.approx(2)
-    assert wasserstein(a, np.concatenate([a, a])) < 0.02
-    assert wasserstein(a, 3 * a) == pytest.approx(2 * np.abs(a).mean(), rel=0.02)
-    assert np.isnan(wasserstein(a, a[:0]))
+    assert measure_wasserstein(a, a + 2) == pytest.approx(2)
+    assert measure_wasserstein(a, np.concatenate([a, a])) < 0.02
+    assert measure_wasserstein(a, 3 * a) == pytest.approx(2 * np.abs(a).mean(), rel=0.02)
+    assert np.isnan(measure_wasserstein(a, a[:0]))
 
 
 def test_seeds_that_move_alike_have_no_diversity():
     moved = [replace(m, landmarks=m.landmarks + [0.03, 0, 0.04]) for m in TRUE]
-    assert diversity([TRUE, TRUE]) == 0
-    assert diversity([TRUE, moved]) == pytest.approx(5)
-    assert np.isnan(diversity([TRUE]))
+    assert measure_diversity([TRUE, TRUE]) == 0
+    assert measure_diversity([TRUE, moved]) == pytest.approx(5)
+    assert np.isnan(measure_diversity([TRUE]))
 
 
 def test_blocks_are_fifteen_seconds_and_keep_their_marks():
@@ -164,12 +164,12 @@ def test_blocks_are_fifteen_seconds_and_keep_their_marks():
 
 def test_a_row_has_an_interval_about_its_value():
     made = [[_talker(11, hear=1), _talker(12, hear=2)], [_talker(21, hear=1), _talker(22, hear=2)]]
-    found = row("good", made, TRUE, draws=40)
+    found = measure_system("good", made, TRUE, draws=40)
     low, high = found.spread["stroke"]
     assert low < found.values["stroke"] < high
     assert high - low < found.values["stroke"]
     assert found.values["diversity"] > 0
-    assert row("good", made, TRUE, draws=40).spread == found.spread
+    assert measure_system("good", made, TRUE, draws=40).spread == found.spread
     assert "nods_hesitations" not in found.spread
 
 
@@ -190,7 +190,7 @@ def test_nothing_to_compare_is_told():
 
 def test_the_nose_is_before_the_head_and_hands_follow_the_arms():
     own = rig()
-    still = landmarks_of(own, encode_rotations(own, own.base)[None])[0]
+    still = place_landmarks(own, encode_rotations(own, own.base)[None])[0]
     place = dict(zip(LANDMARKS, still, strict=True))
     assert np.allclose(place["nose"] - place["head"], [0, 0, 0.12], atol=0.02)
     assert place["left_wrist"][0] > 0.1 > -0.1 > place["right_wrist"][0]
@@ -199,14 +199,14 @@ def test_the_nose_is_before_the_head_and_hands_follow_the_arms():
     turned = own.base.copy()
     joint = own.joints[own.roles.index("right_upper_arm")]
     turned[joint] = rotation.multiply(turned[joint], rotation.from_axis_angle([1, 0, 0], 1.0))
-    moved = np.linalg.norm(landmarks_of(own, encode_rotations(own, turned)[None])[0] - still, axis=-1)
+    moved = np.linalg.norm(place_landmarks(own, encode_rotations(own, turned)[None])[0] - still, axis=-1)
     assert moved[WRISTS[1]] > 0.1
     assert moved[[WRISTS[0], HEAD, NOSE]].max() < 1e-4
 
 
 def test_landmarks_are_where_the_whole_skeleton_has_them():
     own, clip = rig(), moving(2, fps=25.0)
-    seen = landmarks_of(own, encode_clip(own, clip, 25.0))
+    seen = place_landmarks(own, encode_clip(own, clip, 25.0))
     _, points = clip.skeleton.globals(clip.poses())
     hand = own.joints[own.roles.index("left_hand")]
     assert np.abs(seen[:, WRISTS[0]] - points[:, hand]).max() < 1e-3
@@ -218,7 +218,7 @@ def test_a_skeleton_without_collar_bones_has_a_sternum():
     for role in ("left_shoulder", "right_shoulder", "neck"):
         del roles[role]
     few = find_rig(own.skeleton, roles)
-    seen = landmarks_of(few, encode_rotations(few, few.base)[None])[0]
+    seen = place_landmarks(few, encode_rotations(few, few.base)[None])[0]
     assert np.isfinite(seen).all()
     assert np.allclose(seen[0], seen[1:3].mean(0))
 
@@ -226,7 +226,9 @@ def test_a_skeleton_without_collar_bones_has_a_sternum():
 def test_generated_poses_are_measured_with_what_a_take_hears():
     clip, own = moving(5, fps=25.0), rig()
     poses = encode_clip(own, clip, 25.0)
-    features = np.concatenate([np.zeros((len(poses), 27)), one_hot(poses[:, 0] > 9, poses[:, 0] < 9)], 1)
+    features = np.concatenate(
+        [np.zeros((len(poses), 27)), encode_activity(poses[:, 0] > 9, poses[:, 0] < 9)], 1
+    )
     take = Take(TakeSource("x"), poses, features.astype(np.float32), TakeMarks((1.0,)))
     made = make_motion_sample(own, poses[:100], take)
     assert len(made) == 100

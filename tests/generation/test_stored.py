@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.generation.sampler import poses_to
+from metagraph.generation.sampler import generate_recording_poses
 from metagraph.generation.stored import Model, TakeCard, read_card, read_model, write_model
 from tests.generation.makers import tiny, untrained
 
@@ -71,8 +71,14 @@ def test_a_model_of_the_first_format_moves_as_it_did(tmp_path):
     old = read_model(_changed(tmp_path / "new.mgmodel", tmp_path / "old.mgmodel", told=first))
     told = np.zeros((60, 31), np.float32)
     told[:, -1] = 1
-    assert poses_to(old, told, 3).tobytes() == poses_to(model, told, 3).tobytes()
-    assert len(poses_to(old, told, 3)) == len(poses_to(untrained("matching"), told, 3)) == 60
+    assert (
+        generate_recording_poses(old, told, 3).tobytes() == generate_recording_poses(model, told, 3).tobytes()
+    )
+    assert (
+        len(generate_recording_poses(old, told, 3))
+        == len(generate_recording_poses(untrained("matching"), told, 3))
+        == 60
+    )
 
 
 def test_what_is_told_of_a_model_comes_back(tmp_path):

@@ -16,9 +16,9 @@ from metagraph.generation.takes import (
     TakeSource,
     check_split,
     make_take,
+    measure_scales,
     mirror_take,
-    scales_of,
-    shares_stretch,
+    share_stretch,
     split_takes,
 )
 from metagraph.motion.clip import Clip
@@ -179,9 +179,9 @@ def test_an_overlapping_window_in_the_other_half_fails():
 def test_the_same_speech_performed_again_is_another_take():
     one, other = _take(20, 1), _take(20, 2)
     again = replace(other, features=one.features)
-    assert not shares_stretch(one, again)
-    assert not shares_stretch(one, replace(other, poses=one.poses))
-    assert shares_stretch(one, one)
+    assert not share_stretch(one, again)
+    assert not share_stretch(one, replace(other, poses=one.poses))
+    assert share_stretch(one, one)
     check_split([one], [other])
 
 
@@ -194,7 +194,7 @@ def test_empty_halves_are_refused():
 
 def test_scales_are_of_what_is_learned_from():
     takes = [_take(6, 1), _take(8, 2)]
-    poses, audio = scales_of(takes)
+    poses, audio = measure_scales(takes)
     rows = np.concatenate([t.poses for t in takes])
     assert np.abs(poses.apply(rows).mean(0)).max() < 1e-3
     assert audio.mean.shape == (27,)

@@ -17,11 +17,11 @@ from metagraph.generation.train_plan import (
     TAKES,
     TrainingPlan,
     TrainingSettings,
-    folder_of,
+    choose_settings,
+    find_training_folder,
     plan_of,
     read_planned_takes,
     read_training_plan,
-    settings_for,
     write_plan,
     write_training,
 )
@@ -45,7 +45,7 @@ def plan(takes: tuple[Take, Take], out: Path, **options: Any) -> TrainingPlan:
 
 def test_takes_and_plan_come_back_as_they_were(takes: Any, tmp_path: Path) -> None:
     own = plan(takes, tmp_path / "a.mgmodel")
-    folder = folder_of(tmp_path / "a.mgmodel")
+    folder = find_training_folder(tmp_path / "a.mgmodel")
     write_training(folder, own, takes[:1], takes[1:])
     again = read_training_plan(folder)
     assert again == own and again.fingerprint() == own.fingerprint()
@@ -68,7 +68,7 @@ def test_more_time_goes_on_and_other_settings_do_not(takes: Any, tmp_path: Path)
 
 
 def test_a_training_begun_anew_forgets_the_one_before(takes: Any, tmp_path: Path) -> None:
-    own, folder = plan(takes, tmp_path / "a.mgmodel"), folder_of(tmp_path / "a.mgmodel")
+    own, folder = plan(takes, tmp_path / "a.mgmodel"), find_training_folder(tmp_path / "a.mgmodel")
     folder.mkdir()
     for name in ("checkpoint.0.npz", "stop"):
         (folder / name).write_bytes(b"old")
@@ -77,7 +77,7 @@ def test_a_training_begun_anew_forgets_the_one_before(takes: Any, tmp_path: Path
 
 
 def test_what_is_missing_or_damaged_is_told(takes: Any, tmp_path: Path) -> None:
-    own, folder = plan(takes, tmp_path / "a.mgmodel"), folder_of(tmp_path / "a.mgmodel")
+    own, folder = plan(takes, tmp_path / "a.mgmodel"), find_training_folder(tmp_path / "a.mgmodel")
     with pytest.raises(FileError, match="no training to go on with"):
         read_training_plan(folder)
     write_training(folder, own, takes[:1], takes[1:])
@@ -93,23 +93,23 @@ def test_what_is_missing_or_damaged_is_told(takes: Any, tmp_path: Path) -> None:
 
 
 def test_by_the_papers_loss_nothing_is_done_that_the_paper_does_not() -> None:
-    own = settings_for("paper")
+    own = choose_settings("paper")
     assert (own.loss, own.voices, own.head, own.noise, own.known) == ("paper", 0, 0, 0, 1)
     assert (own.kept, own.clip, own.calm, own.tuned) == (0, 0, 0, 0), "nor means, clipping, an end"
     assert own.past_dropped == 0.4, "the paper's own"
-    assert settings_for(None).voices > 0
+    assert choose_settings(None).voices > 0
 
 
 def test_by_the_papers_loss_a_small_model_is_built_as_published(takes: Any, tmp_path: Path) -> None:
-    options = {"kind": "flow-vae", "settings": settings_for("paper", "flow-vae")}
+    options = {"kind": "flow-vae", "settings": choose_settings("paper", "flow-vae")}
     own = plan(takes, tmp_path / "a.mgmodel", **options)
     ours = plan(takes, tmp_path / "a.mgmodel", kind="flow-vae")
     assert not own.sizes.guess and ours.sizes.guess
-    assert ours.settings == settings_for(None, "flow-vae")
+    assert ours.settings == choose_settings(None, "flow-vae")
 
 
 def test_a_plan_names_no_file_on_another_computer(takes: Any, tmp_path: Path) -> None:
-    folder = folder_of(tmp_path / "a.mgmodel")
+    folder = find_training_folder(tmp_path / "a.mgmodel")
     write_training(folder, plan(takes, tmp_path / "a.mgmodel"), takes[:1], takes[1:])
     up = "../" * (len(folder.resolve().parts) - 1)
     for name in (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from metagraph.generation.networks import MatchingSizes
-from metagraph.generation.transformer import Velocity, attention, twice_gelu
+from metagraph.generation.transformer import Velocity, attend, compute_twice_gelu
 from tests.generation.makers import shaken, tiny
 
 CHANCE = np.random.default_rng(2)
@@ -15,25 +15,25 @@ def test_attention_to_one_place_gives_its_value():
     k = np.zeros((1, 3, 2, 4))
     k[0, 1] = 40.0
     v = CHANCE.standard_normal((1, 3, 2, 4))
-    out = attention(np.full((1, 5, 2, 4), 40.0), k, v)
+    out = attend(np.full((1, 5, 2, 4), 40.0), k, v)
     assert out.shape == (1, 5, 2, 4)
     assert np.abs(out - v[:, 1:2]).max() < 1e-9
 
 
 def test_heads_attend_apart():
     q, k, v = (CHANCE.standard_normal((1, 5, 2, 3)) for _ in range(3))
-    both = attention(q, k, v)
+    both = attend(q, k, v)
     for head in (slice(0, 1), slice(1, 2)):
-        alone = attention(q[:, :, head], k[:, :, head], v[:, :, head])
+        alone = attend(q[:, :, head], k[:, :, head], v[:, :, head])
         assert np.abs(both[:, :, head] - alone).max() < 1e-12
 
 
 def test_nothing_overflows():
     far = np.array([-1e4, -100.0, 0.0, 100.0, 1e4], np.float32)
-    assert np.isfinite(twice_gelu(far)).all()
-    assert twice_gelu(far)[-1] == np.float32(2e4)
-    assert twice_gelu(far).dtype == np.float32
-    assert np.isfinite(attention(*[np.full((1, 2, 1, 1), 1e10)] * 3)).all()
+    assert np.isfinite(compute_twice_gelu(far)).all()
+    assert compute_twice_gelu(far)[-1] == np.float32(2e4)
+    assert compute_twice_gelu(far).dtype == np.float32
+    assert np.isfinite(attend(*[np.full((1, 2, 1, 1), 1e10)] * 3)).all()
 
 
 def _layer_norm(x):

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.playback.learning.annotation import Annotation, AnnotationInterval, AnnotationTier
-from metagraph.research.agreement import measure_agreement, match_tiers
+from metagraph.research.agreement import match_tiers, measure_agreement
 
 
 def tier(name: str, *rows: tuple[float, float, str]) -> AnnotationTier:

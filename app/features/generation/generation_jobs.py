@@ -148,15 +148,15 @@ def make_side_motion(
     model: Model, named: str, speaker: Speaker, chance: Chance, progress: Progress, cancelled: Cancelled
 ) -> tuple[Loaded, tuple[str, ...]]:
     """Make the motion of one side of a conversation and keep it as a file; return what `add_clips` takes, and
-    what there is to know. Raises what `hear_side` and `side_clip` of `performing` raise.
+    what there is to know. Raises what `hear_side` and `make_side_clip` of `performing` raise.
     """
-    from metagraph.generation.performing import hear_side, side_clip
+    from metagraph.generation.performing import hear_side, make_side_clip
 
     project, side, folder = speaker.project, speaker.side, speaker.folder
     talk = project.conversations[speaker.conversation]
     name = tr("{talk} {side} by {model}", talk=talk.name, side=talk.sides[side].name or side + 1, model=named)
     heard = hear_side(project, speaker.conversation, side, folder)
-    clip, notes = side_clip(model, project, heard, chance, name, progress, cancelled)
+    clip, notes = make_side_clip(model, project, heard, chance, name, progress, cancelled)
     if cancelled():
         raise CancelledError
     taken = {e.name for e in project.clips.values()}

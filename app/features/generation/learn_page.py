@@ -47,7 +47,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from metagraph.generation.standing import Standing, is_busy
 from metagraph.generation.stored import SUFFIX
-from metagraph.generation.train_plan import PLAN, folder_of, read_planned_takes
+from metagraph.generation.train_plan import PLAN, find_training_folder, read_planned_takes
 
 TIPS = make_lazy_texts(
     lambda: (
@@ -350,7 +350,7 @@ class LearnPage(GenerationPage):
                 )
             )
             return
-        if (folder_of(out) / PLAN).exists():
+        if (find_training_folder(out) / PLAN).exists():
             self.said.emit(
                 tr(
                     "There is an unfinished training of '{name}'. Continue it, or choose another name.",
@@ -375,7 +375,7 @@ class LearnPage(GenerationPage):
         """Go on with a training that was begun, or make a model of what it has."""
         if self.run is not None or self._job is not None:
             return
-        folder, minutes = folder_of(standing.out), float(self.minutes.value())
+        folder, minutes = find_training_folder(standing.out), float(self.minutes.value())
         if is_busy(folder):
             self.said.emit(
                 tr(

@@ -16,7 +16,7 @@ from app.features.generation.sample_preview import FigurePreview
 from app.project.document import Document
 from app.translation import format_number, make_lazy_texts, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
-from metagraph.generation.landmarks import landmarks_of
+from metagraph.generation.landmarks import place_landmarks
 from metagraph.generation.networks import FPS
 from metagraph.generation.poses import encode_clip
 from metagraph.graph.model import Kind, Limb
@@ -156,4 +156,4 @@ class PiecesView(QWidget):
 
         rig = project_rig(self.document.project)
         self.preview.words = (piece.clip.name,)
-        self.preview.show_moves(0, landmarks_of(rig, encode_clip(rig, piece.clip, FPS)))
+        self.preview.show_moves(0, place_landmarks(rig, encode_clip(rig, piece.clip, FPS)))

@@ -13,7 +13,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from app.translation import tr
-from metagraph.generation.landmarks import LANDMARKS, landmarks_of
+from metagraph.generation.landmarks import LANDMARKS, place_landmarks
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.takes import Take
 
@@ -111,7 +111,7 @@ class SamplePreview(FigurePreview):
         size = min(len(own) - 1, round(SECONDS * 25))
         first = int(np.argmax(own[size:] - own[: len(own) - size])) if size > 0 else 0
         self.moves[1] = None
-        self.show_moves(0, landmarks_of(rig, take.poses[first : first + size + 1 : 5]))
+        self.show_moves(0, place_landmarks(rig, take.poses[first : first + size + 1 : 5]))
 
     def show_sample(self, landmarks: Sequence[Sequence[Sequence[float]]]) -> None:
         """Show what the model does by now. landmarks: `[n, 9, 3]`, metres, RATE a second."""

@@ -53,12 +53,12 @@ def begin_training(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -
     SplitError, FileError, TrainingFailedError.
     """
     from metagraph.generation.takes import split_takes
-    from metagraph.generation.train_plan import folder_of, plan_of, write_training
+    from metagraph.generation.train_plan import find_training_folder, plan_of, write_training
     from metagraph.generation.train_process import TrainingProcess
 
     learned, held = split_takes(batch.takes)
     plan = plan_of(batch.rig, learned, held, out, **wish)
-    folder = folder_of(out)
+    folder = find_training_folder(out)
     folder.mkdir(parents=True, exist_ok=True)
     write_training(folder, plan, learned, held)
     return TrainingProcess(out, hear)
@@ -70,13 +70,13 @@ def continue_training(standing: Standing, minutes: float, hear: Hear) -> Process
     """
     from msgspec.structs import replace
 
-    from metagraph.generation.train_plan import folder_of, write_plan
+    from metagraph.generation.train_plan import find_training_folder, write_plan
     from metagraph.generation.train_process import TrainingProcess
 
     plan = replace(standing.plan, out=str(standing.out.resolve()))
     if standing.share >= 1:
         plan = replace(plan, minutes=standing.minutes + minutes, seconds=0.0, steps=0)
-    write_plan(folder_of(standing.out), plan)
+    write_plan(find_training_folder(standing.out), plan)
     return TrainingProcess(standing.out, hear)
 
 
@@ -86,10 +86,10 @@ def keep_checkpoint(standing: Standing, hear: Hear) -> Process:
     """
     from msgspec.structs import replace
 
-    from metagraph.generation.train_plan import folder_of, write_plan
+    from metagraph.generation.train_plan import find_training_folder, write_plan
     from metagraph.generation.train_process import TrainingProcess
 
-    write_plan(folder_of(standing.out), replace(standing.plan, out=str(standing.out.resolve())))
+    write_plan(find_training_folder(standing.out), replace(standing.plan, out=str(standing.out.resolve())))
     return TrainingProcess(standing.out, hear, export=True)
 
 

@@ -30,7 +30,7 @@ def set_components(net: FlowNet, rows: Array) -> None:
     dims, between = net.sizes.dims, net.sizes.between
     if between < 2 * dims:
         raise ValueError(f"{between} units cannot carry {dims} components: it takes {2 * dims}")
-    parts = vae.principal(rows, dims, "code")
+    parts = vae.find_principal_components(rows, dims, "code")
     basis = torch.from_numpy(parts["code.basis"] / parts["code.deviation"][:, None])
     back = torch.from_numpy(parts["code.basis"] * parts["code.deviation"][:, None])
     mean = torch.from_numpy(parts["code.mean"])
@@ -71,7 +71,7 @@ def compute_evidence_loss(net: FlowNet, poses: Tensor, chance: torch.Generator) 
     """Return what is made small: the negative evidence of poses `[N, span X]`, up to a constant, by the
     number of a pose's numbers.
     """
-    mean, deviation = net.gaussian(poses)
+    mean, deviation = net.encode_gaussian(poses)
     code = mean + deviation * torch.randn(mean.shape, generator=chance)
     wrong = ((net.decode(code) - poses) ** 2).mean() / (2 * EXACT**2)
     apart = 0.5 * (mean**2 + deviation**2 - 1 - 2 * torch.log(deviation)).sum(-1).mean()

@@ -113,7 +113,7 @@ def _speeds(standard: Array) -> Array:
     return np.asarray(np.log(even + STILL))
 
 
-def edges_of(sizes: Sizes) -> tuple[int, int]:
+def count_edge_frames(sizes: Sizes) -> tuple[int, int]:
     """Return how many frames before a crop and after it are looked at."""
     if isinstance(sizes, MatchingSizes):
         return sizes.past * sizes.frames, sizes.ahead * sizes.frames

@@ -9,13 +9,13 @@ import torch
 
 from metagraph.generation.networks import Weights
 from metagraph.generation.poses import Standardisation
-from metagraph.generation.stored import Model, ModelCard, versions, write_model
+from metagraph.generation.stored import Model, ModelCard, list_versions, write_model
 from metagraph.generation.train_plan import TrainingPlan
 from metagraph.generation.training.learner import Learner, check_weights
 from metagraph.generation.training.losses import choose_loss
 
 
-def model_of(
+def make_trained_model(
     plan: TrainingPlan,
     weights: Weights,
     poses: Standardisation,
@@ -43,18 +43,18 @@ def model_of(
         hours=round(sum(t.seconds for t in plan.takes) / 3600, 4),
         takes=plan.takes,
         held_out=plan.held,
-        versions={**versions(), "torch": str(torch.__version__)},
+        versions={**list_versions(), "torch": str(torch.__version__)},
         statistics=dict(statistics or {}),
         notes=notes,
     )
     return Model(card, weights)
 
 
-def model_so_far(
+def make_model_so_far(
     learner: Learner, statistics: Mapping[str, float] | None = None, notes: tuple[str, ...] = ()
 ) -> Model:
     """Return what a training has learned so far, as a model. Raises TrainingError."""
-    return model_of(
+    return make_trained_model(
         learner.plan, learner.weights(), learner.poses, learner.audio, learner.step, statistics, notes
     )
 

@@ -237,7 +237,7 @@ class FlowNet(ControlNet):
         self.hears(sizes.control, sizes.told)
         self.flow = FlowSteps(sizes)
 
-    def gaussian(self, poses: Tensor) -> tuple[Tensor, Tensor]:
+    def encode_gaussian(self, poses: Tensor) -> tuple[Tensor, Tensor]:
         """Return mean and deviation `[..., D]` of the codes that the encoder gives, before mean and deviation
         of all are taken off. poses: `[..., span X]`.
         """
@@ -248,7 +248,7 @@ class FlowNet(ControlNet):
         """Return codes as `to_code` does, drawn where the encoder is a Gaussian."""
         if self.sizes.code != "variational":
             return self.to_code(poses)
-        mean, deviation = self.gaussian(poses)
+        mean, deviation = self.encode_gaussian(poses)
         return mean + deviation * torch.randn(mean.shape, generator=chance)
 
     def to_code(self, poses: Tensor) -> Tensor:

@@ -9,7 +9,7 @@ import numpy as np
 
 from metagraph.generation import statistics
 from metagraph.generation.networks import FPS
-from metagraph.generation.sampler import poses_to
+from metagraph.generation.sampler import generate_recording_poses
 from metagraph.generation.stored import Model
 from metagraph.generation.takes import Take
 
@@ -31,7 +31,7 @@ def judge_held_out(
         if len(part.poses) < 2 * FPS:
             continue
         left -= len(part.poses)
-        poses = poses_to(model, part.features, SEED)
+        poses = generate_recording_poses(model, part.features, SEED)
         made.append(statistics.make_motion_sample(model.rig, poses, part))
         true.append(statistics.make_motion_sample(model.rig, part.poses, part))
         if left <= 0:

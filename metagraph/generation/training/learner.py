@@ -8,14 +8,14 @@ from math import inf
 import numpy as np
 import torch
 
-from metagraph.generation.initial import initial
-from metagraph.generation.networks import Weights, shapes_of
-from metagraph.generation.takes import Take, scales_of
+from metagraph.generation.initial import make_initial_weights
+from metagraph.generation.networks import Weights, list_weight_shapes
+from metagraph.generation.takes import Take, measure_scales
 from metagraph.generation.train_plan import TrainingPlan
 from metagraph.generation.training.checkpoint import Arrays
-from metagraph.generation.training.data import TrainingCorpus, edges_of
-from metagraph.generation.training.losses import objective_of
-from metagraph.generation.training.nets import net_of, weights_of
+from metagraph.generation.training.data import TrainingCorpus, count_edge_frames
+from metagraph.generation.training.losses import choose_objective
+from metagraph.generation.training.nets import make_net, read_net_weights
 
 CALMEST = 0.1  # of the rate is left at the end of a training that calms down
 FUTILE = 50  # steps in a row without a finite gradient
@@ -30,11 +30,13 @@ class Learner:
 
     def __init__(self, plan: TrainingPlan, takes: Sequence[Take]) -> None:
         self.plan, self.step = plan, 0
-        self.poses, self.audio = scales_of(takes)
-        self.corpus = TrainingCorpus(takes, self.poses, self.audio, *edges_of(plan.sizes))
+        self.poses, self.audio = measure_scales(takes)
+        self.corpus = TrainingCorpus(takes, self.poses, self.audio, *count_edge_frames(plan.sizes))
         self.chance = torch.Generator().manual_seed(plan.seed)
         torch.manual_seed(plan.seed)
-        self.objective = objective_of(net_of(plan.sizes, initial(plan.sizes, plan.seed)), plan.settings)
+        self.objective = choose_objective(
+            make_net(plan.sizes, make_initial_weights(plan.sizes, plan.seed)), plan.settings
+        )
         self.named = dict(self.objective.named_parameters())
         self.mean = {n: p.detach().clone() for n, p in self.named.items()}
         momentum = 0.99 if plan.kind == "matching" else 0.999  # of the squares: matching's noise is larger
@@ -84,7 +86,7 @@ class Learner:
 
     def weights(self) -> Weights:
         """Return the weights to use: their running mean."""
-        out = weights_of(self.objective.net)
+        out = read_net_weights(self.objective.net)
         for name, value in self.mean.items():
             inner = name.removeprefix("net.")
             if name != inner and inner in out:
@@ -130,7 +132,7 @@ class Learner:
 
 def check_weights(plan: TrainingPlan, weights: Weights) -> None:
     """Raise TrainingError where a weight is no number, or is missing."""
-    expected = shapes_of(plan.sizes)
+    expected = list_weight_shapes(plan.sizes)
     odd = [n for n in expected if n not in weights or not np.isfinite(weights[n]).all()]
     if odd:
         raise TrainingError(f"the training led to weights that are no numbers ('{odd[0]}'): lower its rate")

@@ -22,7 +22,7 @@ from metagraph.generation.training.autoencoder import set_components, train_auto
 from metagraph.generation.training.data import TrainingCorpus, take_stretches
 from metagraph.generation.training.flow_net import CvaeNet, FlowNet
 from metagraph.generation.training.matching_net import MatchingNet
-from metagraph.generation.training.nets import Net, load, weights_of
+from metagraph.generation.training.nets import Net, load, read_net_weights
 
 ALPHA = {"paper": 5e-4, "finished": 1.0}  # of the likelihood, in bits
 THIRD = {"paper": 1.0, "finished": 0.0}
@@ -143,7 +143,7 @@ class FlowObjective(Objective):
             return
         rows = take_stretches(corpus, sizes.span)
         if sizes.code == "pca":
-            load(net, weights_of(net) | vae.principal(rows, sizes.dims, "code"))
+            load(net, read_net_weights(net) | vae.find_principal_components(rows, sizes.dims, "code"))
         else:
             set_components(net, rows)
             with torch.enable_grad():
@@ -157,7 +157,7 @@ class FlowObjective(Objective):
                 net.code.mean.copy_(codes.mean(0))
                 net.code.deviation.copy_(codes.std(0) + vae.FLOOR)
         if sizes.guess:
-            load(net, weights_of(net) | self._fit_guess(corpus, chance))
+            load(net, read_net_weights(net) | self._fit_guess(corpus, chance))
 
     def _fit_guess(self, corpus: TrainingCorpus, chance: torch.Generator) -> Weights:
         codes = []
@@ -273,7 +273,7 @@ class MatchingObjective(Objective):
 
     def begin(self, corpus: TrainingCorpus, chance: torch.Generator) -> None:
         sizes = self.sizes
-        parts = vae.principal(take_stretches(corpus, sizes.frames), sizes.dims, "tokens")
+        parts = vae.find_principal_components(take_stretches(corpus, sizes.frames), sizes.dims, "tokens")
         if sizes.around:
             rows = [poses[n:] for poses in corpus.each() for n in range(sizes.frames)]
             told = (
@@ -281,7 +281,7 @@ class MatchingObjective(Objective):
                 for r in rows
             )
             parts["tokens.joined"] = chunks.join_by_least_squares(told, sizes.around)
-        load(self.net, weights_of(self.net) | parts)
+        load(self.net, read_net_weights(self.net) | parts)
         self.resume(corpus)
 
     def resume(self, corpus: TrainingCorpus) -> None:
@@ -334,7 +334,7 @@ class MatchingObjective(Objective):
         return out, shown | {"loss": float(out.detach())}
 
 
-def objective_of(net: Net, settings: TrainingSettings) -> Objective:
+def choose_objective(net: Net, settings: TrainingSettings) -> Objective:
     """Return what a net learns by. Raises ValueError for a loss that is not for it."""
     if isinstance(net, FlowNet):
         return FlowObjective(net, settings)

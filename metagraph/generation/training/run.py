@@ -10,11 +10,11 @@ from typing import Any
 import torch
 
 from metagraph.errors import FileError
-from metagraph.generation.networks import parameters
+from metagraph.generation.networks import count_parameters
 from metagraph.generation.standing import CheckpointNote, measure_training_share
 from metagraph.generation.train_plan import STOP, TrainingPlan, read_planned_takes, read_training_plan
 from metagraph.generation.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
-from metagraph.generation.training.export import export_model, model_so_far
+from metagraph.generation.training.export import export_model, make_model_so_far
 from metagraph.generation.training.judge import LONGEST, SHORT, judge_held_out
 from metagraph.generation.training.learner import Learner
 
@@ -69,7 +69,7 @@ class Run:
             {
                 "event": "begin",
                 "step": learner.step,
-                "parameters": parameters(plan.sizes),
+                "parameters": count_parameters(plan.sizes),
                 "frames": int(learner.corpus.counts.sum()),
                 "threads": torch.get_num_threads(),
                 "kind": plan.kind,
@@ -137,7 +137,7 @@ class Run:
 
     def judge(self) -> None:
         """Report the statistics of a short sample, and some of its poses."""
-        found, poses = judge_held_out(model_so_far(self.learner), self.held, SHORT)
+        found, poses = judge_held_out(make_model_so_far(self.learner), self.held, SHORT)
         self.tell(self._told("statistics", statistics=found))
         self.tell(self._told("poses", landmarks=poses))
 
@@ -145,11 +145,11 @@ class Run:
         """Write the model's file of what was learned so far."""
         self.tell(self._told("finish", stopped=stopped))
         notes = ("stopped before its time was over",) if stopped else ()
-        model = model_so_far(self.learner, notes=notes)
+        model = make_model_so_far(self.learner, notes=notes)
         found: dict[str, float] = {}
         if self.held:
             found, _ = judge_held_out(model, self.held, SHORT if stopped else LONGEST)
         out = Path(self.plan.out)
-        export_model(model_so_far(self.learner, found, notes), out)
+        export_model(make_model_so_far(self.learner, found, notes), out)
         self.tell(self._told("end", path=str(out), statistics=found, stopped=stopped))
         return out

@@ -13,9 +13,9 @@ from msgspec.structs import replace
 from metagraph.formats.clips import digest
 from metagraph.generation.features import PARTNER, RATE, SELF
 from metagraph.generation.landmarks import LANDMARKS
-from metagraph.generation.networks import Kind, parameters, sizes_of
+from metagraph.generation.networks import Kind, count_parameters, make_sizes
 from metagraph.generation.performing import moves_skeleton, read_side_sound
-from metagraph.generation.statistics import mean_landmarks, wasserstein
+from metagraph.generation.statistics import mean_landmarks, measure_wasserstein
 from metagraph.generation.takes import SplitError, Take, TakeError, TakeSound, TakeSource, make_take
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
@@ -50,7 +50,7 @@ def exhibit_distance(material: ExhibitMaterial) -> MadeExhibit:
     rows = []
     for n, landmark in enumerate(LANDMARKS):
         true, ours = (far[name][:, n] for name in motion)
-        cells = (_quartiles(true), _quartiles(ours), f"{wasserstein(true, ours):.2f}")
+        cells = (_quartiles(true), _quartiles(ours), f"{measure_wasserstein(true, ours):.2f}")
         rows.append((landmark.replace("_", " "), *cells))
     parts = [
         ExhibitDrawing(f"{name}: the first take", figures.draw_over_time(m[0], mean, top))
@@ -121,15 +121,18 @@ def exhibit_sizes(material: ExhibitMaterial) -> MadeExhibit:
     rows: list[tuple[str, ...]] = []
     numbers: dict[str, list[float]] = {}
     for kind in KINDS:
-        same, small = parameters(sizes_of(kind, "paper", 6 * JOINTS)), parameters(sizes_of(kind, "small"))
+        same, small = (
+            count_parameters(make_sizes(kind, "paper", 6 * JOINTS)),
+            count_parameters(make_sizes(kind, "small")),
+        )
         there = PARAMETERS[kind]
         rows.append(
             (kind, f"{there / 1e6:g} M", f"{same / 1e6:.2f} M", f"{same / there:.2f}", f"{small / 1e6:.2f} M")
         )
         numbers[kind] = [there, same, small]
-    ours = parameters(sizes_of("matching"))
+    ours = count_parameters(make_sizes("matching"))
     rows.append(("matching", "-", "-", "-", f"{ours / 1e6:.2f} M"))
-    one = parameters(replace(sizes_of("flow-vae", "paper", 6 * JOINTS), layers=1))
+    one = count_parameters(replace(make_sizes("flow-vae", "paper", 6 * JOINTS), layers=1))
     less = 1 - PARAMETERS["flow-vae"] / PARAMETERS["moglow"]
     says = (
         "Counted for 9 joints of 6 numbers and the sizes the text gives: 1,231 numbers of control (31 "

@@ -27,7 +27,7 @@ from metagraph.generation.networks import (
     Kind,
     MatchingSizes,
     Sizes,
-    sizes_of,
+    make_sizes,
 )
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.statistics import (
@@ -155,7 +155,7 @@ def _of_flow_vae(name: str, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | No
     if not isinstance(sizes, FlowSizes) or sizes.code != "variational":
         return None
     if name in ("paper's loss", "no third term"):
-        published = sizes_of("flow-vae", "small", sizes.pose, sizes.control.audio, as_published=True)
+        published = make_sizes("flow-vae", "small", sizes.pose, sizes.control.audio, as_published=True)
         return kind, published if sizes.guess else sizes
     if not sizes.guess:
         return (kind, sizes) if name == "not tuned" else None

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.poses import PoseRig
-from metagraph.generation.sampler import poses_to
+from metagraph.generation.sampler import generate_recording_poses
 from metagraph.generation.statistics import (
     DRAWS,
     MeasureRow,
     MotionSample,
-    diversity,
     make_motion_sample,
-    row,
+    measure_diversity,
+    measure_system,
     tabulate_measures,
 )
 from metagraph.generation.stored import Model
@@ -69,7 +69,7 @@ def generate_poses(model: Model, heard: Array, seed: int, number: int, manner: S
     """Return a model's poses `[T, X]`, not standardised, to features `[T, audio + 4]`. number: of the take,
     so that two takes of one seed have other chances.
     """
-    return poses_to(
+    return generate_recording_poses(
         model,
         heard,
         seed,
@@ -165,6 +165,6 @@ def make_truth_row(
     """Return the row of recorded motion itself: what it has of its own, and how far two draws of it are
     apart.
     """
-    own = row("true", [true], true, draws=draws)
+    own = measure_system("true", [true], true, draws=draws)
     both = [true] if other is None else [true, other]
-    return MeasureRow(own.name, {**own.values, "diversity": diversity(both)}, own.spread)
+    return MeasureRow(own.name, {**own.values, "diversity": measure_diversity(both)}, own.spread)

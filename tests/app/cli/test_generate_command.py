@@ -27,7 +27,7 @@ from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE
 from metagraph.generation.stored import read_model, write_model
 from metagraph.generation.take_files import find_takes, read_take_batch
-from metagraph.generation.train_plan import card_of
+from metagraph.generation.train_plan import make_take_card
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -77,7 +77,10 @@ def model(takes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     found = untrained("matching")
     first, second = (read_take_batch(find_takes([takes])[0]).takes[n : n + 2] for n in (0, 2))
     card = msgspec.structs.replace(
-        found.card, takes=tuple(map(card_of, first)), held_out=tuple(map(card_of, second)), loss="matching"
+        found.card,
+        takes=tuple(map(make_take_card, first)),
+        held_out=tuple(map(make_take_card, second)),
+        loss="matching",
     )
     out = tmp_path_factory.mktemp("models") / "plain.mgmodel"
     write_model(replace(found, card=card), out)

@@ -11,7 +11,13 @@ import torch
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import Control, FlowSizes, Kind, MatchingSizes, Sizes
 from metagraph.generation.takes import Take, TakeMarks, TakeSound, TakeSource, make_take
-from metagraph.generation.train_plan import TrainingPlan, TrainingSettings, folder_of, plan_of, write_training
+from metagraph.generation.train_plan import (
+    TrainingPlan,
+    TrainingSettings,
+    find_training_folder,
+    plan_of,
+    write_training,
+)
 from metagraph.generation.training.run import Run
 from metagraph.motion.clip import Clip
 from tests.generation.makers import babble, conversation, moving, rig, tiny
@@ -50,9 +56,9 @@ def cut_short(models: Path, name: str, steps: int = 0) -> Path:
         steps=40,
         settings=TrainingSettings(batch=4, frames=40, warm=20),
     )
-    folder_of(out).mkdir(parents=True)
-    write_training(folder_of(out), own, both[:1], both[1:])
-    run = Run(folder_of(out), lambda event: None, deserted=lambda: run.learner.step >= steps)
+    find_training_folder(out).mkdir(parents=True)
+    write_training(find_training_folder(out), own, both[:1], both[1:])
+    run = Run(find_training_folder(out), lambda event: None, deserted=lambda: run.learner.step >= steps)
     assert not steps or run.go() is None
     return out
 

@@ -16,7 +16,7 @@ from metagraph.generation.training.autoencoder import (  # noqa: E402
     set_components,
     train_autoencoder,
 )
-from metagraph.generation.training.nets import net_of  # noqa: E402
+from metagraph.generation.training.nets import make_net  # noqa: E402
 
 SIZES = FlowSizes(pose=12, control=Control(width=4), between=24, dims=4, steps=1, units=4, span=2)
 
@@ -30,9 +30,9 @@ def rows() -> Any:
 
 
 def test_it_begins_as_principal_components() -> None:
-    data, net = rows(), net_of(SIZES)
+    data, net = rows(), make_net(SIZES)
     set_components(net, data)
-    parts = vae.principal(data, 4, "code")
+    parts = vae.find_principal_components(data, 4, "code")
     pca = FlowSizes(pose=12, code="pca", dims=4, span=2)
     with torch.no_grad():
         code = net.to_code(torch.from_numpy(data))
@@ -42,7 +42,7 @@ def test_it_begins_as_principal_components() -> None:
 
 
 def test_tuned_it_tells_more_and_keeps_its_dimensions() -> None:
-    data, net = rows(), net_of(SIZES)
+    data, net = rows(), make_net(SIZES)
     set_components(net, data)
     told = torch.from_numpy(data)
     losses = []
@@ -59,4 +59,4 @@ def test_tuned_it_tells_more_and_keeps_its_dimensions() -> None:
 def test_units_that_cannot_carry_the_components_are_told() -> None:
     small = FlowSizes(pose=12, control=Control(width=4), between=7, dims=4, steps=1, units=4, span=2)
     with pytest.raises(ValueError, match="7 units cannot carry 4 components: it takes 8"):
-        set_components(net_of(small), rows())
+        set_components(make_net(small), rows())

@@ -10,7 +10,7 @@ torch = pytest.importorskip("torch", reason="training needs torch, which is not 
 
 from metagraph.generation.features import STRANGEST  # noqa: E402
 from metagraph.generation.networks import ACTIVITY  # noqa: E402
-from metagraph.generation.takes import scales_of  # noqa: E402
+from metagraph.generation.takes import measure_scales  # noqa: E402
 from metagraph.generation.training.data import TrainingCorpus  # noqa: E402
 from tests.generation.training.planting import take  # noqa: E402
 
@@ -18,7 +18,7 @@ from tests.generation.training.planting import take  # noqa: E402
 @pytest.fixture(scope="module")
 def corpus() -> Any:
     takes = [take(8.0, 1)]
-    return TrainingCorpus(takes, *scales_of(takes), before=5, after=25)
+    return TrainingCorpus(takes, *measure_scales(takes), before=5, after=25)
 
 
 def test_a_share_of_crops_sounds_otherwise_and_who_speaks_stays(corpus: Any) -> None:
@@ -40,7 +40,7 @@ def test_what_is_learned_from_stays_as_it_was(corpus: Any) -> None:
 
 def test_both_tracks_sound_otherwise_each_in_its_own_way() -> None:
     takes = [take(8.0, 1, tracks=2)]
-    two = TrainingCorpus(takes, *scales_of(takes), before=5, after=25)
+    two = TrainingCorpus(takes, *measure_scales(takes), before=5, after=25)
     starts = torch.arange(5, 15)
     heard = two.hear(starts, 0, 40, 1.0, torch.Generator().manual_seed(2))
     plain = two.rows(two.heard, starts, 0, 40)
@@ -56,7 +56,7 @@ def test_crops_in_which_who_speaks_changes_are_drawn_oftener_and_none_leaves_its
         told[:, 0] = 1
     told = takes[0].features[:, -ACTIVITY:]
     told[100:110] = (0, 1, 0, 0)  # somebody says a word
-    own = TrainingCorpus(takes, *scales_of(takes), before=5, after=25)
+    own = TrainingCorpus(takes, *measure_scales(takes), before=5, after=25)
     drawn = {}
     for turns in (0.0, 1.0, 2.0):
         starts = own.starts(torch.Generator().manual_seed(3), 20000, 40, turns).numpy()

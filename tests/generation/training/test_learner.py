@@ -11,9 +11,9 @@ torch = pytest.importorskip("torch", reason="training needs torch, which is not 
 
 from metagraph.generation import averaging, generators, vae  # noqa: E402
 from metagraph.generation.features import with_edges  # noqa: E402
-from metagraph.generation.landmarks import landmarks_of  # noqa: E402
-from metagraph.generation.networks import FlowSizes, Kind, sizes_of  # noqa: E402
-from metagraph.generation.stored import skeleton_card  # noqa: E402
+from metagraph.generation.landmarks import place_landmarks  # noqa: E402
+from metagraph.generation.networks import FlowSizes, Kind, make_sizes  # noqa: E402
+from metagraph.generation.stored import make_skeleton_card  # noqa: E402
 from metagraph.generation.train_plan import TrainingPlan, TrainingSettings  # noqa: E402
 from metagraph.generation.training.learner import FUTILE, Learner, TrainingError  # noqa: E402
 from metagraph.graph.model import Project  # noqa: E402
@@ -99,14 +99,14 @@ def test_takes_shorter_than_a_crop_are_learned_from(takes: Any) -> None:
 def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
     _, performed = drive(conversation(10.0), 0, sample)
     one, other = take(10.0, 1, bake(Evaluator(performed, sample), sample, 10.0, 25.0)), take(10.0, 2)
-    sizes = sizes_of("flow-vae", as_published=True)
+    sizes = make_sizes("flow-vae", as_published=True)
     assert isinstance(sizes, FlowSizes)
     settings = TrainingSettings(loss="finished", batch=8, frames=64, warm=30, head=0.0, tuned=400)
     own = Learner(plan((one,), (other,), sizes=sizes, settings=settings, kind="flow-vae"), [one])
     own.advance()
     weights, standard = own.weights(), own.poses.apply(one.poses)
     again = vae.decode_spans(weights, sizes, vae.encode_spans(weights, sizes, standard))
-    apart = landmarks_of(rig(), own.poses.undo(again)) - landmarks_of(rig(), one.poses)
+    apart = place_landmarks(rig(), own.poses.undo(again)) - place_landmarks(rig(), one.poses)
     assert 100 * np.linalg.norm(apart, axis=-1).mean() < 0.5
 
 
@@ -120,7 +120,7 @@ def test_what_is_planted_is_found_with_what_is_heard_and_not_without(kind: Kind,
             kind=kind,
             sizes=sizes,
             settings=settings,
-            skeleton=skeleton_card(rig()),
+            skeleton=make_skeleton_card(rig()),
             takes=(),
             held=(),
             out="toy",
@@ -132,7 +132,7 @@ def test_what_is_planted_is_found_with_what_is_heard_and_not_without(kind: Kind,
     weights = own.weights()
 
     def made(told: Any) -> Any:
-        maker = generators.generator(weights, sizes, np.zeros(18, np.float32))
+        maker = generators.make_generator(weights, sizes, np.zeros(18, np.float32))
         heard = np.concatenate([own.audio.apply(told[:, :-4]), told[:, -4:]], 1)
         heard = with_edges(heard, maker.before, maker.ahead + 64)
         reach = maker.before + 1 + maker.ahead

@@ -10,12 +10,12 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
 
 from metagraph.generation.networks import Control, FlowSizes, MatchingSizes  # noqa: E402
-from metagraph.generation.takes import scales_of  # noqa: E402
+from metagraph.generation.takes import measure_scales  # noqa: E402
 from metagraph.generation.train_plan import TrainingSettings  # noqa: E402
-from metagraph.generation.training.data import TrainingCorpus, edges_of  # noqa: E402
+from metagraph.generation.training.data import TrainingCorpus, count_edge_frames  # noqa: E402
 from metagraph.generation.training.learner import Learner  # noqa: E402
-from metagraph.generation.training.losses import ALPHA, objective_of  # noqa: E402
-from metagraph.generation.training.nets import net_of  # noqa: E402
+from metagraph.generation.training.losses import ALPHA, choose_objective  # noqa: E402
+from metagraph.generation.training.nets import make_net  # noqa: E402
 from metagraph.generation.vae import count_effective_dimensions, list_spans  # noqa: E402
 from tests.generation.makers import rig, shaken, tiny  # noqa: E402
 from tests.generation.training.planting import plan, take  # noqa: E402
@@ -92,7 +92,7 @@ def test_the_encoder_is_a_gaussian_whose_draws_the_flow_sees(takes: Any) -> None
     net = learned(takes, FLOW, 1, loss="finished").objective.net
     poses = torch.randn(5, net.sizes.pose, generator=torch.Generator().manual_seed(1))
     one, other = (net.draw_code(poses, torch.Generator().manual_seed(n)) for n in (1, 2))
-    mean, deviation = net.gaussian(poses)
+    mean, deviation = net.encode_gaussian(poses)
     assert not torch.allclose(one, other)
     assert float(((one - mean) / deviation).abs().max()) < 6
     assert torch.equal(net.to_code(poses), mean)
@@ -101,7 +101,7 @@ def test_the_encoder_is_a_gaussian_whose_draws_the_flow_sees(takes: Any) -> None
 def test_the_draw_of_the_third_term_begins_without_memory(takes: Any) -> None:
     """Codes that the draw gives, of the noise of the way there, are the same codes."""
     sizes = tiny("flow-vae")
-    net = net_of(sizes, shaken(sizes))
+    net = make_net(sizes, shaken(sizes))
     chance = torch.Generator().manual_seed(1)
     codes = torch.randn(2, 30, sizes.dims, generator=chance)
     context = torch.randn(2, 30, sizes.control.context(sizes.pose), generator=chance)
@@ -113,25 +113,25 @@ def test_the_draw_of_the_third_term_begins_without_memory(takes: Any) -> None:
 
 @pytest.mark.parametrize("loss", ["paper", "finished", None])
 def test_the_third_term_is_the_papers_alone(takes: Any, loss: Any) -> None:
-    objective = objective_of(net_of(FLOW), TrainingSettings(loss=loss))
+    objective = choose_objective(make_net(FLOW), TrainingSettings(loss=loss))
     assert objective.third == (1.0 if loss == "paper" else 0.0)
 
 
 def test_losses_of_other_models_are_refused() -> None:
     for sizes in (tiny("moglow"), GUESSED):
         with pytest.raises(ValueError, match="autoencoder's code"):
-            objective_of(net_of(sizes), TrainingSettings(loss="paper"))
+            choose_objective(make_net(sizes), TrainingSettings(loss="paper"))
     with pytest.raises(ValueError, match="is for a flow"):
-        objective_of(net_of(tiny("matching")), TrainingSettings(loss="finished"))
+        choose_objective(make_net(tiny("matching")), TrainingSettings(loss="finished"))
 
 
 def corpus(takes: Any, sizes: Any) -> TrainingCorpus:
-    return TrainingCorpus(takes, *scales_of(takes), *edges_of(sizes))
+    return TrainingCorpus(takes, *measure_scales(takes), *count_edge_frames(sizes))
 
 
 def test_a_model_of_an_earlier_version_learns_no_more() -> None:
     with pytest.raises(ValueError, match="begin a new training"):
-        objective_of(net_of(FlowSizes(code="autoencoder", dims=7)), TrainingSettings())
+        choose_objective(make_net(FlowSizes(code="autoencoder", dims=7)), TrainingSettings())
 
 
 def test_crops_lie_within_takes_and_reach_both_ends(takes: Any) -> None:
@@ -156,7 +156,7 @@ def test_around_a_take_nobody_speaks_and_the_mean_pose_is_held(takes: Any) -> No
 @pytest.mark.parametrize("kind", ["flow-vae", "matching"])
 def test_what_comes_after_the_look_ahead_changes_nothing(kind: Any) -> None:
     sizes = tiny(kind)
-    net = net_of(sizes, shaken(sizes))
+    net = make_net(sizes, shaken(sizes))
     frames = torch.randn(1, 60 if kind == "flow-vae" else sizes.tokens * sizes.frames, 31)
     other = frames.clone()
     with torch.no_grad():
@@ -173,7 +173,7 @@ def test_what_comes_after_the_look_ahead_changes_nothing(kind: Any) -> None:
 
 def test_who_hears_nothing_sees_who_speaks() -> None:
     sizes = tiny("matching")
-    net = net_of(sizes, shaken(sizes))
+    net = make_net(sizes, shaken(sizes))
     frames = torch.randn(1, sizes.tokens * sizes.frames, 31)
     louder, other = frames.clone(), frames.clone()
     louder[..., :27] += 1.0

@@ -18,15 +18,15 @@ from metagraph.generation.networks import (  # noqa: E402
     Kind,
     MatchingSizes,
     Sizes,
-    parameters,
+    count_parameters,
 )
-from metagraph.generation.noise import noise  # noqa: E402
+from metagraph.generation.noise import draw_noise  # noqa: E402
 from metagraph.generation.poses import FURTHEST  # noqa: E402
-from metagraph.generation.sampler import poses_to  # noqa: E402
+from metagraph.generation.sampler import generate_recording_poses  # noqa: E402
 from metagraph.generation.stored import Model  # noqa: E402
 from metagraph.generation.training.flow_net import CvaeNet, FlowNet  # noqa: E402
 from metagraph.generation.training.matching_net import MatchingNet  # noqa: E402
-from metagraph.generation.training.nets import net_of, weights_of  # noqa: E402
+from metagraph.generation.training.nets import make_net, read_net_weights  # noqa: E402
 from tests.generation.makers import shaken, tiny, untrained  # noqa: E402
 
 KINDS: tuple[Kind, ...] = ("flow-vae", "moglow", "cvae", "matching")
@@ -44,7 +44,7 @@ def features(frames: int, seed: int = 3) -> Any:
 def drawn(model: Model, told: Any, seed: int, lookahead: int | None) -> Any:
     """What torch makes of a recording: poses `[T, X]`, standardised, before they are averaged."""
     sizes = model.card.sizes
-    net = net_of(sizes, model.weights).eval()
+    net = make_net(sizes, model.weights).eval()
     with torch.no_grad():
         if isinstance(net, MatchingNet):
             return _chunks(net, model, told, seed, lookahead)
@@ -66,7 +66,7 @@ def _frames(net: FlowNet | CvaeNet, model: Model, told: Any, seed: int, lookahea
     out: list[Any] = []
     state: Any = None
     for t in range(0, len(told), span):
-        z = torch.from_numpy(noise(seed, 0, t, sizes.dims))[None, None]
+        z = torch.from_numpy(draw_noise(seed, 0, t, sizes.dims))[None, None]
         context = net.context(heard[:, t : t + 1], past)
         if isinstance(net, FlowNet):
             code, state = net.flow.inverse(z, context, state)
@@ -88,14 +88,14 @@ def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int
     s = net.sizes
     before = s.past * s.frames
     heard = torch.from_numpy(model.heard(with_edges(told, before, (s.new + s.ahead) * s.frames)))
-    past = torch.from_numpy(chunks.tokens_of_still_pose(model.weights, s, np.zeros(s.pose, np.float32)))
+    past = torch.from_numpy(chunks.make_still_tokens(model.weights, s, np.zeros(s.pose, np.float32)))
     known = s.most if lookahead is None else lookahead
     ahead, kept_tokens = torch.tensor([known]), min(s.new, max(1, (known + 1) // s.frames))
     out = []
     for t in range(0, len(told), kept_tokens * s.frames):
         window = heard[t : t + s.tokens * s.frames][None]
         own, free = (net.heard(net.frames(window, ahead, d), d) for d in map(torch.tensor, ([False], [True])))
-        x = chunks.SPREAD * torch.from_numpy(noise(seed, 0, t, s.new * s.dims).reshape(1, s.new, s.dims))
+        x = chunks.SPREAD * torch.from_numpy(draw_noise(seed, 0, t, s.new * s.dims).reshape(1, s.new, s.dims))
         for n in range(chunks.STEPS):
             moment, before_it = torch.tensor([n / chunks.STEPS]), net.embed_past(past[None])
             v = net.velocity(x, moment, before_it, own)
@@ -119,7 +119,7 @@ def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int
 @pytest.mark.parametrize("kind", KINDS)
 def test_weights_are_stored_without_renaming(kind: Kind) -> None:
     weights = shaken(tiny(kind))
-    found = weights_of(net_of(tiny(kind), weights))
+    found = read_net_weights(make_net(tiny(kind), weights))
     assert list(found) == list(weights)
     assert all(np.array_equal(found[name], weights[name]) for name in weights)
 
@@ -127,16 +127,16 @@ def test_weights_are_stored_without_renaming(kind: Kind) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_learned_is_what_is_counted(kind: Kind) -> None:
     sizes = tiny(kind)
-    learned = sum(p.numel() for p in net_of(sizes).parameters())
+    learned = sum(p.numel() for p in make_net(sizes).parameters())
     triangles = sum(
         p.numel() - len(p) * (len(p) - 1) // 2
-        for n, p in net_of(sizes).named_parameters()
+        for n, p in make_net(sizes).named_parameters()
         if n.endswith(("lower", "upper"))
     )
     computed = (
         4 * 78 * 6 + 4 * 78 + 6 + 3 * 6 * 4 * 78 if isinstance(sizes, MatchingSizes) else 0
     )  # the tokens' components
-    assert learned - triangles + computed == parameters(sizes)
+    assert learned - triangles + computed == count_parameters(sizes)
 
 
 def odd(kind: Kind) -> Sizes:
@@ -164,7 +164,7 @@ def test_the_sampler_makes_what_torch_makes_of_the_same_noise(
         lookahead = None  # it knows nothing ahead anyway
     told = features(FRAMES)
     options: dict[str, Any] = {"smooth": 0.0, "lookahead": lookahead}
-    made = model.poses.apply(poses_to(model, told, 7, **options))
+    made = model.poses.apply(generate_recording_poses(model, told, 7, **options))
     expected = drawn(model, told, 7, lookahead)
     assert np.abs(expected).max() > 0.1
     assert np.abs(made - expected).max() < 1e-4

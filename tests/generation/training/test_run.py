@@ -17,13 +17,13 @@ import pytest
 pytest.importorskip("torch", reason="training needs torch, which is not installed")
 
 from metagraph.errors import FileError
-from metagraph.generation.sampler import poses_to
-from metagraph.generation.standing import hold, is_busy, standing_of
+from metagraph.generation.sampler import generate_recording_poses
+from metagraph.generation.standing import hold, is_busy, read_standing
 from metagraph.generation.stored import read_model
 from metagraph.generation.train_plan import (
     TrainingPlan,
     TrainingSettings,
-    folder_of,
+    find_training_folder,
     write_plan,
     write_training,
 )
@@ -45,14 +45,14 @@ def takes() -> Any:
 def begun(takes: Any, folder: Path, **options: Any) -> TrainingPlan:
     out = folder / "m.mgmodel"
     own = plan(takes[:1], takes[1:], out=str(out), settings=SMALL, **options)
-    write_training(folder_of(out), own, takes[:1], takes[1:])
+    write_training(find_training_folder(out), own, takes[:1], takes[1:])
     return own
 
 
 def test_a_model_says_what_it_was_made_of(takes: Any, tmp_path: Path) -> None:
     events: list[Any] = []
     own = begun(takes, tmp_path, judged=1e-6, checkpoint=1e-6)
-    model = read_model(Run(folder_of(tmp_path / "m.mgmodel"), events.append).go())
+    model = read_model(Run(find_training_folder(tmp_path / "m.mgmodel"), events.append).go())
     card = model.card
     assert (card.steps, card.seed, card.loss, card.kind) == (12, 1, "matching", "matching")
     assert (
@@ -62,7 +62,7 @@ def test_a_model_says_what_it_was_made_of(takes: Any, tmp_path: Path) -> None:
         8 / 3600, rel=0.01
     )
     assert {"speed", "distance", "frechet"} <= set(card.statistics)
-    assert np.isfinite(poses_to(model, takes[1].features)).all()
+    assert np.isfinite(generate_recording_poses(model, takes[1].features)).all()
     kinds = [e["event"] for e in events]
     assert (
         kinds[0] == "begin"
@@ -77,8 +77,8 @@ def test_cut_and_gone_on_with_it_leads_to_the_same_model(takes: Any, tmp_path: P
     for part in ("whole", "cut"):
         (tmp_path / part).mkdir()
         begun(takes, tmp_path / part)
-    whole = read_model(Run(folder_of(tmp_path / "whole" / "m.mgmodel"), lambda e: None).go())
-    folder = folder_of(tmp_path / "cut" / "m.mgmodel")
+    whole = read_model(Run(find_training_folder(tmp_path / "whole" / "m.mgmodel"), lambda e: None).go())
+    folder = find_training_folder(tmp_path / "cut" / "m.mgmodel")
     first = Run(folder, lambda e: None)
     for n in range(5):
         first.learner.advance(n / 12)
@@ -88,7 +88,7 @@ def test_cut_and_gone_on_with_it_leads_to_the_same_model(takes: Any, tmp_path: P
 
 
 def test_stopped_it_writes_what_it_has_and_more_time_goes_on(takes: Any, tmp_path: Path) -> None:
-    own, folder = begun(takes, tmp_path, steps=10**6), folder_of(tmp_path / "m.mgmodel")
+    own, folder = begun(takes, tmp_path, steps=10**6), find_training_folder(tmp_path / "m.mgmodel")
     (folder / "stop").touch()
     events: list[Any] = []
     model = read_model(Run(folder, events.append).go())
@@ -102,7 +102,7 @@ def test_on_a_full_disk_it_goes_on_learning_and_says_so(
     takes: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun(takes, tmp_path, checkpoint=1e-6)
-    folder, events = folder_of(tmp_path / "m.mgmodel"), list[Any]()
+    folder, events = find_training_folder(tmp_path / "m.mgmodel"), list[Any]()
     run = Run(folder, events.append)
     run.learner.advance()
     run.keep()
@@ -138,7 +138,7 @@ def test_killed_at_any_moment_its_last_checkpoint_can_be_used(takes: Any, tmp_pa
         process.wait(600)
     assert not out.exists()
     kept = max(e.step for e in events if e.event == "checkpoint")
-    model = read_model(Run(folder_of(out), lambda e: None).finish(True))
+    model = read_model(Run(find_training_folder(out), lambda e: None).finish(True))
     assert model.card.steps >= kept > 0 and model.card.takes == own.takes
     # Gone on with, then asked to stop.
     events.clear()
@@ -154,7 +154,7 @@ def test_killed_at_any_moment_its_last_checkpoint_can_be_used(takes: Any, tmp_pa
 
 def test_it_does_not_outlive_who_began_it_and_keeps_what_it_has(takes: Any, tmp_path: Path) -> None:
     begun(takes, tmp_path, steps=10**6, checkpoint=1e6)
-    out, folder = tmp_path / "m.mgmodel", folder_of(tmp_path / "m.mgmodel")
+    out, folder = tmp_path / "m.mgmodel", find_training_folder(tmp_path / "m.mgmodel")
     code = (
         "import sys, time; from pathlib import Path\n"
         "from metagraph.generation.train_process import TrainingProcess\n"
@@ -171,7 +171,7 @@ def test_it_does_not_outlive_who_began_it_and_keeps_what_it_has(takes: Any, tmp_
     while is_busy(folder) and time.monotonic() < late:
         time.sleep(0.05)
     assert not is_busy(folder)
-    standing = standing_of(folder)
+    standing = read_standing(folder)
     assert standing is not None and standing.step > 5 and not standing.kept
 
 
@@ -179,15 +179,15 @@ def test_a_second_process_does_not_learn_in_the_same_folder(
     takes: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     begun(takes, tmp_path)
-    folder = folder_of(tmp_path / "m.mgmodel")
+    folder = find_training_folder(tmp_path / "m.mgmodel")
     held = hold(folder)
     assert held is not None
     with held:
         assert main([str(folder)]) == 2
     event = msgspec.json.decode(capsys.readouterr().out.splitlines()[-1], type=TrainingEvent)
-    assert "another process" in event.text and standing_of(folder).step == 0
+    assert "another process" in event.text and read_standing(folder).step == 0
     assert main([str(folder)]) == 0
-    assert standing_of(folder).step == 12
+    assert read_standing(folder).step == 12
 
 
 def test_what_goes_wrong_is_told_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.generation.features import NONE, PARTNER, SELF
-from metagraph.generation.networks import shapes_of, sizes_of
+from metagraph.generation.networks import list_weight_shapes, make_sizes
 from metagraph.generation.stored import write_model
 from metagraph.generation.take_files import find_takes, read_take_batch
 from metagraph.research.generation.ablation import (
@@ -58,11 +58,11 @@ def run(folder, trainer, changes=("whole", "no past", "no activity", "mirrored")
 @pytest.mark.parametrize("kind", ["flow-vae", "moglow", "cvae", "matching"])
 @pytest.mark.parametrize("size", ["small", "paper"])
 def test_every_change_gives_sizes_that_can_be_or_says_nothing(kind, size):
-    sizes = sizes_of(kind, size)
+    sizes = make_sizes(kind, size)
     wanted = {c.name: choose_sizes(c, kind, sizes) for c in CHANGES}
     assert wanted["whole"] == (kind, sizes)
     for found in wanted.values():
-        assert found is None or shapes_of(found[1])
+        assert found is None or list_weight_shapes(found[1])
     if kind == "flow-vae":
         named = [n for n, found in wanted.items() if found is None]
         own = ["past told"] if size == "small" else ["no guess", "frame by frame"]

@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 from msgspec.structs import replace as changed
 
-from metagraph.generation.features import RATE, compute_features, conversation_activity, frames_of
+from metagraph.generation.features import (
+    RATE,
+    compute_conversation_activity,
+    compute_features,
+    count_sound_frames,
+)
 from metagraph.generation.poses import decode_poses, encode_clip, encode_rotations
-from metagraph.generation.sampler import clip_of, sample_whole
+from metagraph.generation.sampler import make_clip_from_poses, sample_whole
 from metagraph.generation.stored import TakeCard
 from metagraph.generation.takes import SplitError, Take, TakeMarks, TakeSource, split_takes
 from metagraph.research.generation.evaluation import (
@@ -26,8 +31,8 @@ def take(name: str, seed: int, seconds: float = SECONDS) -> Take:
     own = rig()
     samples = np.stack([babble(seconds, seed), babble(seconds, seed + 50)])
     poses = encode_clip(own, moving(seconds, seed), 25.0)
-    count = min(len(poses), frames_of(samples.shape[1]))
-    heard = compute_features(samples, conversation_activity(conversation(seconds, seed), 0, count))
+    count = min(len(poses), count_sound_frames(samples.shape[1]))
+    heard = compute_features(samples, compute_conversation_activity(conversation(seconds, seed), 0, count))
     source = TakeSource(name, (f"motion of {name}", f"sound of {name}"))
     return Take(source, poses[:count], heard[:count], TakeMarks((2.0, 5.0), (3.0,), (7.0,)))
 
@@ -49,14 +54,16 @@ def taught(learned, held=()):
 def test_what_is_judged_is_what_a_user_gets(kind):
     model = untrained(kind)
     samples = np.stack([babble(4.0, 1), babble(4.0, 2)])
-    count = frames_of(samples.shape[1])
-    activity = conversation_activity(conversation(4.0), 0, count)
+    count = count_sound_frames(samples.shape[1])
+    activity = compute_conversation_activity(conversation(4.0), 0, count)
     clip = sample_whole(model, samples, activity, seed=3, take=0)
     made = generate_poses(model, compute_features(samples, activity), 3, 0, SamplingManner())
     assert made.shape == (count, model.rig.numbers)
     whole_rotations = encode_rotations(model.rig, clip.rotations)
     assert np.allclose(
-        encode_rotations(model.rig, clip_of(model, decode_poses(model.rig, made), "again").rotations),
+        encode_rotations(
+            model.rig, make_clip_from_poses(model, decode_poses(model.rig, made), "again").rotations
+        ),
         whole_rotations,
         atol=1e-5,
     )

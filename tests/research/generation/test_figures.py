@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.generation.features import PARTNER, SELF
-from metagraph.generation.landmarks import LANDMARKS, landmarks_of
+from metagraph.generation.landmarks import LANDMARKS, place_landmarks
 from metagraph.generation.poses import encode_clip
 from metagraph.generation.statistics import MotionSample, mean_landmarks
 from metagraph.research.generation import figures
@@ -19,7 +19,7 @@ def performance(seconds: float = 8.0, seed: int = 1) -> MotionSample:
     activity = np.zeros((len(poses), 4))
     activity[: len(poses) // 2, SELF] = 1
     activity[len(poses) // 2 :, PARTNER] = 1
-    return MotionSample(landmarks_of(own, poses), poses, activity)
+    return MotionSample(place_landmarks(own, poses), poses, activity)
 
 
 def test_whiskers_end_at_values_and_what_is_beyond_stands_alone():

@@ -5,7 +5,7 @@ from metagraph.errors import FileError
 from metagraph.generation.features import RATE
 from metagraph.generation.statistics import compute_measures, make_motion_sample, mismatch_speech
 from metagraph.generation.take_files import find_takes, read_take_batch
-from metagraph.generation.takes import shares_stretch, split_takes
+from metagraph.generation.takes import share_stretch, split_takes
 from metagraph.graph.conversation.model import list_segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.research.generation.planted import CARD, Planted, perform_planted, read_planted, write_planted
@@ -80,7 +80,7 @@ def test_the_folder_is_read_as_takes_of_both_sides(folder):
     assert first.marks.peaks and first.source.licence == "LICENSE.txt: MIT: made here"
     learned, held = split_takes(batch.takes)
     assert {t.source.name[:-2] for t in learned}.isdisjoint({t.source.name[:-2] for t in held})
-    assert not shares_stretch(batch.takes[0], batch.takes[2])
+    assert not share_stretch(batch.takes[0], batch.takes[2])
 
 
 @pytest.mark.nightly

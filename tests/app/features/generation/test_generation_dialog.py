@@ -28,7 +28,7 @@ from metagraph.generation import offered
 from metagraph.generation.features import RATE
 from metagraph.generation.standing import hold
 from metagraph.generation.stored import read_card, write_model
-from metagraph.generation.train_plan import folder_of
+from metagraph.generation.train_plan import find_training_folder
 from metagraph.graph.generated import describe_origin
 from tests.generation.makers import babble, conversation, moving, untrained
 
@@ -343,7 +343,7 @@ def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path
     learn.begun.which.setCurrentIndex(1)
     assert "nothing saved yet" in learn.begun.which.currentText() and not learn.begun.keep.isEnabled()
     learn.begun.which.setCurrentIndex(0)
-    held = hold(folder_of(out))
+    held = hold(find_training_folder(out))
     press(learn.begun.go)
     assert "Another process" in dialog.said.text() and learn.run is None
     held.close()
