@@ -7,7 +7,7 @@ of it is measured on the poses that are drawn, and compared with what the clips 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,21 +21,17 @@ from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
 from metagraph.motion.in_place import measure_travel
-from metagraph.motion.skeleton import Pose
-from metagraph.playback.continuity import ContinuityLaw
-from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
-from metagraph.playback.own_moves import RATE, find_body_joints, measure_own_moves, play_clips
+from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT
+from metagraph.playback.own_moves import RATE, measure_own_moves, play_clips
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import improvise, plan_performance
+from metagraph.playback.played_poses import PARTS, PlayedPoses, count_chunks, watch_plans
 from metagraph.playback.posing.composer import find_playable_motion
-from metagraph.playback.posing.contacts import measure_contact_depths
-from metagraph.playback.posing.rigs import get_rigs
 
 Array = NDArray[Any]
 
 MINUTES = 10.0
 LEAST_MINUTES = 5.0  # below which a stance that was not reached means nothing
-CHUNK = 600  # poses made at once
 GAP = 0.5  # seconds between the actions that are each played once
 TALL = 1.75  # metres: the lengths and speeds below are of a figure of that height
 USUAL = 1.5  # times the clips' own 99th percentile, up to which nothing is reported
@@ -45,11 +41,9 @@ OWN = 0.8  # share of what is seen that a clip must do by itself to be the reaso
 GLIDE, GLIDES = 0.6, 0.15  # m/s that the hips may go over the floor in a blend; metres that are seen
 UNDER = 0.05  # metres below the floor
 ABOVE = 0.20  # metres of the lowest joint above it
-LEVEL = 0.6  # of a thigh's length: its ends differ less in height where somebody sits
 INSIDE = 0.03  # metres of an arm within the body
 LONG = 0.5  # seconds that a foot is under the floor, or an arm within the body, before it is reported
 LASTING = 0.1  # of the time, from which on a figure off the floor is an error
-PARTS = ("left_hand", "right_hand", "head", "hips", "left_foot", "right_foot")
 _LAYER_OF: dict[str, Layer] = {"left_hand": "arms", "right_hand": "arms", "head": "head"}
 _ADDED = {  # by stage: what it is called, whose causes are looked at, what helps
     WEIGHT: (
@@ -72,23 +66,6 @@ _NAMES = {
     "left_foot": phrase("the left foot"),
     "right_foot": phrase("the right foot"),
 }
-
-
-@dataclass(frozen=True, eq=False)
-class PlayedPoses:
-    """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
-    `[F]`: how high the lowest joint of the body is. sits `[F]`: whether it sits. inside `[F]`:
-    how deep an arm is within the body, metres. added: by stage, what it adds on the way to each frame,
-    `[4, F]`, as `AddedMoves.worst` returns it.
-    """
-
-    times: Array
-    parts: tuple[str, ...]
-    places: Array
-    lowest: Array
-    sits: Array
-    inside: Array
-    added: Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -126,7 +103,7 @@ def rehearse(
     plans = [(untouched, seconds, True)]
     if length > 0:
         plans.append((plan_performance(project, asked, length, idle=False), length, False))
-    total = sum(_chunks(length) for _, length, _ in plans)
+    total = sum(count_chunks(length) for _, length, _ in plans)
     done = 0
 
     def step() -> bool:
@@ -138,12 +115,9 @@ def rehearse(
 
     limits = _own_limits(project)
     out: list[Problem] = []
-    for plan, length, free in plans:
-        seen = _watch(project, plan, length, step)
-        if seen is None:
-            break
-        found = _Findings(project, plan, seen, limits, free)
-        out += found.problems()
+    played = watch_plans(project, [(plan, length) for plan, length, _ in plans], step)
+    for (plan, _, free), seen in zip(plans, played, strict=False):  # fewer, if it was cancelled
+        out += _Findings(project, plan, seen, limits, free).problems()
     return _merged(out)
 
 
@@ -163,64 +137,6 @@ def _ask_for_each(project: Project) -> tuple[list[Play], float]:
             at += seconds_played(action.kind, action.timing, start, end) + GAP
         longest = max(longest, at)
     return asks, longest + 2.0 if asks else 0.0
-
-
-def _chunks(seconds: float) -> int:
-    return max(1, -(-round(seconds * RATE) // CHUNK))
-
-
-def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool]) -> PlayedPoses | None:
-    """Return what is seen of a plan; None if it was cancelled."""
-    skeleton = project.skeleton
-    assert skeleton is not None
-    roles = anatomy.project_roles(project)
-    parts = tuple(part for part in PARTS if part in roles)
-    joints = [roles[part] for part in parts]
-    body = find_body_joints(skeleton, roles)
-    contacts = get_rigs(project).contacts
-    evaluator = Evaluator(plan, project)
-    times = np.arange(round(seconds * RATE)) / RATE
-    thighs = [
-        [roles[f"{side}_{part}_leg"] for part in ("upper", "lower")]
-        for side in ("left", "right")
-        if {f"{side}_upper_leg", f"{side}_lower_leg", "hips", "head"} <= roles.keys()
-    ]
-    places, lowest, sits, inside = [], [], [], []
-    law = ContinuityLaw(project)
-    added: dict[str, list[Array]] = {name: [] for name in _ADDED}
-    for some in np.array_split(times, _chunks(seconds)):
-        more = np.append(some[:1] - 1 / RATE, some)
-        stages = list(evaluator.stages(more))
-        moves = law.added(stages)
-        for name, rows in added.items():
-            rows.append(moves[name].worst(law.joints))
-        last = stages[-1][1]
-        pose = Pose(last.rotations[1:], last.translations[1:])
-        _, at = skeleton.globals(pose)
-        places.append(at[:, joints].astype(np.float64))
-        lowest.append(at[:, body, 1].min(1))
-        sits.append(_is_sitting(at, thighs, [roles["hips"], roles["head"]] if thighs else []))
-        inside.append(
-            measure_contact_depths(contacts, pose).max(-1, initial=0.0)
-            if contacts is not None
-            else np.zeros(len(some))
-        )
-        if step():
-            return None
-    worst = {name: np.concatenate(rows, 1) for name, rows in added.items()}
-    at, low, level, deep = (np.concatenate(rows) for rows in (places, lowest, sits, inside))
-    return PlayedPoses(times, parts, at, low, level, deep, worst)
-
-
-def _is_sitting(at: Array, thighs: list[list[int]], trunk: list[int]) -> Array:
-    """Return `[F]` whether thighs are level and the trunk is upright, of places `[F, J, 3]` and pairs of
-    joints; never where none are known.
-    """
-    if not thighs:
-        return np.zeros(len(at), bool)
-    ways = np.diff(at[:, [*thighs, trunk]], axis=2)[:, :, 0]
-    rise = ways[..., 1] / np.maximum(np.linalg.norm(ways, axis=-1), 1e-9)
-    return np.asarray((np.abs(rise[:, :-1]) < LEVEL).all(1) & (rise[:, -1] > LEVEL))
 
 
 def _own_limits(project: Project) -> tuple[Array, Array]:

@@ -41,6 +41,8 @@ OPENS = {
 UNPICKLES = {  # from a process that this program started
     "app/stage/picture_process.py",
     "app/stage/thumbnails.py",
+    "metagraph/playback/played_poses.py",
+    "metagraph/playback/watching_child.py",
     "preview/drawing_child.py",
 }
 
