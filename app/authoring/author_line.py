@@ -18,7 +18,7 @@ from typing import Any
 import msgspec
 
 from app.authoring.desk import AuthorDesk
-from app.authoring.tool import AuthorError, CallCancelledError, ToolOutcome
+from app.authoring.tool import AuthorError, CallCancelledError, ToolOutcome, make_plain
 from metagraph.live.mcp_protocol import NO_PARAMETERS, TASKS, McpRequest, ProtocolLine
 
 WAITING = 100  # calls that wait at most
@@ -164,15 +164,20 @@ class AuthorLine(ProtocolLine):
     def _do(self, job: _Job) -> None:
         """Do a call and answer it."""
 
+        told = -1.0
+
         def report(done: float, total: float, words: str) -> None:
+            nonlocal told
             if job.cancelled:
                 raise CallCancelledError
             job.words, job.changed = words, _now()
-            if not job.task:
+            if not job.task and done > told:  # the protocol wants it to grow
+                told = done
                 self.report_progress(job.asked, done, total, words)
 
         try:
-            report(0, 1, "begun")
+            if job.cancelled:
+                raise CallCancelledError
             job.result = _make_result(self._desk.call(job.name, job.given, report))
         except AuthorError as error:
             job.result = _make_refusal(str(error))
@@ -210,14 +215,14 @@ class AuthorLine(ProtocolLine):
 
 def _make_result(outcome: ToolOutcome) -> dict[str, Any]:
     """Return what a tool did as the result of `tools/call`."""
-    text = msgspec.json.encode(outcome.told)
+    told = make_plain(outcome.told)
     pictures = [
         {"type": "image", "data": base64.b64encode(png).decode(), "mimeType": "image/png"}
         for png in outcome.pictures
     ]
     return {
-        "content": [{"type": "text", "text": text.decode()}, *pictures],
-        "structuredContent": msgspec.json.decode(text),
+        "content": [{"type": "text", "text": msgspec.json.encode(told).decode()}, *pictures],
+        "structuredContent": told,
         "isError": False,
     }
 

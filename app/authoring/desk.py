@@ -10,7 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Protocol
 
-import msgspec
 from msgspec import Meta, Struct
 
 from app.authoring import (
@@ -30,6 +29,7 @@ from app.authoring.tool import (
     Report,
     ToolOutcome,
     ToolWork,
+    make_plain,
     shorten_lines,
 )
 from metagraph.engines.export_error import ExportError
@@ -191,16 +191,17 @@ class AuthorDesk:
         results: list[Any] = []
         shown: list[bytes] = []
         for number, call in enumerate(script.calls, 1):
-            report(number - 1, len(script.calls), f"call {number} of {len(script.calls)}: {call.tool}")
+            tell = _report_within(report, number - 1, len(script.calls))
+            tell(0, 1, call.tool)
             try:
-                outcome = self._call_of_script(project, call, report)
+                outcome = self._call_of_script(project, call, tell)
             except EXPLAINED as error:
                 words = error if isinstance(error, AuthorError) else _explain(error)
                 kept = "Nothing was changed"
                 raise AuthorError(f"call {number} ({call.tool}): {words}. {kept}") from error
             if outcome.project is not None:
                 project = outcome.project
-            results.append(msgspec.to_builtins(outcome.told))
+            results.append(make_plain(outcome.told))
             shown += outcome.pictures
         changes = shorten_lines([str(line) for line in describe_differences(before, project)])
         told = ScriptReport(results, "", changes, script.dry_run)
@@ -216,6 +217,16 @@ class AuthorDesk:
             raise AuthorError("it cannot be part of a script, because it cannot be taken back; call it after")
         outcome = tool.does(self._work(project, report), tool.read(call.arguments))
         return settle_edit(project, outcome) if tool.effect == "edits" else outcome
+
+
+def _report_within(report: Report, call: int, calls: int) -> Report:
+    """Return what reports how far a call of a script is as how far the script is."""
+
+    def tell(done: float, total: float, words: str) -> None:
+        share = min(1.0, done / total) if total > 0 else 0.0
+        report(call + share, calls, f"call {call + 1} of {calls}: {words}")
+
+    return tell
 
 
 def settle_edit(before: Project, outcome: ToolOutcome) -> ToolOutcome:

@@ -130,6 +130,12 @@ class AuthorTool:
         }
 
 
+def make_plain(told: Struct) -> dict[str, Any]:
+    """Return a result as JSON has it; phrases become their English words."""
+    plain: dict[str, Any] = msgspec.to_builtins(told, enc_hook=str)
+    return plain
+
+
 def shorten_lines(lines: list[str]) -> list[str]:
     """Return at most MOST_LINES lines, the last of which says how many more there are."""
     if len(lines) <= MOST_LINES:
