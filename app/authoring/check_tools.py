@@ -15,7 +15,6 @@ from app.stage.remedies import fix_clips
 from metagraph.graph.check import check_project
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem, Severity
-from metagraph.playback.rehearsal import rehearse
 
 LONGEST = 3600.0  # seconds that are played
 MOST = 200  # problems of one call
@@ -34,7 +33,8 @@ class FindProblems(Struct, forbid_unknown_fields=True, omit_defaults=True):
 
 class ProblemRow(Struct, omit_defaults=True):
     """A problem. id: for fix_problem, the same until it is solved. fix: what fix_problem does about it, and
-    instead: what it does with `instead`; "" for nothing. at: seconds of the performance.
+    instead: what it does with `instead`; "" for nothing. takes_away: whether the fix removes something. at:
+    seconds of the performance.
     """
 
     id: str
@@ -44,6 +44,7 @@ class ProblemRow(Struct, omit_defaults=True):
     remedy: str
     fix: str = ""
     instead: str = ""
+    takes_away: bool = False
     layer: str = ""
     stance: str = ""
     action: str = ""
@@ -138,7 +139,7 @@ def _fix_all(work: ToolWork, play: float) -> ToolOutcome:
 def _find(work: ToolWork, project: Project, play: float) -> Found:
     problems = check_project(project)
     if play > 0:
-        problems += rehearse(project, play, work.watch("playing part"))
+        problems += work.rehearsal.see(project, play, work.watch("playing part"))
         problems.sort(key=lambda p: _ORDER.index(p.severity))
     return problems, {**fix_unreachable(project, problems), **fix_clips(project, problems)}
 
@@ -153,6 +154,7 @@ def _make_row(project: Project, p: Problem, fix: Fix | None) -> ProblemRow:
         str(p.remedy),
         str(fix.words) if fix is not None else "",
         str(fix.instead.words) if fix is not None and fix.instead is not None else "",
+        fix is not None and fix.alone,
         p.layer or "",
         name_stance(project, p.stance),
         action.id if action is not None else "",

@@ -25,6 +25,7 @@ from app.authoring.tool import (
     AuthorError,
     AuthorTool,
     EditReport,
+    LastRehearsal,
     NoFields,
     Report,
     ToolOutcome,
@@ -131,6 +132,7 @@ class AuthorDesk:
     def __init__(self, authored: AuthoredProject) -> None:
         self.authored = authored
         self.tools = list_author_tools()
+        self._rehearsal = LastRehearsal()
 
     def call(self, name: str, given: dict[str, Any], report: Report) -> ToolOutcome:
         """Return what a tool did. Raises AuthorError, whose message says why it cannot be done, after which
@@ -167,7 +169,7 @@ class AuthorDesk:
 
     def _work(self, project: Project, report: Report) -> ToolWork:
         path = self.authored.path
-        return ToolWork(project, path.resolve().parent, path, self.authored.roots, report)
+        return ToolWork(project, path.resolve().parent, path, self.authored.roots, report, self._rehearsal)
 
     def _step(self, name: str, fields: Struct) -> ToolOutcome:
         """Undo or do again, and tell the history."""

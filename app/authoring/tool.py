@@ -14,7 +14,9 @@ from msgspec import Struct
 
 from metagraph.common.files import is_inside
 from metagraph.graph.model import Project
+from metagraph.graph.problem import Problem
 from metagraph.live.mcp_protocol import make_result_schema
+from metagraph.playback.rehearsal import rehearse
 
 # looks: nothing changes. edits: the project is another one after it, as one step. writes: files beside the
 # project. steps: moves among the steps that there are.
@@ -48,10 +50,27 @@ class EditReport(Struct, omit_defaults=True):
     notes: list[str] = []
 
 
+class LastRehearsal:
+    """What was seen when a project was played last: finding problems and then mending them plays it once."""
+
+    def __init__(self) -> None:
+        self._project: Project | None = None
+        self._seconds = 0.0
+        self._seen: list[Problem] = []
+
+    def see(self, project: Project, seconds: float, tell: Callable[..., None]) -> list[Problem]:
+        """Return what a viewer would see go wrong in so many seconds; tell: (done, total)."""
+        if project is not self._project or seconds != self._seconds:
+            self._seen = rehearse(project, seconds, tell)
+            self._project, self._seconds = project, seconds
+        return self._seen
+
+
 @dataclass(frozen=True)
 class ToolWork:
     """What a tool works on. folder: what paths are relative to; `roots` are the folders in which it may read
     and write, of which this is the first. path: the project's file. report: told how far the work is.
+    rehearsal: what was seen when it was played last.
     """
 
     project: Project
@@ -59,6 +78,7 @@ class ToolWork:
     path: Path
     roots: tuple[Path, ...] = ()
     report: Report = lambda done, total, words: None
+    rehearsal: LastRehearsal = field(default_factory=LastRehearsal)
 
     def find_path(self, name: str) -> Path:
         """Return a path that a call names, relative to the project's folder. Raises AuthorError for one that

@@ -63,58 +63,45 @@ class Author:
 
 def main(folder: Path, project: Path, command: list[str]) -> None:
     author = Author([*command, str(project), "--folder", str(folder)])
-    author.ask("server/discover")
-
     told, _ = author.call("import_clips", paths=[str(folder)])
     print("imported:", told["notes"][0])
-
-    # Clips that share their skeleton and have no telling names are told apart by what they do.
-    told, _ = author.call("list_clips", only="unlabelled", measures=True, count=500)
-    print("clips:", told["total"], "of", round(sum(x["seconds"] for x in told["clips"])), "s")
+    told, _ = author.call("list_clips", only="unlabelled", count=500)
+    print("clips:", told["total"], "with measures, of", round(sum(x["seconds"] for x in told["clips"])), "s")
     told, _ = author.call("propose_labels")
-    sure = sum(x["sure"] >= 0.5 for x in told["proposals"])
+    likely = sum(x["sure"] >= 0.5 for x in told["proposals"])
     print(
         "proposals:",
         len(told["proposals"]),
-        "of which",
-        sure,
-        "are likely; skipped",
-        len(told.get("skipped", {})),
+        "of them likely:",
+        likely,
+        "skipped:",
+        len(told.get("skipped", ())),
     )
 
     # One step for all of it, tried without keeping anything first.
-    calls = [
-        {"tool": "accept_proposals", "arguments": {}},
-        {"tool": "find_problems", "arguments": {"play": 60, "least": "warning"}},
-    ]
+    calls = [{"tool": "accept_proposals"}, {"tool": "find_problems", "arguments": {"least": "warning"}}]
     told, _ = author.call("run_script", calls=calls, dry_run=True)
     print("dry run:", told["results"][0]["notes"][0], "and then", told["results"][1]["counts"])
     author.call("run_script", calls=calls[:1], name="Label the folder")
 
-    # Mend what can be mended without taking anything away, then leave out what a viewer would still see.
+    # Play it; mend what a viewer would see, as long as that takes nothing away.
     for _ in range(3):
-        try:
-            told, _ = author.call("fix_problem", play=60)
-        except RuntimeError as nothing_left:
-            print(nothing_left)
+        found, _ = author.call("find_problems", play=60, least="warning")
+        print("problems:", found["counts"])
+        mendable = [x["id"] for x in found["problems"] if x.get("fix") and not x.get("takes_away")]
+        if not mendable:
             break
-        print("mended:", len(told["notes"]))
-    told, _ = author.call("find_problems", play=60, least="warning")
-    grave = [x for x in told["problems"] if x["severity"] == "error" and (x.get("fix") or x.get("instead"))]
-    if grave:
-        author.call("fix_problem", problems=[x["id"] for x in grave], play=60)
-        told, _ = author.call("find_problems", play=60, least="warning")
-    print("problems left:", told["counts"])
+        told, _ = author.call("fix_problem", problems=mendable, play=60)
+        print("mended:", "; ".join(told["notes"]))
 
     try:
         told, (picture,) = author.call("look", seconds=6, pictures=12, width=160)
         project.with_name("seen.png").write_bytes(picture)
-        print("looked:", len(told["moments"]), "moments in seen.png")
+        print("looked:", len(told["moments"]), "moments, in seen.png")
     except RuntimeError as no_pictures:
         print(no_pictures)
     told, _ = author.call("count_rates", seconds=600)
     print("rates:", ", ".join(f"{x['name']} {x['value']} {x['unit']}" for x in told["rates"][:4]))
-
     told, _ = author.call("export", folder="game")
     print("exported:", told["clips"], "clips;", "; ".join(told["verified"]))
     told, _ = author.call("history")
