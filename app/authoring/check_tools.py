@@ -24,7 +24,7 @@ _ORDER: tuple[Severity, ...] = ("error", "warning", "hint")
 
 class FindProblems(Struct, forbid_unknown_fields=True, omit_defaults=True):
     """play: also let the character perform for so many seconds, and each action once, and report what a
-    viewer would see go wrong; 0 does not. least: the mildest that is told.
+    viewer would see go wrong; 0 does not. least: the mildest to report.
     """
 
     play: Annotated[float, Meta(ge=0, le=LONGEST)] = 0.0
@@ -76,7 +76,7 @@ class FixProblem(Struct, forbid_unknown_fields=True, omit_defaults=True):
 Found = tuple[Sequence[Problem], Mapping[Problem, Fix]]
 
 
-def find_problems(work: ToolWork, given: FindProblems) -> ToolOutcome:
+def _find_problems(work: ToolWork, given: FindProblems) -> ToolOutcome:
     """Return what is wrong, and what can be done about it."""
     problems, fixes = _find(work, work.project, given.play)
     counts: dict[str, int] = {one: sum(p.severity == one for p in problems) for one in _ORDER}
@@ -85,12 +85,12 @@ def find_problems(work: ToolWork, given: FindProblems) -> ToolOutcome:
     return ToolOutcome(ProblemList(counts, counts["error"] == 0, len(wanted), rows))
 
 
-def fix_problem(work: ToolWork, given: FixProblem) -> ToolOutcome:
+def _fix_problem(work: ToolWork, given: FixProblem) -> ToolOutcome:
     """Mend problems as told, or all that can be mended without taking anything away."""
     if not given.problems:
         return _fix_all(work, given.play)
     problems, fixes = _find(work, work.project, given.play)
-    known = {make_problem_id(p): p for p in problems}
+    known = {_make_problem_id(p): p for p in problems}
     lost = [ident for ident in given.problems if ident not in known]
     if lost:
         hint = "" if given.play else " One that was seen as it played needs `play` here, too."
@@ -109,7 +109,7 @@ def fix_problem(work: ToolWork, given: FixProblem) -> ToolOutcome:
     return ToolOutcome(EditReport(notes=notes), project)
 
 
-def make_problem_id(problem: Problem) -> str:
+def _make_problem_id(problem: Problem) -> str:
     """Return what a problem is called as long as it is there, whatever else is edited."""
     p = problem
     about = (p.code, p.layer, p.stance, p.action, p.clip, p.state, p.link)
@@ -147,7 +147,7 @@ def _find(work: ToolWork, project: Project, play: float) -> Found:
 def _make_row(project: Project, p: Problem, fix: Fix | None) -> ProblemRow:
     entry, action = project.clips.get(p.clip or ""), project.action(p.action or "")
     return ProblemRow(
-        make_problem_id(p),
+        _make_problem_id(p),
         p.severity,
         p.code,
         str(p.message),
@@ -170,7 +170,7 @@ TOOLS = (
         "what fix_problem does about it.",
         FindProblems,
         ProblemList,
-        find_problems,
+        _find_problems,
         long=True,
     ),
     AuthorTool(
@@ -178,7 +178,7 @@ TOOLS = (
         "Mend problems that find_problems told, or all that can be mended without taking anything away.",
         FixProblem,
         EditReport,
-        fix_problem,
+        _fix_problem,
         "edits",
         "Fix problems",
         True,

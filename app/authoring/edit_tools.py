@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from msgspec import UNSET, Meta, Struct, UnsetType
 
-from app.authoring.finding import find_actions, find_clips, find_stance
+from app.authoring.finding import find_actions, find_clips, find_named_stance
 from app.authoring.tool import AuthorError, AuthorTool, EditReport, ToolOutcome, ToolWork
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
@@ -53,7 +53,7 @@ class EditAction(Struct, forbid_unknown_fields=True, omit_defaults=True):
     relax: Maybe = UNSET
 
 
-def edit_action(work: ToolWork, given: EditAction) -> ToolOutcome:
+def _edit_action(work: ToolWork, given: EditAction) -> ToolOutcome:
     """Change actions. Raises AuthorError for what would make an error of them."""
     before, found = work.project, find_actions(work.project, given.actions)
     after = _move(before, found, given)
@@ -68,10 +68,12 @@ def _move(project: Project, found: Sequence[Action], given: EditAction) -> Proje
     for action in found:
         layer: Layer = action.layer
         kind = given.kind or action.kind
-        stance = find_stance(project, given.stance, layer).id if given.stance is not None else action.stance
+        stance = (
+            find_named_stance(project, given.stance, layer).id if given.stance is not None else action.stance
+        )
         end = action.end_stance
         if given.end_stance is not None:
-            end = find_stance(project, given.end_stance, layer).id
+            end = find_named_stance(project, given.end_stance, layer).id
             if kind != "transition":
                 raise AuthorError(f"end_stance: '{action.name}' is a {kind}; only transitions end elsewhere")
         if (kind, stance, end) != (action.kind, action.stance, action.end_stance):
@@ -116,9 +118,9 @@ class EditStance(Struct, forbid_unknown_fields=True, omit_defaults=True):
     remove: bool = False
 
 
-def edit_stance(work: ToolWork, given: EditStance) -> ToolOutcome:
+def _edit_stance(work: ToolWork, given: EditStance) -> ToolOutcome:
     """Rename, merge or remove a stance, or begin in it."""
-    project, stance = work.project, find_stance(work.project, given.stance, given.layer)
+    project, stance = work.project, find_named_stance(work.project, given.stance, given.layer)
     if given.remove and (given.name or given.start or given.merge_into):
         raise AuthorError("remove: a stance that is removed cannot be changed, too")
     if given.remove:
@@ -128,7 +130,9 @@ def edit_stance(work: ToolWork, given: EditStance) -> ToolOutcome:
     if given.start:
         project = edits.set_start_stance(project, stance.id)
     if given.merge_into is not None:
-        project = merge_stances(project, stance.id, find_stance(project, given.merge_into, stance.layer).id)
+        project = merge_stances(
+            project, stance.id, find_named_stance(project, given.merge_into, stance.layer).id
+        )
     return ToolOutcome(EditReport(), project, f"Edit stance '{stance.name}'")
 
 
@@ -146,7 +150,7 @@ class RenameClip(Struct, forbid_unknown_fields=True):
     name: Name
 
 
-def rename_clip(work: ToolWork, given: RenameClip) -> ToolOutcome:
+def _rename_clip(work: ToolWork, given: RenameClip) -> ToolOutcome:
     """Give a clip another name."""
     (clip,) = find_clips(work.project, [given.clip])
     old = work.project.clips[clip].name
@@ -162,7 +166,7 @@ TOOLS = (
         "Change the timing, likelihood, name, tags, kind or stance of actions.",
         EditAction,
         EditReport,
-        edit_action,
+        _edit_action,
         "edits",
         "Edit actions",
     ),
@@ -171,7 +175,7 @@ TOOLS = (
         "Rename a stance, merge it into another, remove it, or let performances begin in it.",
         EditStance,
         EditReport,
-        edit_stance,
+        _edit_stance,
         "edits",
         "Edit stance",
     ),
@@ -180,7 +184,7 @@ TOOLS = (
         "Give a clip and its actions a name that says what it is.",
         RenameClip,
         EditReport,
-        rename_clip,
+        _rename_clip,
         "edits",
         "Rename clip",
     ),

@@ -15,7 +15,7 @@ from metagraph.formats.store import read_project
 from metagraph.graph.manual.meta import make_exportable
 
 
-class Export(Struct, forbid_unknown_fields=True, omit_defaults=True):
+class ExportCall(Struct, forbid_unknown_fields=True, omit_defaults=True):
     """folder: where to, relative to the project. target: the engine or format; a wrong one is answered with
     those there are. compress: pack the GLB. overwrite: also replace files of another export.
     """
@@ -41,7 +41,7 @@ class ExportReport(Struct, omit_defaults=True):
     verified: list[str] = []
 
 
-def export(work: ToolWork, given: Export) -> ToolOutcome:
+def _export(work: ToolWork, given: ExportCall) -> ToolOutcome:
     """Export for an engine, and verify what was written."""
     from metagraph.engines.targets import registry
     from metagraph.engines.targets.target import Contents
@@ -80,7 +80,7 @@ def _verify(folder: Path) -> list[str]:
     return [f"{Path(one.file).name}: {part.name} {part.words}" for one in found for part in one.parts]
 
 
-class Merge(Struct, forbid_unknown_fields=True, omit_defaults=True):
+class MergeCall(Struct, forbid_unknown_fields=True, omit_defaults=True):
     """theirs: another copy of this project. base: the project before either was changed. prefer: whose value
     is kept where both changed the same one.
     """
@@ -90,7 +90,7 @@ class Merge(Struct, forbid_unknown_fields=True, omit_defaults=True):
     prefer: Literal["ours", "theirs"] = "ours"
 
 
-def merge(work: ToolWork, given: Merge) -> ToolOutcome:
+def _merge(work: ToolWork, given: MergeCall) -> ToolOutcome:
     """Bring what was done in another copy into this project."""
     base, theirs = (read_project(work.find_path(name)) for name in (given.base, given.theirs))
     sides = (phrase("in ours"), phrase("in theirs"))
@@ -110,18 +110,18 @@ TOOLS = (
     AuthorTool(
         "export",
         "Export the project for an engine or a format, and verify the files.",
-        Export,
+        ExportCall,
         ExportReport,
-        export,
+        _export,
         "writes",
         long=True,
     ),
     AuthorTool(
         "merge",
         "Bring what another person did in a copy of the project into this one.",
-        Merge,
+        MergeCall,
         EditReport,
-        merge,
+        _merge,
         "edits",
         "Merge with a copy",
     ),

@@ -23,7 +23,7 @@ def find_actions(project: Project, names: Iterable[str]) -> list[Action]:
     return [actions[ident] for ident in found]
 
 
-def find_stance(project: Project, name: str, layer: Layer | None = None) -> Stance:
+def find_named_stance(project: Project, name: str, layer: Layer | None = None) -> Stance:
     """Return a stance, of one layer or of any. Raises AuthorError if it is not there, or if several layers
     have one of this name.
     """

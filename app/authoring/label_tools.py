@@ -31,7 +31,7 @@ class ImportClips(Struct, forbid_unknown_fields=True, omit_defaults=True):
     retarget: bool = False
 
 
-def import_clips(work: ToolWork, given: ImportClips) -> ToolOutcome:
+def _import_clips(work: ToolWork, given: ImportClips) -> ToolOutcome:
     """Add clips of files and folders."""
     from metagraph.formats.imports import import_files
 
@@ -92,7 +92,7 @@ class ProposalList(Struct, omit_defaults=True):
     skipped: dict[str, str] = {}
 
 
-def propose_labels(work: ToolWork, given: ProposeLabels) -> ToolOutcome:
+def _propose_labels(work: ToolWork, given: ProposeLabels) -> ToolOutcome:
     """Return what clips seem to be; nothing is changed."""
     project, found = work.project, _propose(work, given.clips, given.sources)
     rows = [_make_row(project, found, p) for p in found.doubtful]
@@ -113,7 +113,7 @@ class AcceptProposals(Struct, forbid_unknown_fields=True, omit_defaults=True):
     bridge: bool = True
 
 
-def accept_proposals(work: ToolWork, given: AcceptProposals) -> ToolOutcome:
+def _accept_proposals(work: ToolWork, given: AcceptProposals) -> ToolOutcome:
     """Place clips as proposed."""
     project, found = work.project, _propose(work, given.clips, given.sources)
     if not found.proposals:
@@ -143,7 +143,7 @@ class SetLabels(Struct, forbid_unknown_fields=True):
     labels: Annotated[list[LabelRow], Meta(min_length=1)]
 
 
-def set_labels(work: ToolWork, given: SetLabels) -> ToolOutcome:
+def _set_labels(work: ToolWork, given: SetLabels) -> ToolOutcome:
     """Place clips as told."""
     project = work.project
     find_clips(project, [row.clip for row in given.labels])
@@ -161,7 +161,7 @@ class RemoveActions(Struct, forbid_unknown_fields=True):
     actions: Annotated[list[str], Meta(min_length=1)]
 
 
-def remove_actions(work: ToolWork, given: RemoveActions) -> ToolOutcome:
+def _remove_actions(work: ToolWork, given: RemoveActions) -> ToolOutcome:
     """Take actions out of the graph."""
     gone = [action.id for action in find_actions(work.project, given.actions)]
     return ToolOutcome(EditReport(), edits.remove_actions(work.project, gone))
@@ -210,7 +210,7 @@ TOOLS = (
         "Add the clips of files and folders to the project.",
         ImportClips,
         EditReport,
-        import_clips,
+        _import_clips,
         "edits",
         "Import clips",
         True,
@@ -220,7 +220,7 @@ TOOLS = (
         "Say what clips seem to be (kind, layer, stance, tags), how certain that is, and why.",
         ProposeLabels,
         ProposalList,
-        propose_labels,
+        _propose_labels,
         long=True,
     ),
     AuthorTool(
@@ -228,7 +228,7 @@ TOOLS = (
         "Place clips as propose_labels proposes, with their timing, and join stances that no clip leads to.",
         AcceptProposals,
         EditReport,
-        accept_proposals,
+        _accept_proposals,
         "edits",
         "Accept proposals",
         True,
@@ -238,7 +238,7 @@ TOOLS = (
         "Say what clips are: place each as a stance, gesture, fidget or transition of a layer and stance.",
         SetLabels,
         EditReport,
-        set_labels,
+        _set_labels,
         "edits",
         "Label clips",
     ),
@@ -247,7 +247,7 @@ TOOLS = (
         "Take actions out of the graph; their clips wait for a label again.",
         RemoveActions,
         EditReport,
-        remove_actions,
+        _remove_actions,
         "edits",
         "Remove actions",
     ),

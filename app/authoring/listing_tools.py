@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import numpy as np
 from msgspec import Meta, Struct
 
-from app.authoring.finding import find_clips, find_stance, name_stance
+from app.authoring.finding import find_clips, find_named_stance, name_stance
 from app.authoring.pictures import draw_clips
 from app.authoring.tool import AuthorTool, ToolOutcome, ToolWork
 from metagraph.graph import anatomy
@@ -62,7 +62,7 @@ class ClipRow(Struct, omit_defaults=True):
     picture: int | None = None
 
 
-class ClipList(Struct, omit_defaults=True):
+class ClipsReport(Struct, omit_defaults=True):
     """total: how many there are, of which these are some. notes: what could not be done."""
 
     total: int
@@ -70,7 +70,7 @@ class ClipList(Struct, omit_defaults=True):
     notes: list[str] = []
 
 
-def list_clips(work: ToolWork, given: ListClips) -> ToolOutcome:
+def _list_clips(work: ToolWork, given: ListClips) -> ToolOutcome:
     """Return clips with their measures and, if wanted, pictures."""
     project = work.project
     wanted = find_clips(project, given.clips) if given.clips else list(project.clips)
@@ -96,7 +96,7 @@ def list_clips(work: ToolWork, given: ListClips) -> ToolOutcome:
             next(row for row in rows if row.id == clip).picture = number
         if len(rows) > MOST_PICTURES:
             notes.append(f"only the first {MOST_PICTURES} have pictures; ask for the others with `first`")
-    return ToolOutcome(ClipList(len(wanted), rows, notes), pictures=pictures)
+    return ToolOutcome(ClipsReport(len(wanted), rows, notes), pictures=pictures)
 
 
 def _describe_uses(project: Project, clip: str) -> list[str]:
@@ -139,7 +139,7 @@ class StanceRow(Struct, omit_defaults=True):
     start: bool = False
 
 
-class ActionRow(Struct, omit_defaults=True):
+class ActionView(Struct, omit_defaults=True):
     """An action. Times are seconds of its clip, which lasts `clip_seconds`; null is as it is found, for `end`
     the clip's end.
     """
@@ -176,13 +176,13 @@ class GraphView(Struct, omit_defaults=True):
     unlabelled: int
     stances: list[StanceRow]
     total: int
-    actions: list[ActionRow]
+    actions: list[ActionView]
 
 
-def show_graph(work: ToolWork, given: ShowGraph) -> ToolOutcome:
+def _show_graph(work: ToolWork, given: ShowGraph) -> ToolOutcome:
     """Return stances and actions with their settings."""
     project = work.project
-    stance = find_stance(project, given.stance, given.layer).id if given.stance is not None else None
+    stance = find_named_stance(project, given.stance, given.layer).id if given.stance is not None else None
     layers = LAYERS if given.layer is None else (given.layer,)
     stances = [
         StanceRow(
@@ -204,7 +204,7 @@ def show_graph(work: ToolWork, given: ShowGraph) -> ToolOutcome:
         if stance in (None, action.stance) and given.kind in (None, action.kind)
     ]
     some = actions[given.first : given.first + given.count]
-    rows = [make_action_row(project, action) for action in some]
+    rows = [_make_action_row(project, action) for action in some]
     waiting = len(list_waiting_clips(project))
     return ToolOutcome(GraphView(project.name, len(project.clips), waiting, stances, len(actions), rows))
 
@@ -212,10 +212,10 @@ def show_graph(work: ToolWork, given: ShowGraph) -> ToolOutcome:
 _KINDS: tuple[Kind, ...] = ("stance", "gesture", "fidget", "transition")
 
 
-def make_action_row(project: Project, action: Action) -> ActionRow:
+def _make_action_row(project: Project, action: Action) -> ActionView:
     """Return an action as it is shown."""
     entry, timing = project.clips.get(action.clip), action.timing
-    return ActionRow(
+    return ActionView(
         action.id,
         action.name,
         action.kind,
@@ -245,8 +245,8 @@ TOOLS = (
         "List the clips with what their motion measures, what they are used for and, on request, a picture "
         "of each.",
         ListClips,
-        ClipList,
-        list_clips,
+        ClipsReport,
+        _list_clips,
         long=True,
     ),
     AuthorTool(
@@ -254,6 +254,6 @@ TOOLS = (
         "Show the stances and actions with their timing, tags and likelihoods.",
         ShowGraph,
         GraphView,
-        show_graph,
+        _show_graph,
     ),
 )

@@ -21,7 +21,7 @@ LONGEST = 3600.0  # seconds of a performance that may be looked at
 COLUMNS = 6
 
 
-class Look(Struct, forbid_unknown_fields=True, omit_defaults=True):
+class LookCall(Struct, forbid_unknown_fields=True, omit_defaults=True):
     """What to look at: one of `clip`, `action` and `performance`, or nothing for what plays by itself. at:
     seconds from its beginning. seconds: look on for so long; 0 looks at one moment. pictures: how many of
     them. width: pixels of each.
@@ -54,7 +54,7 @@ class LookReport(Struct, omit_defaults=True):
     notes: list[str] = []
 
 
-def look(work: ToolWork, given: Look) -> ToolOutcome:
+def _look(work: ToolWork, given: LookCall) -> ToolOutcome:
     """Draw a moment, or a strip of several, as one picture."""
     shown = _find_shown(work.project, given)
     if shown.skeleton is None:
@@ -135,7 +135,7 @@ def _explain(error: RuntimeError) -> Exception:
     return AuthorError(f"no picture can be drawn on this computer: {error}. Measures work without pictures")
 
 
-def _find_shown(project: Project, given: Look) -> ShownPlayback:
+def _find_shown(project: Project, given: LookCall) -> ShownPlayback:
     """Return what is to be looked at. Raises AuthorError."""
     named = [x for x in (given.clip, given.action, given.performance) if x is not None]
     if len(named) > 1:
@@ -182,9 +182,9 @@ TOOLS = (
         "look",
         "Look at the character: a picture of one moment, or a strip of several, of a clip, an action between "
         "its stances, a performance, or what plays by itself.",
-        Look,
+        LookCall,
         LookReport,
-        look,
+        _look,
         long=True,
     ),
 )

@@ -44,7 +44,7 @@ class CueList(Struct):
     cues: list[CueRow]
 
 
-def plan_cues(work: ToolWork, given: PlanPerformance) -> ToolOutcome:
+def _plan_cues(work: ToolWork, given: PlanPerformance) -> ToolOutcome:
     """Return what plays in a performance."""
     project = work.project
     if given.performance is None:
@@ -105,7 +105,7 @@ class RateList(Struct, omit_defaults=True):
     lacks: list[str] = []
 
 
-def count_rates(work: ToolWork, given: CountRates) -> ToolOutcome:
+def _count_rates(work: ToolWork, given: CountRates) -> ToolOutcome:
     """Return how often things happen, next to how often people do them."""
     found = measure_behaviour(work.project, given.mode, given.seconds, given.seed)
     rows = [
@@ -129,7 +129,7 @@ TOOLS = (
         "Plan a performance, and list which actions play when.",
         PlanPerformance,
         CueList,
-        plan_cues,
+        _plan_cues,
     ),
     AuthorTool(
         "count_rates",
@@ -137,7 +137,7 @@ TOOLS = (
         "itself, next to how often people do.",
         CountRates,
         RateList,
-        count_rates,
+        _count_rates,
         long=True,
     ),
 )

@@ -94,7 +94,7 @@ class ToolWork:
         return path
 
     def watch(self, words: str) -> Callable[..., None]:
-        """Return a function that is told (done, total) and passes it on in words."""
+        """Return a function that takes (done, total) and reports it in words."""
         return lambda done, total, *_: self.report(done, total, f"{words} {done} of {total}")
 
 

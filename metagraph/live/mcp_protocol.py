@@ -119,7 +119,7 @@ class ProtocolLine(StdioLine):
         self.answer(asked, {"contents": [content]}, 0)
 
     def fail(self, asked: McpRequest | None, code: int, words: str, data: Any = None) -> None:
-        """Send an error. asked: None where the request could not be read."""
+        """Send an error. asked: None if the request could not be read."""
         error = {"code": code, "message": words}
         self._tell_client(asked, {"error": error if data is None else {**error, "data": data}})
 
