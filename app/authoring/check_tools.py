@@ -12,6 +12,7 @@ from app.authoring.finding import name_stance
 from app.authoring.tool import AuthorError, AuthorTool, EditReport, ToolOutcome, ToolWork
 from app.stage.fixes import Fix, fix_unreachable
 from app.stage.remedies import fix_clips
+from app.translation import tr_noop
 from metagraph.graph.check import check_project
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem, Severity
@@ -180,7 +181,7 @@ TOOLS = (
         EditReport,
         _fix_problem,
         "edits",
-        "Fix problems",
+        tr_noop("Fix problems"),
         True,
     ),
 )

@@ -33,6 +33,7 @@ from app.authoring.tool import (
     make_plain,
     shorten_lines,
 )
+from app.translation import tr
 from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError, describe_error
 from metagraph.formats.project.limits import find_unwritable
@@ -162,7 +163,7 @@ class AuthorDesk:
             before = self.authored.project
             outcome = settle_edit(before, outcome)
             assert outcome.project is not None
-            step = self.authored.commit(outcome.title or tool.title, outcome.project)
+            step = self.authored.commit(outcome.title or tr(tool.title), outcome.project)
             assert isinstance(outcome.told, EditReport)
             outcome.told.step = step
         return outcome
@@ -208,7 +209,9 @@ class AuthorDesk:
         changes = shorten_lines([str(line) for line in describe_differences(before, project)])
         told = ScriptReport(results, "", changes, script.dry_run)
         if not script.dry_run and project is not before:
-            told.step = self.authored.commit(script.name or f"Script of {len(results)} calls", project)
+            told.step = self.authored.commit(
+                script.name or tr("Script of {count} calls", count=len(results)), project
+            )
         return ToolOutcome(told, pictures=tuple(shown))
 
     def _call_of_script(self, project: Project, call: ScriptCall, report: Report) -> ToolOutcome:

@@ -9,6 +9,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 
 from app.authoring.finding import find_actions, find_clips, find_named_stance
 from app.authoring.tool import AuthorError, AuthorTool, EditReport, ToolOutcome, ToolWork
+from app.translation import tr, tr_noop
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
 from metagraph.graph.editing.merging_stances import merge_stances
@@ -60,7 +61,9 @@ def _edit_action(work: ToolWork, given: EditAction) -> ToolOutcome:
     idents = [action.id for action in found]
     after = edits.update_actions(after, idents, **_fields(given))
     _refuse_errors(before, after, idents)
-    return ToolOutcome(EditReport(), after, f"Edit '{found[0].name}'" if len(found) == 1 else "")
+    return ToolOutcome(
+        EditReport(), after, tr("Edit '{name}'", name=found[0].name) if len(found) == 1 else ""
+    )
 
 
 def _move(project: Project, found: Sequence[Action], given: EditAction) -> Project:
@@ -124,7 +127,9 @@ def _edit_stance(work: ToolWork, given: EditStance) -> ToolOutcome:
     if given.remove and (given.name or given.start or given.merge_into):
         raise AuthorError("remove: a stance that is removed cannot be changed, too")
     if given.remove:
-        return ToolOutcome(EditReport(), edits.remove_stance(project, stance.id), f"Remove '{stance.name}'")
+        return ToolOutcome(
+            EditReport(), edits.remove_stance(project, stance.id), tr("Remove '{name}'", name=stance.name)
+        )
     if given.name is not None:
         project = _rename(project, stance, given.name)
     if given.start:
@@ -133,7 +138,7 @@ def _edit_stance(work: ToolWork, given: EditStance) -> ToolOutcome:
         project = merge_stances(
             project, stance.id, find_named_stance(project, given.merge_into, stance.layer).id
         )
-    return ToolOutcome(EditReport(), project, f"Edit stance '{stance.name}'")
+    return ToolOutcome(EditReport(), project, tr("Edit stance '{name}'", name=stance.name))
 
 
 def _rename(project: Project, stance: Stance, name: str) -> Project:
@@ -157,7 +162,7 @@ def _rename_clip(work: ToolWork, given: RenameClip) -> ToolOutcome:
     project = edits.rename_clip(work.project, clip, given.name)
     new = project.clips[clip].name
     same = {a.id: {"name": new} for a in project.uses.get(clip, ()) if a.name == old}
-    return ToolOutcome(EditReport(), edits.update_each(project, same), f"Rename '{old}'")
+    return ToolOutcome(EditReport(), edits.update_each(project, same), tr("Rename '{name}'", name=old))
 
 
 TOOLS = (
@@ -168,7 +173,7 @@ TOOLS = (
         EditReport,
         _edit_action,
         "edits",
-        "Edit actions",
+        tr_noop("Edit actions"),
     ),
     AuthorTool(
         "edit_stance",
@@ -177,7 +182,7 @@ TOOLS = (
         EditReport,
         _edit_stance,
         "edits",
-        "Edit stance",
+        tr_noop("Edit stance"),
     ),
     AuthorTool(
         "rename_clip",
@@ -186,6 +191,6 @@ TOOLS = (
         EditReport,
         _rename_clip,
         "edits",
-        "Rename clip",
+        tr_noop("Rename clip"),
     ),
 )

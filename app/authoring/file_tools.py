@@ -9,6 +9,7 @@ from msgspec import Struct
 
 from app.authoring.tool import AuthorError, AuthorTool, EditReport, ToolOutcome, ToolWork, shorten_lines
 from app.project.opening import load_whole, with_motion_of
+from app.translation import tr_noop
 from metagraph.common.wording import phrase
 from metagraph.formats.project.merging import MergeError, merge_projects
 from metagraph.formats.store import read_project
@@ -123,6 +124,6 @@ TOOLS = (
         EditReport,
         _merge,
         "edits",
-        "Merge with a copy",
+        tr_noop("Merge with a copy"),
     ),
 )

@@ -10,6 +10,7 @@ from msgspec import Meta, Struct
 from app.authoring.bridging import join_labelled
 from app.authoring.finding import find_actions, find_clips
 from app.authoring.tool import AuthorError, AuthorTool, EditReport, ToolOutcome, ToolWork, shorten_lines
+from app.translation import tr_noop, tr_plural
 from metagraph.formats.action_labels import LabelRow, apply_labels
 from metagraph.formats.import_words import count_alike
 from metagraph.graph import edits
@@ -152,7 +153,7 @@ def _set_labels(work: ToolWork, given: SetLabels) -> ToolOutcome:
     after, _, left = apply_labels(project, rows, known)
     if left:
         raise AuthorError(f"{len(left)} of {len(rows)} labels cannot be set: {'; '.join(left[:5])}")
-    return ToolOutcome(EditReport(), after, f"Label {len(rows)} clips" if len(rows) > 1 else "")
+    return ToolOutcome(EditReport(), after, _name_labelling(len(rows)))
 
 
 class RemoveActions(Struct, forbid_unknown_fields=True):
@@ -165,6 +166,10 @@ def _remove_actions(work: ToolWork, given: RemoveActions) -> ToolOutcome:
     """Take actions out of the graph."""
     gone = [action.id for action in find_actions(work.project, given.actions)]
     return ToolOutcome(EditReport(), edits.remove_actions(work.project, gone))
+
+
+def _name_labelling(count: int) -> str:
+    return tr_plural("Label {count:,} clip", "Label {count:,} clips", count)
 
 
 def _propose(work: ToolWork, clips: list[str], sources: tuple[Source, ...]) -> Proposals:
@@ -212,7 +217,7 @@ TOOLS = (
         EditReport,
         _import_clips,
         "edits",
-        "Import clips",
+        tr_noop("Import clips"),
         True,
     ),
     AuthorTool(
@@ -230,7 +235,7 @@ TOOLS = (
         EditReport,
         _accept_proposals,
         "edits",
-        "Accept proposals",
+        tr_noop("Accept proposals"),
         True,
     ),
     AuthorTool(
@@ -240,7 +245,7 @@ TOOLS = (
         EditReport,
         _set_labels,
         "edits",
-        "Label clips",
+        tr_noop("Label clips"),
     ),
     AuthorTool(
         "remove_actions",
@@ -249,6 +254,6 @@ TOOLS = (
         EditReport,
         _remove_actions,
         "edits",
-        "Remove actions",
+        tr_noop("Remove actions"),
     ),
 )

@@ -15,6 +15,7 @@ from app.project.version_count import count_kept_versions
 from app.project.writing import name_after_file
 from app.translation import tr
 from metagraph.common.files import is_file
+from metagraph.errors import FileError
 from metagraph.formats.locking import Lock, make_owner
 from metagraph.formats.outputs import declare_inputs, declare_updates, make_locked_error
 from metagraph.formats.project.history import UndoStep
@@ -53,7 +54,9 @@ class AuthoredFile:
         lock = Lock(self.path, self._owner)
         found = lock.acquire()
         if found is not None:
-            raise make_locked_error(self.path, found)
+            error = make_locked_error(self.path, found)
+            remedy = f"{error.remedy} Or choose 'Edit > Let agents edit' in its window, and connect again."
+            raise FileError(self.path, error.cause, "", remedy)
         try:
             self._refresh()
             yield

@@ -16,7 +16,7 @@ from app.authoring.door_key import DoorHello, find_key
 PATIENCE = 5.0  # seconds in which a window has to answer
 
 
-def relay_to_window(
+def connect_to_window(
     project: Path, folders: Sequence[Path], look_only: bool, source: int = 0, target: int = 1
 ) -> bool:
     """Let a client work in the window that has a project open, until either ends; return whether one let it

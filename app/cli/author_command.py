@@ -30,7 +30,7 @@ def run(options: Namespace) -> int:
     from app.authoring.author_line import AuthorLine
     from app.authoring.desk import AuthorDesk
     from app.authoring.project_file import AuthoredFile
-    from app.authoring.relaying import relay_to_window
+    from app.authoring.relaying import connect_to_window
     from app.cli.outputs import with_project_ending
     from metagraph.errors import FileError
 
@@ -45,7 +45,7 @@ def run(options: Namespace) -> int:
         with authored.hold():  # says at once what is wrong with the file
             pass
     except FileError:
-        if relay_to_window(path, options.folder, options.look_only):
+        if connect_to_window(path, options.folder, options.look_only):
             return 0
         raise
     for note in authored.notes:

@@ -20,7 +20,7 @@ from PySide6.QtCore import QCoreApplication, QTimer
 from app.authoring import desk
 from app.authoring.agent_door import AgentDoor
 from app.authoring.door_key import DoorHello, find_key
-from app.authoring.relaying import relay_to_window
+from app.authoring.relaying import connect_to_window
 from app.project.document import Document
 from metagraph.formats.locking import Lock
 from metagraph.formats.store import open_project
@@ -151,7 +151,7 @@ def test_nobody_enters_with_a_wrong_token_or_through_a_closed_door(
     assert find_key(document.path) is None and key is not None
     with pytest.raises(OSError, match=r"refused|reset"):
         socket.create_connection(("127.0.0.1", key.port), 2)
-    assert not relay_to_window(document.path, (), False)
+    assert not connect_to_window(document.path, (), False)
 
 
 def test_a_person_can_forbid_edits_at_any_time(

@@ -162,7 +162,7 @@ def test_a_project_that_somebody_has_open_is_left_alone(call, project_path) -> N
     lock = Lock(project_path, make_owner())
     assert lock.acquire() is None
     try:
-        with pytest.raises(AuthorError, match="is open in a window or another command"):
+        with pytest.raises(AuthorError, match=r"is open in a window or another command.*Let agents edit"):
             call("edit_action", actions=["wave_hello_rt_01"], likelihood=2.0)
     finally:
         lock.release()
