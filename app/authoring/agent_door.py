@@ -34,6 +34,9 @@ class SocketAuthorLine(AuthorLine):
         super().__init__(desk)
         self._line = line
 
+    def tell_edited(self) -> None:
+        """Say nothing: the door tells of every edit, also of those that a person makes."""
+
     def read_some(self) -> bytes:
         return self._line.recv(65536)
 
@@ -57,9 +60,11 @@ class AgentDoor(QObject):
         self._listening: socket.socket | None = None
         self._key: Path | None = None
         self._guests: dict[socket.socket, AuthoredDocument] = {}
+        self._lines: dict[socket.socket, SocketAuthorLine] = {}
         self._came.connect(self._let_in, Qt.ConnectionType.QueuedConnection)
         self._gone.connect(self._let_go, Qt.ConnectionType.QueuedConnection)
         document.loaded.connect(self.close)
+        document.changed.connect(self._tell_changed)
 
     @property
     def is_open(self) -> bool:
@@ -101,7 +106,12 @@ class AgentDoor(QObject):
             with suppress(OSError):
                 line.shutdown(socket.SHUT_RDWR)
         self._guests.clear()
+        self._lines.clear()
         self.changed.emit()
+
+    def _tell_changed(self) -> None:
+        for author in self._lines.values():
+            author.tell_changed(*author.list_watched())
 
     def _listen(self, listening: socket.socket, token: str) -> None:
         """Wait for programs, on a thread."""
@@ -139,7 +149,7 @@ class AgentDoor(QObject):
         authored = AuthoredDocument(self._document, folders, hello.look_only)
         authored.edited.connect(self.edited)
         self._guests[line] = authored
-        author = SocketAuthorLine(AuthorDesk(authored), line)
+        author = self._lines[line] = SocketAuthorLine(AuthorDesk(authored), line)
         author.start()
         threading.Thread(target=self._work, args=(author, line), daemon=True).start()
         self.changed.emit()
@@ -153,5 +163,6 @@ class AgentDoor(QObject):
             self._gone.emit(line)
 
     def _let_go(self, line: socket.socket) -> None:
+        self._lines.pop(line, None)
         if self._guests.pop(line, None) is not None:
             self.changed.emit()

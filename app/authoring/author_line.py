@@ -94,6 +94,13 @@ class AuthorLine(ProtocolLine):
             for uri, (_, name, words) in _RESOURCES.items()
         ]
 
+    def list_watched(self) -> tuple[str, ...]:
+        return tuple(_RESOURCES)
+
+    def tell_edited(self) -> None:
+        """Tell those who listen that the project is another one now."""
+        self.tell_changed(*_RESOURCES)
+
     def list_extensions(self) -> dict[str, dict[str, Any]]:
         return {TASKS: {}}
 
@@ -188,6 +195,8 @@ class AuthorLine(ProtocolLine):
             job.error = {"code": FAILED, "message": f"{job.name} failed ({type(error).__name__}: {error})"}
         else:
             job.cancelled = False  # it came too late
+            if self._desk.tools[job.name].effect in ("edits", "steps") and job.name != "history":
+                self.tell_edited()
         with self._guard:
             job.done, job.changed = True, _now()
             self._jobs.remove(job)

@@ -23,6 +23,7 @@ BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  #
 NO_RESOURCE = -32002  # up to 2025-11-25; later it is NO_PARAMETERS
 NO_VERSION = -32022  # the protocol's code for a revision that is not spoken here
 BATCH = 100  # messages
+LISTENERS = 16  # requests to listen at a time
 OFTEN = 60_000  # milliseconds for which a list of tools or resources may be kept
 TASKS = "io.modelcontextprotocol/tasks"  # the extension for long jobs
 _PREFIX = "io.modelcontextprotocol/"
@@ -66,6 +67,7 @@ class ProtocolLine(StdioLine):
         self._end = end
         self._revision: str | None = None  # as `initialize` agreed; None for clients that do not call it
         self._batch: MessageBatch | None = None  # the one that is being heard
+        self._watching: dict[Any, frozenset[str]] = {}  # resources, by who listens to them
 
     # --- what a subclass offers
 
@@ -80,6 +82,10 @@ class ProtocolLine(StdioLine):
     def list_mcp_resources(self) -> list[dict[str, Any]]:
         """Return the resources as `resources/list` tells them."""
         return []
+
+    def list_watched(self) -> tuple[str, ...]:
+        """Return the addresses of the resources whose changes are reported to who listens."""
+        return ()
 
     def list_extensions(self) -> dict[str, dict[str, Any]]:
         """Return the extensions of the protocol that are understood, with their settings."""
@@ -139,6 +145,30 @@ class ProtocolLine(StdioLine):
         message = {"jsonrpc": "2.0", "method": "notifications/progress", "params": said}
         super().send([(msgspec.json.encode(message), False)])
 
+    def tell_changed(self, *uris: str) -> None:
+        """Tell those who listen that resources have changed. May be called on any thread."""
+        for ident, wanted in list(self._watching.items()):
+            for uri in uris:
+                if uri in wanted:
+                    self._notify("notifications/resources/updated", ident, {"uri": uri})
+
+    def _notify(self, method: str, listener: Any, params: dict[str, Any]) -> None:
+        meta = {f"{_PREFIX}subscriptionId": listener}
+        message = {"jsonrpc": "2.0", "method": method, "params": {**params, "_meta": meta}}
+        super().send([(msgspec.json.encode(message), False)])
+
+    def _listen(self, asked: McpRequest) -> None:
+        """Begin to tell a client what changes; it is answered with changes alone, until it cancels."""
+        wanted = asked.params.get("notifications")
+        uris = wanted.get("resourceSubscriptions") if isinstance(wanted, dict) else None
+        known = [uri for uri in self.list_watched() if isinstance(uris, list) and uri in uris]
+        if len(self._watching) >= LISTENERS:
+            self.fail(asked, NO_PARAMETERS, f"{LISTENERS} requests listen already; cancel one")
+            return
+        self._watching[asked.ident] = frozenset(known)
+        honoured = {"notifications": {"resourceSubscriptions": known} if known else {}}
+        self._notify("notifications/subscriptions/acknowledged", asked.ident, honoured)
+
     def _tell_client(self, asked: McpRequest | None, said: dict[str, Any]) -> None:
         """Send an answer or an error; of a message of a batch, when all of it is answered."""
         batch = asked.batch if asked is not None else None
@@ -194,7 +224,10 @@ class ProtocolLine(StdioLine):
         params = params if isinstance(params, dict) else {}
         if ident is None:  # a notification: that the client is there, or that it waits no more
             if message["method"] == "notifications/cancelled":
-                self.cancel_request(params.get("requestId"))
+                ident = params.get("requestId")
+                if isinstance(ident, str | int):
+                    self._watching.pop(ident, None)
+                self.cancel_request(ident)
             return False
         asked = self._understand(McpRequest(ident, message["method"], params, batch=self._batch))
         return asked is not None and self._called(asked)
@@ -252,6 +285,8 @@ class ProtocolLine(StdioLine):
             self._revision = wanted if wanted in VERSIONS else VERSIONS[0]
             about = {"protocolVersion": self._revision, "capabilities": self._offer(modern=False)}
             self.answer(asked, {**about, "serverInfo": _SERVER, "instructions": self.instruct()})
+        elif method == "subscriptions/listen" and asked.modern:
+            self._listen(asked)
         elif method == "ping" and not asked.modern:
             self.answer(asked, {})
         elif not self.answer_extension(asked):
@@ -261,7 +296,7 @@ class ProtocolLine(StdioLine):
     def _offer(self, modern: bool) -> dict[str, Any]:
         offered: dict[str, Any] = {"tools": {}}
         if self.list_mcp_resources():
-            offered["resources"] = {}
+            offered["resources"] = {"subscribe": True} if modern and self.list_watched() else {}
         if modern and (extensions := self.list_extensions()):
             offered["extensions"] = extensions
         return offered

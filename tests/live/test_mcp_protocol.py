@@ -162,6 +162,16 @@ def test_a_message_of_the_newest_revision_is_refused_in_a_batch(said: Said) -> N
     assert told["error"]["code"] == NO_REQUEST
 
 
+def test_who_listens_is_told_what_is_honoured_and_too_many_are_refused(said: Said) -> None:
+    assert said.ask("subscriptions/listen", None)["error"]["code"] == NO_METHOD
+    told = said.ask("subscriptions/listen", notifications={"resourceSubscriptions": ["metagraph://one"]})
+    assert told["method"] == "notifications/subscriptions/acknowledged"
+    assert told["params"] == {"notifications": {}, "_meta": {f"{PREFIX}subscriptionId": 1}}
+    for number in range(2, 18):
+        said.line._watching[number] = frozenset()
+    assert "cancel one" in said.ask("subscriptions/listen", notifications={})["error"]["message"]
+
+
 def test_progress_is_told_to_those_who_give_a_token_alone(said: Said) -> None:
     said.ask("tools/call", name="echo", _meta={"progressToken": "p"})
     progress = {"progressToken": "p", "progress": 1, "total": 2, "message": "half"}

@@ -83,16 +83,26 @@ def enter(door: AgentDoor, document: Document, qtbot: Any) -> Iterator[Callable[
 
 
 @pytest.fixture
-def call(qtbot: Any) -> Callable[..., dict[str, Any]]:
-    """Calls a tool while the window goes on; returns its result."""
+def hear(qtbot: Any) -> Callable[[Guest], dict[str, Any]]:
+    """Returns the next message to a program, while the window goes on."""
 
-    def do(guest: Guest, tool: str, **given: Any) -> dict[str, Any]:
+    def wait(guest: Guest) -> dict[str, Any]:
         told: list[str] = []
-        guest.send("tools/call", name=tool, arguments=given)
         reader = threading.Thread(target=lambda: told.append(guest.file.readline()))
         reader.start()
         qtbot.waitUntil(lambda: bool(told), timeout=20_000)
-        return json.loads(told[0])["result"]
+        return json.loads(told[0])
+
+    return wait
+
+
+@pytest.fixture
+def call(hear: Callable[[Guest], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
+    """Calls a tool; returns its result."""
+
+    def do(guest: Guest, tool: str, **given: Any) -> dict[str, Any]:
+        guest.send("tools/call", name=tool, arguments=given)
+        return hear(guest)["result"]
 
     return do
 
@@ -114,6 +124,17 @@ def test_an_edit_of_a_program_is_a_step_that_is_seen_and_undone(
     assert call(guest, "history")["structuredContent"] == {"done": [], "undone": [text]}
     assert call(guest, "redo")["structuredContent"]["done"] == [text]
     assert next(a for a in document.project.actions() if a.name == WAVE).likelihood == 2.5
+
+
+def test_who_listens_hears_what_a_person_edits(enter, hear, document: Document) -> None:
+    guest = enter()
+    guest.send("subscriptions/listen", notifications={"resourceSubscriptions": ["metagraph://project"]})
+    assert hear(guest)["method"] == "notifications/subscriptions/acknowledged"
+    stance = next(iter(document.project.graphs["arms"].stances))
+    document.edit("Mine", lambda project: edits.rename_stance(project, stance, "mine"))
+    heard = hear(guest)
+    assert heard["method"] == "notifications/resources/updated"
+    assert heard["params"] == {"uri": "metagraph://project", "_meta": {f"{PREFIX}subscriptionId": 1}}
 
 
 def test_what_a_person_edits_meanwhile_is_never_lost(enter, call, document: Document, monkeypatch) -> None:

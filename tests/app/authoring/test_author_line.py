@@ -161,6 +161,26 @@ def test_progress_grows_and_comes_before_the_answer(client: Client) -> None:
     assert all(note["params"]["progressToken"] == "p" for note in notes)
 
 
+def test_who_listens_hears_of_edits_until_it_cancels(client: Client) -> None:
+    assert client.ask("server/discover")["result"]["capabilities"]["resources"] == {"subscribe": True}
+    wanted = {"resourceSubscriptions": ["metagraph://history", "metagraph://none"], "toolsListChanged": True}
+    number = client.send("subscriptions/listen", notifications=wanted)
+    meta = {f"{PREFIX}subscriptionId": number}
+    honoured = {"resourceSubscriptions": ["metagraph://history"]}
+    assert client.told[-1]["params"] == {"notifications": honoured, "_meta": meta}
+    client.ask("tools/call", name="show_graph", arguments={"count": 1})
+    updates = [m for m in client.told if m.get("method") == "notifications/resources/updated"]
+    assert updates == []
+    client.ask("tools/call", name="edit_action", arguments={"actions": [WAVE], "likelihood": 2})
+    updates = [m for m in client.told if m.get("method") == "notifications/resources/updated"]
+    assert [u["params"] for u in updates] == [{"uri": "metagraph://history", "_meta": meta}]
+    note = {"jsonrpc": "2.0", "method": "notifications/cancelled", "params": {"requestId": number}}
+    client.line._heard(json.dumps(note).encode())
+    client.ask("tools/call", name="undo")
+    assert len([m for m in client.told if m.get("method") == "notifications/resources/updated"]) == 1
+    assert not [m for m in client.told if m.get("id") == number]
+
+
 def test_calls_are_done_in_their_order(client: Client) -> None:
     first = client.send("tools/call", name="edit_action", arguments={"actions": [WAVE], "name": "hi"})
     second = client.send("tools/call", name="edit_action", arguments={"actions": ["hi"], "likelihood": 2})
@@ -209,6 +229,7 @@ def test_the_protocols_own_client_works_on_a_project(project_path: Path, tmp_pat
     listed, edited, again, history = told["results"]
     assert len(listed["told"]["clips"]) == 3 and edited["told"]["step"] == history["told"]["done"][0]
     assert again["isError"] and "nothing changed" in again["told"]["error"]
+    assert set(told["honoured"] or ()) == (set() if mode == "legacy" else set(told["resources"]))
     assert bool(told["polls"]) == (mode != "legacy")  # list_clips was a task
     assert bool(told["progress"]) == (mode == "legacy")
 

@@ -86,6 +86,12 @@ async def main() -> None:
         resources = (await client.list_resources()).resources
         read = {r.uri: json.loads((await client.read_resource(r.uri)).contents[0].text) for r in resources}
         results = []
+        watched = (
+            client.listen(resource_subscriptions=[r.uri for r in resources]) if mode != "legacy" else None
+        )
+        if watched is not None:
+            honoured = (await watched.__aenter__()).honored.resource_subscriptions
+            await watched.__aexit__(None, None, None)
         for name, given in json.loads(Path(calls).read_text(encoding="utf-8")):
             done = await client.call_tool(name, given, progress_callback=progress)
             kinds = [content.type for content in done.content]
@@ -99,6 +105,7 @@ async def main() -> None:
             "resources": read,
             "results": results,
             "progress": heard,
+            "honoured": honoured if watched is not None else None,
             "polls": polls,
         }
     print(json.dumps(told))
