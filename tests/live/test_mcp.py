@@ -180,7 +180,7 @@ def test_a_client_that_is_not_ours_moves_the_character(tmp_path: Path) -> None:
     (tmp_path / "node_modules").symlink_to(HERE.parent / "node_modules")
     shutil.copyfile(HERE / "run" / "mcp_client.mjs", script)
     command = ["node", str(script), str(tmp_path / "calls.json"), *live]
-    command += [str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--mcp", "--seed", "3"]
+    command += [str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--mcp", "--seed", "3", "--no-idle"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr[-2000:]
     told = json.loads(done.stdout)

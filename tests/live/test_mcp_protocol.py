@@ -202,7 +202,7 @@ def test_the_protocols_own_client_plays_the_character(tmp_path: Path, mode: str)
         )
     )
     command = [sys.executable, str(CLIENT), mode, str(calls), *LIVE]
-    command += [str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--mcp", "--seed", "3"]
+    command += [str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--mcp", "--seed", "3", "--no-idle"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr[-2000:]
     told = json.loads(done.stdout)

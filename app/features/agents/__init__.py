@@ -94,7 +94,8 @@ class AgentsButton(QToolButton):
         """Show how many programs there are now."""
         door = self._feature.door
         count = door.count if door is not None else 0
-        self.setText(tr_plural("{count:,} agent edits", "{count:,} agents edit", count))
+        some = tr_plural("{count:,} agent edits", "{count:,} agents edit", count)
+        self.setText(some if count else tr("Agents may edit"))
         look = get_theme(self._feature.session.look.name)
         self.setIcon(icons.make_icon("warning" if count else "done", look.warning if count else look.dim))
         self.setVisible(self._feature.is_open())
