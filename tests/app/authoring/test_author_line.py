@@ -234,6 +234,26 @@ def test_the_protocols_own_client_works_on_a_project(project_path: Path, tmp_pat
     assert bool(told["progress"]) == (mode == "legacy")
 
 
+def test_a_client_in_another_language_works_on_a_project(project_path: Path, tmp_path: Path) -> None:
+    modules = ROOT / "tests" / "node_modules"
+    if shutil.which("node") is None or not (modules / "@modelcontextprotocol").is_dir():
+        pytest.skip("needs Node and @modelcontextprotocol/sdk (python3 run.py test fetches it where npm is)")
+    calls = [
+        ["show_graph", {"count": 2}],
+        ["edit_action", {"actions": [WAVE], "name": "hi"}],
+        ["history", {}],
+    ]
+    (tmp_path / "calls.json").write_text(json.dumps(calls))
+    (tmp_path / "node_modules").symlink_to(modules)
+    script = Path(shutil.copy(ROOT / "tests" / "live" / "run" / "mcp_client.mjs", tmp_path / "client.mjs"))
+    command = ["node", str(script), str(tmp_path / "calls.json"), *AUTHOR, str(project_path)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr[-2000:]
+    shown, edited, history = json.loads(done.stdout)["results"]
+    assert len(shown["told"]["actions"]) == 2
+    assert history["told"]["done"] == [edited["told"]["step"]]
+
+
 def make_unlabelled(folder: Path, count: int) -> Path:
     """Copy so many sample clips, under names that say nothing."""
     folder.mkdir()
