@@ -35,7 +35,7 @@ class SocketAuthorLine(AuthorLine):
         self._line = line
 
     def tell_edited(self) -> None:
-        """Say nothing: the door tells of every edit, also of those that a person makes."""
+        """Say nothing: the door reports every edit, also those that a person makes."""
 
     def read_some(self) -> bytes:
         return self._line.recv(65536)
