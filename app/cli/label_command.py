@@ -18,7 +18,6 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from app.cli.outputs import ProjectOutput
     from metagraph.graph.model import Project
     from metagraph.suggest.alike import LabelledExample
-    from metagraph.suggest.jumps.bridges import Bridge
     from metagraph.suggest.words.patterns import Patterns
 
 
@@ -110,6 +109,7 @@ def run(options: Namespace) -> int:
 
 
 def _labelled(options: Namespace, output: ProjectOutput) -> int:
+    from app.authoring.bridging import join_labelled
     from app.cli.command_output import say
     from app.cli.label_pictures import draw_label_pictures
     from app.cli.label_report import format_label_report
@@ -119,7 +119,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from metagraph.graph.check import check_project, list_grave_problems
     from metagraph.playback.rehearsal import rehearse
     from metagraph.suggest.flags import needs_look
-    from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges, describe_unbridged
+    from metagraph.suggest.jumps.bridges import describe_bridges, describe_unbridged
     from metagraph.suggest.left_aside import group_reasons
     from metagraph.suggest.propose import SOURCES, accept, propose
 
@@ -136,11 +136,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         sources=tuple(options.sources or SOURCES),
     )
     taken = accept(project, found, options.above)
-    bridges: tuple[Bridge, ...] = ()
-    if any(True for _ in begun.before.actions()):
-        labelled, bridges = _beside_work(project, taken.project, not options.no_bridges)
-    else:
-        labelled, bridges = (taken.project, ()) if options.no_bridges else bridge_all(taken.project)
+    labelled, bridges = join_labelled(begun.before, taken.project, not options.no_bridges)
     taken = replace(taken, project=labelled)
     if not begun.merged or labelled != begun.before:
         output.save(taken.project, source if source.is_file() else None)
@@ -345,26 +341,6 @@ def _begun(options: Namespace, path: Path) -> Begun:
     return Begun(
         project, clips if merged else None, notes, before, merged, skipped, len(list_waiting_clips(before))
     )
-
-
-def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Project, tuple[Bridge, ...]]:
-    """Return a project whose new clips are labelled, with everything else as it was `before`; and, if wanted,
-    bridges to the stances that are new.
-    """
-    from metagraph.graph.model import LAYERS
-    from metagraph.suggest.jumps.bridges import bridge_stance
-
-    graphs = dict(labelled.graphs)
-    for layer in LAYERS:
-        if before.graphs[layer].stances:
-            graphs[layer] = replace(graphs[layer], weights=before.graphs[layer].weights)
-    labelled = replace(labelled, graphs=graphs)
-    made: list[Bridge] = []
-    for layer in LAYERS if bridge else ():
-        for stance in labelled.graphs[layer].stances.keys() - before.graphs[layer].stances.keys():
-            labelled, some = bridge_stance(labelled, stance)
-            made += some
-    return labelled, tuple(made)
 
 
 def _free_report(path: Path) -> Path:

@@ -95,6 +95,11 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         "export for an engine: the graph for a runtime, or the engine's own format",
     ),
     "live": ("live_command", True, "play, and take requests from programs: JSON lines, WebSocket, OSC"),
+    "author": (
+        "author_command",
+        True,
+        "let a language model label, edit, check and export a project, by the Model Context Protocol",
+    ),
     "mimic": (
         "mimic_command",
         True,

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from app.cli.command_output import choose_plan, open_for_command
-from app.cli.render_command import load_figure, measure_bounds, mix_sound, render_pictures
+from app.cli.render_command import load_figure, mix_sound
 from app.stage.conversation_plans import ConversationPlans
+from app.stage.filming import measure_bounds, render_pictures
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import has_skinned_mesh

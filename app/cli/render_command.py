@@ -13,6 +13,7 @@ import numpy as np
 
 from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command, say
 from app.look.names import name_node_rows
+from app.stage.filming import Seen, make_project_figure, measure_bounds, render_pictures
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.formats.outputs import claim, declare_inputs
 from metagraph.formats.store import list_project_files
@@ -25,9 +26,7 @@ if TYPE_CHECKING:
     from metagraph.speech.captions import Caption
     from preview.scene import SceneTheme
 
-Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
 MOTION = (".glb", ".usda", ".bvh", ".npz")  # what `bake_to` writes
-TOGETHER = 32  # poses of a video made at once
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -90,14 +89,9 @@ def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
     """Return the figure that draws a project, and print a note if it is not the character's mesh. `sticks`
     draws a stick figure in place of the default body. Raises FileError.
     """
-    from preview.character_file import load_mesh_figure as drawn
-    from preview.default_body.footing import choose_footing
     from preview.figure import StickFigure
 
-    assert project.skeleton is not None
-    path = folder / project.character if project.character is not None else None
-    footing = choose_footing((entry.motion for entry in project.clips.values()), project.skeleton)
-    figure = drawn(path, project.skeleton, project.hidden, footing, sticks)
+    figure = make_project_figure(project, folder, sticks)
     if figure.instead:
         kind = "a stick figure" if isinstance(figure, StickFigure) else "the default body"
         print(f"note: {figure.instead}; {kind} is drawn", file=sys.stderr)
@@ -112,58 +106,6 @@ def read_size(text: str) -> tuple[int, int]:
     if not (16 <= width <= 7680 and 16 <= height <= 7680):
         raise ValueError("--size must be between 16x16 and 7680x7680")
     return width, height
-
-
-def measure_bounds(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and highest corner, `[3]`, of a box round all that is seen at times."""
-    from preview.scene import Scene
-
-    some = times[:: max(1, len(times) // 60)]
-    return Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).drawn_bounds()
-
-
-def render_pictures(
-    seen: Sequence[Seen],
-    times: np.ndarray,
-    size: tuple[int, int],
-    look: SceneTheme | str,
-    camera: Any = None,
-    into: np.ndarray | None = None,
-) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time. camera: a fixed camera, or a function from seconds to a
-    camera; by default it sees everything. into: an array in which all pictures come, for callers that finish
-    with one before they ask for the next.
-    """
-    from app.stage.cutting import Filmed
-    from app.stage.stools import make_stools
-    from preview.camera import make_whole_figure_camera
-    from preview.drawing_apart import draw_scenes
-    from preview.framing import turn_to_face
-    from preview.scene import THEMES, LampTurn, Scene
-
-    theme = THEMES[look] if isinstance(look, str) else look
-
-    seats = tuple(seat for _, shown in seen for seat in make_stools(shown))
-    if camera is None:
-        box = measure_bounds(seen, times)
-        figure, shown = seen[0]
-        pose = shown.pose(float(times[0])) if len(seen) == 1 else None
-        turn = 0.0
-        if pose is not None and shown.skeleton is not None:
-            turn = turn_to_face(figure, shown.skeleton.globals(pose)[1])
-        whole = make_whole_figure_camera(box, size[0] / size[1], ASIDE if len(seen) > 1 else turn)
-        filmed = Filmed(whole, LampTurn(turn) if turn else None)
-        camera = lambda _: filmed  # noqa: E731
-
-    def scenes() -> Iterator[tuple[Scene, Any]]:
-        for first in range(0, len(times), TOGETHER):
-            some = times[first : first + TOGETHER]
-            acted = zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True)
-            for at, actors in zip(some, acted, strict=True):
-                now = camera(float(at)) if callable(camera) else Filmed(camera)
-                yield Scene((*actors, *seats), lamp=now.lamp), now.camera
-
-    return draw_scenes(scenes(), len(times), size, theme, into)
 
 
 def render_directed(
@@ -196,35 +138,6 @@ def render_directed(
     for at, picture in zip(times, render_pictures(seen, times, size, look, camera, into), strict=True):
         yield add_captions(picture, find_captions_at(captions, float(at)))
     del application
-
-
-def _actors(figure: Any, shown: ShownPlayback, times: np.ndarray) -> list[Any]:
-    """Return a figure as it is shown at each of some times."""
-    from preview.scene import Actor
-
-    rotations, positions = _placed(shown, times)
-    faces: list[Any] = [None] * len(times)
-    if figure.morphs:
-        faces = [figure.morph_weights(face) for face in shown.faces(times)]
-    return [Actor(figure, *at) for at in zip(rotations, positions, faces, strict=True)]
-
-
-def _placed(shown: ShownPlayback, times: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return global rotations `[..., J, 4]` and positions `[..., J, 3]` at one time, or at many."""
-    pose, skeleton = shown.pose(times), shown.skeleton
-    assert pose is not None and skeleton is not None
-    rotations, positions = skeleton.globals(pose)
-    return (rotations, positions) if shown.stand is None else shown.stand.placed(rotations, positions)
-
-
-def _actor(figure: Any, shown: ShownPlayback, times: Any) -> Any:
-    """Return a figure as it is shown at one time, or at many."""
-    from preview.scene import Actor
-
-    morphs = (
-        figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
-    )
-    return Actor(figure, *_placed(shown, times), morphs)
 
 
 def run(options: Namespace) -> int:

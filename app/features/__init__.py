@@ -28,6 +28,7 @@ FEATURES = (
     "lines",
     "timing_editor",
     "problems",
+    "agents",
     "machine",
     "behaviour",
     "compatibility",

@@ -42,9 +42,16 @@ class _Change(QUndoCommand):
     """The only undo command: the project before and after."""
 
     def __init__(
-        self, document: Document, text: str, before: Project, after: Project, merge: str | None
+        self,
+        document: Document,
+        text: str,
+        before: Project,
+        after: Project,
+        merge: str | None,
+        agent: bool = False,
     ) -> None:
-        super().__init__(describe_edit(text, before, after))
+        what = describe_edit(text, before, after)
+        super().__init__(tr("{what} (agent)", what=what) if agent else what)
         self.command = text  # without what it changed
         self.english = get_english(text)  # its name in logs
         self.document, self.before, self.after, self.merge = document, before, after, merge
@@ -148,9 +155,10 @@ class Document(QObject):
 
     # --- editing
 
-    def edit(self, text: str, function: Edit, merge: str | None = None) -> None:
+    def edit(self, text: str, function: Edit, merge: str | None = None, agent: bool = False) -> None:
         """Change the project by a pure function, as one undo step named `text`. Consecutive edits with the
         same `merge` are one step. Clips whose labels are complete afterwards are placed by the same step.
+        `agent` says that a program made it, which its name shows.
 
         Raises EditError, from the function or if no project file could hold the result; the project is then
         unchanged.
@@ -164,7 +172,7 @@ class Document(QObject):
             why = find_unwritable(self.project, after)
             if why is not None:
                 raise EditError(why)
-            self.undo_stack.push(_Change(self, text, self.project, after, merge))
+            self.undo_stack.push(_Change(self, text, self.project, after, merge, agent))
 
     def finish_merging(self) -> None:
         """End a run of merged edits (the mouse was released), so that the next one begins a new step."""

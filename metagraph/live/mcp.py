@@ -1,8 +1,5 @@
-"""The Model Context Protocol on standard input and output: what may be asked of the character as a language
-model's tools, and what becomes of it as their results.
-
-Revisions 2024-11-05 to 2025-11-25 of the protocol (modelcontextprotocol.io): JSON-RPC 2.0, a message a line;
-`initialize`, `ping`, `tools/list`, `tools/call`. A tool's call is a request of the session like any other.
+"""What may be asked of the character as a language model's tools over the Model Context Protocol, and what
+becomes of it as their results. A tool's call is a request of the session like any other.
 """
 
 from __future__ import annotations
@@ -10,14 +7,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgspec
 
-from metagraph import __version__
 from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES, list_tools
-from metagraph.live.stdio import StdioLine
+from metagraph.live.mcp_protocol import NO_PARAMETERS, McpRequest, ProtocolLine, make_result_schema
+from metagraph.live.messages import Reply
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.text_gestures import (
     find_gesture_words,
@@ -26,58 +23,91 @@ from metagraph.speech.text_gestures import (
     timed_words,
 )
 
-VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
-BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  # JSON-RPC's codes
 _LOOKS = {
     "status": "What is playing now, and how many requests wait.",
     "describe": "Everything this character can be asked to do: stances, actions and tags by layer, "
     "lines, points.",
 }
+_RESOURCES = {  # their addresses, and what the session is asked for them
+    "metagraph://character": ("describe", "character"),
+    "metagraph://now": ("status", "now"),
+}
 
 
-def list_mcp_tools(project: Project) -> list[dict[str, Any]]:
-    """Return the tools as `tools/list` tells them."""
+class MadeGesture(msgspec.Struct, frozen=True, omit_defaults=True):
+    """A gesture that goes with what is said. word: the one it belongs to. stroke: when its most telling
+    moment is wanted. at, until, actions, state, why: as in a reply.
+    """
+
+    do: str
+    word: str
+    state: str
+    tags: tuple[str, ...] = ()
+    stroke: float | None = None
+    at: float | None = None
+    until: float | None = None
+    actions: tuple[str, ...] = ()
+    why: str = ""
+
+
+def list_play_tools(project: Project) -> list[dict[str, Any]]:
+    """Return the tools that move a character as `tools/list` tells them."""
+    reply = make_result_schema(Reply)
+    gestures = {"type": "array", "items": make_result_schema(MadeGesture)}
+    said = make_result_schema(Reply, gestures=gestures)
     made = [
-        {"name": tool["name"], "description": tool["description"], "inputSchema": tool["input_schema"]}
+        {
+            "name": tool["name"],
+            "description": tool["description"],
+            "inputSchema": tool["input_schema"],
+            "outputSchema": said if tool["name"] == "say" else reply,
+        }
         for tool in list_tools(project, ENGINES)
     ]
     for name, words in _LOOKS.items():
         schema = {"type": "object", "properties": {}, "additionalProperties": False}
         hints = {"readOnlyHint": True}
-        made.append({"name": name, "description": words, "inputSchema": schema, "annotations": hints})
+        out = {"type": "object", "properties": {"state": {"type": "string"}}, "required": ["state"]}
+        made.append(
+            {
+                "name": name,
+                "description": words,
+                "inputSchema": schema,
+                "outputSchema": out,
+                "annotations": hints,
+            }
+        )
     return made
 
 
-_NOBODY = object()  # whose call it is that the line itself made
-BATCH = 100  # messages
-
-
 @dataclass
-class _Batch:
-    """Messages that were sent together. `wanted` of them are answered; `told` has the answers so far."""
+class _Said:
+    """Something that is said, until all gestures that go with it are answered. made: what became of them so
+    far. wanted: how many there are.
+    """
 
+    asked: McpRequest
+    told: dict[str, Any]
     wanted: int
-    told: list[dict[str, Any]] = field(default_factory=list)
+    made: list[MadeGesture] = field(default_factory=list)
 
 
-class _InBatch(NamedTuple):
-    """The id of a message in a batch."""
+@dataclass(frozen=True)
+class _Call:
+    """A request that the session has to answer. asked: whose it is. text, words: what is said, where gestures
+    go with it. uri: the resource that is read. goes_with: what a gesture goes with, and which gesture it is.
+    """
 
-    ident: Any
-    batch: _Batch
-
-
-class _Call(NamedTuple):
-    """A request that the session has to answer. text, words: what is said, where gestures go with it."""
-
-    ident: Any
+    asked: McpRequest
     text: str = ""
     words: Any = None
+    uri: str = ""
+    goes_with: tuple[_Said, MadeGesture] | None = None
 
 
-class McpLine(StdioLine):
-    """The client that started the session, where it speaks this protocol. take: called with each request as
-    the session has it, and None at the end, on the event loop.
+class McpLine(ProtocolLine):
+    """A client that plays the character. take: called with each request as the session has it, and None at
+    the end, on the event loop.
     """
 
     def __init__(
@@ -88,7 +118,7 @@ class McpLine(StdioLine):
         source: int = 0,
         target: int = 1,
     ) -> None:
-        super().__init__(call, self._heard, source, target)
+        super().__init__(call, lambda: take(None), source, target)
         self._project, self._ask = project, take
         self._calls: deque[_Call] = deque()  # what the session has not answered yet
         self._tags = {
@@ -96,75 +126,30 @@ class McpLine(StdioLine):
             for layer, graph in project.graphs.items()
         }
         self._gestured = 0
-        self._batch: _Batch | None = None  # the one that is being heard
 
-    def _heard(self, line: bytes | None) -> None:
-        if line is None:
-            self._ask(None)
-            return
-        try:
-            message = msgspec.json.decode(line)
-        except (msgspec.DecodeError, RecursionError) as error:
-            self._fail(None, BROKEN, f"it is not JSON ({error})")
-            self.answered(1)
-            return
-        if isinstance(message, list):
-            self._heard_batch(message)
-            self.answered(1)
-        elif not self._hear(message):
-            self.answered(1)
+    def instruct(self) -> str:
+        return _instructions(self._project)
 
-    def _heard_batch(self, messages: list[Any]) -> None:
-        """Hear the messages of a batch (JSON-RPC 2.0, section 6): its answers go out together."""
-        if not 0 < len(messages) <= BATCH:
-            self._fail(None, NO_REQUEST, f"a batch has 1 to {BATCH} messages")
-            return
-        wanted = sum(isinstance(m, dict) and m.get("id") is not None and "method" in m for m in messages)
-        self._batch = _Batch(wanted)
-        for message in messages:
-            self._hear(message)
-        self._batch = None
+    def list_mcp_tools(self) -> list[dict[str, Any]]:
+        return list_play_tools(self._project)
 
-    def _hear(self, message: Any) -> bool:
-        """Hear one message; return whether the session has to answer."""
-        ident = message.get("id") if isinstance(message, dict) else None
-        if not isinstance(message, dict) or not isinstance(message.get("method"), str):
-            if not isinstance(message, dict) or not ("result" in message or "error" in message):
-                self._fail(ident, NO_REQUEST, "a message needs a 'method'")
-            return False  # nothing was asked of the client, so no result is awaited
-        if ident is not None and self._batch is not None:
-            ident = _InBatch(ident, self._batch)
-        parameters = message.get("params")
-        return self._called(message["method"], ident, parameters if isinstance(parameters, dict) else {})
+    def list_mcp_resources(self) -> list[dict[str, Any]]:
+        return [
+            {"uri": uri, "name": name, "description": _LOOKS[word], "mimeType": "application/json"}
+            for uri, (word, name) in _RESOURCES.items()
+        ]
 
-    def _called(self, method: str, ident: Any, parameters: dict[str, Any]) -> bool:
-        """Do what a message asks for; return whether the session has to answer."""
-        if ident is None:
-            return False  # a notification: that it is there, or that it waits no more
-        if method == "initialize":
-            wanted = parameters.get("protocolVersion")
-            self._answer(ident, {
-                "protocolVersion": wanted if wanted in VERSIONS else VERSIONS[0],
-                "capabilities": {"tools": {}},
-                "serverInfo": {"name": "metagraph", "version": __version__},
-                "instructions": _instructions(self._project),
-            })  # fmt: skip
-        elif method == "ping":
-            self._answer(ident, {})
-        elif method == "tools/list":
-            self._answer(ident, {"tools": list_mcp_tools(self._project)})
-        elif method == "tools/call":
-            return self._tool(ident, parameters.get("name"), parameters.get("arguments") or {})
-        else:
-            self._fail(ident, NO_METHOD, f"there is no method '{method[:80]}'")
-        return False
-
-    def _tool(self, ident: Any, name: Any, given: Any) -> bool:
-        if name not in (*ENGINES, *_LOOKS):
-            self._fail(ident, NO_PARAMETERS, f"there is no tool '{str(name)[:80]}'")
+    def read_resource(self, asked: McpRequest, uri: str) -> bool:
+        if uri not in _RESOURCES:
+            self.fail_resource(asked, uri)
             return False
-        if not isinstance(given, dict):
-            self._fail(ident, NO_PARAMETERS, "'arguments' should be an object")
+        self._calls.append(_Call(asked, uri=uri))
+        self._ask(msgspec.json.encode({"do": _RESOURCES[uri][0]}))
+        return True
+
+    def call_tool(self, asked: McpRequest, name: str, given: dict[str, Any]) -> bool:
+        if name not in (*ENGINES, *_LOOKS):
+            self.fail(asked, NO_PARAMETERS, f"there is no tool '{name[:80]}'")
             return False
         request = {key: value for key, value in given.items() if key not in ("do", "after")}
         if "after" in given:
@@ -173,7 +158,7 @@ class McpLine(StdioLine):
         text = request.get("text") if alone else None
         if isinstance(text, str):
             text, _ = read_spoken_line(text)
-        self._calls.append(_Call(ident, text if isinstance(text, str) else "", request.get("words")))
+        self._calls.append(_Call(asked, text if isinstance(text, str) else "", request.get("words")))
         self._ask(msgspec.json.encode({**request, "do": name}))
         return True
 
@@ -190,43 +175,51 @@ class McpLine(StdioLine):
         made = propose_gestures(timed_words(said.text, told), self._tags, lexicon, self._gestured + 1)
         requests = make_gesture_requests(made, begins, str(reply.get("id", "said")), self._gestured)
         self._gestured += len(requests) or 1
-        for request in requests:
-            self._calls.append(_Call(_NOBODY))
+        whole = _Said(said.asked, reply, len(requests))
+        for gesture, request in zip(made, requests, strict=True):
+            wanted = MadeGesture(gesture.do, gesture.word, "", gesture.tags, request.get("stroke"))
+            self._calls.append(_Call(said.asked, goes_with=(whole, wanted)))
             self._ask(msgspec.json.encode(request))
+        if not requests:
+            self._tell_said(whole)
 
     def send(self, messages: list[tuple[bytes, bool]]) -> None:
-        """Answer tools' calls, in their order; what happens later, and poses, are not told here."""
+        """Answer tools' calls, in their order; what happens later, and poses, are not told here. What is said
+        is answered with the gestures that go with it, when all of them are.
+        """
         for data, binary in messages:
             if binary or data.startswith(b'{"event"') or not self._calls:
                 continue
-            told = msgspec.json.decode(data)
             call = self._calls.popleft()
-            if call.ident is _NOBODY:
+            if call.uri:
+                self.answer_resource(call.asked, call.uri, data.decode())
                 continue
-            if call.text and isinstance(told.get("at"), int | float):
+            told = msgspec.json.decode(data)
+            if call.goes_with is not None:
+                self._take_gesture(*call.goes_with, told)
+            elif call.text and isinstance(told.get("at"), int | float):
                 self._gesture(call, told)
-            self._answer(call.ident, {
-                "content": [{"type": "text", "text": data.decode()}],
-                "structuredContent": told,
-                "isError": "error" in told or told.get("state") == "refused",
-            })  # fmt: skip
+            else:
+                self._answer_call(call.asked, told, data.decode())
 
-    def _answer(self, ident: Any, result: dict[str, Any]) -> None:
-        self._tell_client(ident, {"result": result})
+    def _take_gesture(self, said: _Said, wanted: MadeGesture, told: dict[str, Any]) -> None:
+        """Take what became of a gesture; answer what it goes with if it is the last one."""
+        became = {key: told[key] for key in ("at", "until", "why") if key in told}
+        actions, state = tuple(told.get("actions", ())), told.get("state", "refused")
+        said.made.append(msgspec.structs.replace(wanted, state=state, actions=actions, **became))
+        if len(said.made) == said.wanted:
+            self._tell_said(said)
 
-    def _tell_client(self, ident: Any, said: dict[str, Any]) -> None:
-        """Send an answer or an error; of a message of a batch, when all of it is answered."""
-        batch = ident.batch if isinstance(ident, _InBatch) else None
-        message = {"jsonrpc": "2.0", "id": ident.ident if batch is not None else ident, **said}
-        if batch is None:
-            super().send([(msgspec.json.encode(message), False)])
-            return
-        batch.told.append(message)
-        if len(batch.told) >= batch.wanted:
-            super().send([(msgspec.json.encode(batch.told), False)])
+    def _tell_said(self, said: _Said) -> None:
+        told = {**said.told, "gestures": msgspec.to_builtins(said.made)}
+        self._answer_call(said.asked, told, msgspec.json.encode(told).decode())
 
-    def _fail(self, ident: Any, code: int, words: str) -> None:
-        self._tell_client(ident, {"error": {"code": code, "message": words}})
+    def _answer_call(self, asked: McpRequest, told: dict[str, Any], text: str) -> None:
+        self.answer(asked, {
+            "content": [{"type": "text", "text": text}],
+            "structuredContent": told,
+            "isError": "error" in told or told.get("state") == "refused",
+        })  # fmt: skip
 
 
 def _instructions(project: Project) -> str:

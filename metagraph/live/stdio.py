@@ -46,9 +46,7 @@ class StdioLine:
         rest, skipping = b"", False
         while True:
             try:
-                # Not through sys.stdin, whose lock a thread that waits for ever would hold at the
-                # interpreter's end.
-                data = os.read(self._source, 65536)
+                data = self.read_some()
             except OSError:
                 data = b""
             if not data:
@@ -67,6 +65,17 @@ class StdioLine:
             self._pass(rest)
         self._tell(None)
 
+    def read_some(self) -> bytes:
+        """Wait for bytes, and return them; none at the end. Raises OSError.
+
+        Not through sys.stdin, whose lock a thread that waits for ever would hold at the interpreter's end.
+        """
+        return os.read(self._source, 65536)
+
+    def write_some(self, data: memoryview) -> int:
+        """Write bytes; return how many. Raises OSError."""
+        return os.write(self._target, data)
+
     def _pass(self, line: bytes) -> None:
         self._room.acquire()
         with self._counting:  # who does not read its answers is not listened to
@@ -84,7 +93,7 @@ class StdioLine:
             try:
                 view = memoryview(data)
                 while view:
-                    view = view[os.write(self._target, view) :]
+                    view = view[self.write_some(view) :]
             except OSError:
                 self._closed = True
             with self._counting:

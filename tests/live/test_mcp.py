@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES
-from metagraph.live.mcp import BROKEN, NO_METHOD, NO_PARAMETERS, NO_REQUEST, VERSIONS, McpLine, list_mcp_tools
+from metagraph.live.mcp import McpLine, list_play_tools
+from metagraph.live.mcp_protocol import BROKEN, NO_METHOD, NO_PARAMETERS, NO_REQUEST, VERSIONS
 from metagraph.live.stdio import StdioLine
 
 HERE = Path(__file__).parent
@@ -63,7 +64,7 @@ def test_it_speaks_the_clients_revision_where_it_knows_it(session: Session, want
 
 def test_its_tools_are_what_runtimes_take_and_two_to_look(session: Session, sample: Project) -> None:
     told = session.called("tools/list")
-    assert told is not None and told["result"]["tools"] == json.loads(json.dumps(list_mcp_tools(sample)))
+    assert told is not None and told["result"]["tools"] == json.loads(json.dumps(list_play_tools(sample)))
     tools = {tool["name"]: tool for tool in told["result"]["tools"]}
     assert set(tools) == {*ENGINES, "status", "describe"}
     assert "greeting" in tools["gesture"]["inputSchema"]["properties"]["tags"]["items"]["enum"]
@@ -103,8 +104,15 @@ def test_gestures_go_with_what_is_said_on_its_words_and_answer_to_nobody(session
     asked = [json.loads(x or b"") for x in session.asked[3:]]
     assert next(x["tags"] for x in asked if x["do"] == "gesture") == ["greeting"] and len(asked) >= 2
     assert all(x["stroke"] >= 4.0 and x["late"] > 0 for x in asked if x["do"] == "gesture")
-    session.line.send([(b'{"state":"planned"}', False)] * len(asked))
+    assert len(session.told) == 2  # what has gestures waits for what becomes of them
+    session.line.send([(b'{"state":"planned","at":4.2,"actions":["wave"]}', False)] * (len(asked) - 1))
+    session.line.send([(b'{"state":"refused","why":"too late"}', False)])
     assert len(session.told) == 3  # of the calls alone
+    told = session.told[-1]["result"]["structuredContent"]
+    assert told["at"] == 4.0 and len(told["gestures"]) == len(asked)
+    greeting, *_, last = told["gestures"]
+    assert greeting["word"] == "Hello" and greeting["actions"] == ["wave"] and greeting["at"] == 4.2
+    assert last["state"] == "refused" and last["why"] == "too late"
     told = {"text": "Well, hello", "words": [["Well", 0.1, 0.4], ["hello", 3.0, 3.6]]}
     session.called("tools/call", name="say", arguments=told)
     session.line.send([(b'{"state":"planned","at":1.0}', False)])
@@ -122,7 +130,7 @@ def test_what_cannot_be_understood_is_told_and_what_waits_for_no_answer_gets_non
         and code({"id": 3}) == NO_REQUEST
         and code({"id": 3, "method": 4}) == NO_REQUEST
     )
-    assert code({"id": 3, "method": "resources/list"}) == NO_METHOD
+    assert code({"id": 3, "method": "prompts/list"}) == NO_METHOD
     assert code({"id": 3, "method": "tools/call", "params": {"name": "bml"}}) == NO_PARAMETERS
     assert (
         code({"id": 3, "method": "tools/call", "params": {"name": "nod", "arguments": [1]}}) == NO_PARAMETERS
@@ -172,7 +180,7 @@ def test_a_client_that_is_not_ours_moves_the_character(tmp_path: Path) -> None:
     (tmp_path / "node_modules").symlink_to(HERE.parent / "node_modules")
     shutil.copyfile(HERE / "run" / "mcp_client.mjs", script)
     command = ["node", str(script), str(tmp_path / "calls.json"), *live]
-    command += [str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--mcp", "--seed", "3"]
+    command += [str(ROOT / "sample_clips" / "sample.metagraph.yaml"), "--mcp", "--seed", "3", "--no-idle"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr[-2000:]
     told = json.loads(done.stdout)
@@ -220,3 +228,25 @@ def test_a_batch_is_answered_together_when_all_of_it_is(session: Session) -> Non
     told = session.told[-1]
     assert len(session.told) == before + 1 and [x["id"] for x in told] == ["a", "c", "b"]
     assert told[1]["error"]["code"] == NO_METHOD
+
+
+def test_what_is_said_without_gestures_to_make_is_answered_at_once(session: Session) -> None:
+    session.called("tools/call", name="say", arguments={"text": "Mm."})
+    session.line.send([(b'{"state":"planned","at":1.0}', False)])
+    made = len(session.asked) - 1
+    session.line.send([(b'{"state":"planned"}', False)] * made)
+    assert len(session.told[-1]["result"]["structuredContent"]["gestures"]) == made == 0
+
+
+def test_resources_are_what_can_be_asked_and_what_plays_now(session: Session) -> None:
+    listed = session.called("resources/list")
+    assert listed is not None
+    assert [one["uri"] for one in listed["result"]["resources"]] == [
+        "metagraph://character",
+        "metagraph://now",
+    ]
+    session.called("resources/read", uri="metagraph://now")
+    assert json.loads(session.asked[-1] or b"") == {"do": "status"}
+    session.line.send([(b'{"state":"done","t":1.5}', False)])
+    (content,) = session.told[-1]["result"]["contents"]
+    assert content["uri"] == "metagraph://now" and json.loads(content["text"]) == {"state": "done", "t": 1.5}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.render_command import render_pictures
+from app.stage.filming import render_pictures
 from app.stage.playback_source import play_clip_alone
 from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.imports import import_files
