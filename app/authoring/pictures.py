@@ -68,7 +68,7 @@ def _look(work: ToolWork, given: LookCall) -> ToolOutcome:
     size = (given.width, round(given.width * 9 / 8))
     drawn = []
     try:
-        for picture in render_pictures([(figure, shown)], times, size, "light"):
+        for picture in render_pictures([(figure, shown)], times, size, "dark"):
             drawn.append(picture.copy())
             work.report(len(drawn), count, f"drew {len(drawn)} of {count} pictures")
     except RuntimeError as error:

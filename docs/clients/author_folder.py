@@ -110,4 +110,6 @@ def main(folder: Path, project: Path, command: list[str]) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
     main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]), sys.argv[3:] or ["metagraph", "author"])
