@@ -221,7 +221,7 @@ class _Helpers:
             helper.join()
 
 
-def make_view(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+def make_read_only(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
     """Return a dictionary that nobody can change, as an unpickled value has it."""
     return MappingProxyType(values)
 
@@ -231,7 +231,7 @@ def _dump(value: object) -> bytes:
     out = io.BytesIO()
     pickler = pickle.Pickler(out, pickle.HIGHEST_PROTOCOL)
     pickler.dispatch_table = copyreg.dispatch_table | {
-        MappingProxyType: lambda view: (make_view, (dict(view),))
+        MappingProxyType: lambda view: (make_read_only, (dict(view),))
     }
     pickler.dump(value)
     return out.getvalue()

@@ -12,7 +12,7 @@ from metagraph.common import child_channel
 from metagraph.playback import played_poses
 from metagraph.playback.own_moves import RATE
 from metagraph.playback.planning.running_plan import improvise
-from metagraph.playback.played_poses import PlayedPoses, count_chunks, make_view, watch_plans
+from metagraph.playback.played_poses import PlayedPoses, count_chunks, make_read_only, watch_plans
 
 
 def same(one: PlayedPoses, other: PlayedPoses) -> bool:
@@ -85,4 +85,4 @@ def test_one_who_has_seen_enough_gets_the_plans_that_were_played_whole(plans):
 
 
 def test_a_view_stays_one():
-    assert isinstance(make_view({"a": 1}), MappingProxyType)
+    assert isinstance(make_read_only({"a": 1}), MappingProxyType)
