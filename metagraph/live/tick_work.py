@@ -78,12 +78,18 @@ class Open:
 
 @dataclass
 class TickWork:
-    """A tick's asks on their way into the plan. gone: what is taken back before they count, by its key."""
+    """A tick's asks on their way into the plan. gone: what is taken back before they count, by its key.
+    steered: what is done to what is said, in turn; turned: keys of what that concerns, and of the words that
+    are paused for it.
+    """
 
     asks: dict[str, a.AnyRequest] = field(default_factory=dict)
     gone: dict[str, a.AnyRequest] = field(default_factory=dict)
     open: dict[str, Open] = field(default_factory=dict)
     over: list[Open] = field(default_factory=list)
+    steered: list[a.AnyRequest] = field(default_factory=list)
+    turned: set[str] = field(default_factory=set)
+    paused: set[str] = field(default_factory=set)
 
     def close(self, key: str, why: str) -> None:
         """Answer a request at once: something else has taken its place."""
