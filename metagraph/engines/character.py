@@ -251,7 +251,8 @@ class Character:
             last = speech.end if speech.over is None else max(speech.end, speech.over)
             if last <= self._seen or speech.start > self.now:
                 continue
-            reason, said = explain_end(speeches, speech), speech.line or speech.text
+            reason = "" if speech.end > self.now else explain_end(speeches, speech)
+            said = speech.line or speech.text
             note(speech.start, speech.end, "speech", said, speech.id, reason if speech.over is None else "")
             if speech.over is not None and self._seen < speech.over <= self.now:
                 found.append(Happening("end", speech.over, "speech", said, speech.id, reason))

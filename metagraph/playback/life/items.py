@@ -124,17 +124,23 @@ def cut(speech: Speech, at: float) -> Speech:
 
 def apart(speeches: Sequence[Speech]) -> list[Speech]:
     """Return speeches, which come in order, without overlaps: one that is at least as important cuts the
-    running one, a lesser one is not said.
+    running one, with what is said behind it under its id; a lesser one is not said.
     """
     out: list[Speech] = []
+    ends: dict[str, float] = {}  # when what was cut would have ended
     for speech in speeches:
+        if speech.id in ends and speech.start == ends[speech.id]:
+            ends[speech.id] = speech.end
+            continue
         if len(out) > 0 and out[-1].end > speech.start:
             last = out[-1]
             if speech.priority < last.priority:
                 continue
             out.pop()
+            if last.id != speech.id:
+                ends[last.id] = last.end
             if last.start < speech.start:
-                out.append(cut(last, speech.start))
+                out.append(replace(cut(last, speech.start), more=False))
         out.append(speech)
     return out
 

@@ -183,34 +183,30 @@ def timing_of(
 
 def measure_text(alphabet: Alphabet, text: str) -> float:
     """Return how long a text takes where more of it may come before or after, seconds."""
-    return sum(_paces(alphabet, text))
+    out = 0.0
+    for word, pause in split_words(alphabet, text):
+        out += _measure_word(alphabet, word) + pause / PACE
+    return out
 
 
 def pace_text(alphabet: Alphabet, text: str, seconds: float | None) -> LineTiming:
     """Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as
     its letters tell.
     """
-    paces = _paces(alphabet, text)
-    scale = 1.0 if seconds is None else seconds / max(sum(paces), 1e-3)
+    scale = 1.0 if seconds is None else seconds / max(measure_text(alphabet, text), 1e-3)
     at = 0.0
     words: list[SpokenWord] = []
-    n = 0
-    for word, _ in split_words(alphabet, text):
-        end = at + scale * paces[n]
+    for word, pause in split_words(alphabet, text):
+        end = at + scale * _measure_word(alphabet, word)
         if word != "":
             words.append(SpokenWord(word, at, end))
-        at = end + scale * paces[n + 1]
-        n += 2
+        at = end + scale * pause / PACE
     return LineTiming(tuple(words), (), 0.0, True)
 
 
-def _paces(alphabet: Alphabet, text: str) -> list[float]:
-    """Return how long each word of a text takes, and the pause after it, seconds in turn."""
-    out: list[float] = []
-    for word, pause in split_words(alphabet, text):
-        out.append(sum([measure_letter(alphabet.code(letter)) for letter in alphabet.letters(word)]) / PACE)
-        out.append(pause / PACE)
-    return out
+def _measure_word(alphabet: Alphabet, word: str) -> float:
+    """Return how long a word takes, seconds."""
+    return sum([measure_letter(alphabet.code(letter)) for letter in alphabet.letters(word)]) / PACE
 
 
 def join_letters(alphabet: Alphabet, letters: Sequence[SpokenWord]) -> list[SpokenWord]:
@@ -227,8 +223,8 @@ def join_letters(alphabet: Alphabet, letters: Sequence[SpokenWord]) -> list[Spok
         if parted or alone:
             out.append(letter)
         else:
-            last = out.pop()
-            out.append(SpokenWord(last.text + letter.text, last.start, letter.end))
+            last = out[-1]
+            out[len(out) - 1] = SpokenWord(last.text + letter.text, last.start, letter.end)
         parted = alone
     return out
 

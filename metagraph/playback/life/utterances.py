@@ -133,7 +133,7 @@ def pause(track: Track, ident: str, made: AbstractSet[str], stop: float, slot: f
         if speech.id != ident or speech.start >= PAUSED or speech.end <= stop:
             kept.append(speech)
         elif speech.start < stop:
-            kept.append(cut(speech, stop))
+            kept.append(replace(cut(speech, stop), more=False))
             skip = stop - find_line_start(speech)
             held.append(replace(speech, start=slot, end=speech.end + by, skip=skip))
         else:

@@ -260,7 +260,7 @@ private:
             const double over = speech->over.value_or(speech->end);
             if (std::max(speech->end, over) <= seen_ || speech->start > now_) continue;
             const std::string said = speech->line.value_or(speech->text);
-            const std::string reason = utterances::explain_end(plan_->track->speeches, speech);
+            const std::string reason = speech->end > now_ ? "" : utterances::explain_end(plan_->track->speeches, speech);
             note(speech->start, speech->end, "speech", said, speech->id, speech->over.has_value() ? "" : reason);
             if (speech->over.has_value() && over > seen_ && over <= now_) {
                 happened_.push_back({"end", over, "speech", said, speech->id, reason});

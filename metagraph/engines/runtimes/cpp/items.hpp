@@ -196,19 +196,39 @@ inline Ref<Speech> cut(const Ref<Speech>& speech, double at) {
         );
 }
 
-/// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a
-/// lesser one is not said.
+/// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with
+/// what is said behind it under its id; a lesser one is not said.
 inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
     List<Ref<Speech>> out;
+    Map<std::string, double> ends; // when what was cut would have ended
     for (const auto& speech : speeches) {
+        if (lang::contains(ends, speech->id) && speech->start == ends.at(speech->id)) {
+            ends[speech->id] = speech->end;
+            continue;
+        }
         if (lang::len(out) > 0 && lang::at(out, -1)->end > speech->start) {
             Ref<Speech> last = lang::at(out, -1);
             if (speech->priority < last->priority) {
                 continue;
             }
             out.pop_back();
+            if (last->id != speech->id) {
+                ends[last->id] = last->end;
+            }
             if (last->start < speech->start) {
-                out.push_back(items::cut(last, speech->start));
+                out.push_back(lang::made<Speech>(
+                    items::cut(last, speech->start)->id,
+                    items::cut(last, speech->start)->start,
+                    items::cut(last, speech->start)->end,
+                    items::cut(last, speech->start)->line,
+                    items::cut(last, speech->start)->text,
+                    items::cut(last, speech->start)->priority,
+                    items::cut(last, speech->start)->length,
+                    items::cut(last, speech->start)->timing,
+                    items::cut(last, speech->start)->skip,
+                    false,
+                    items::cut(last, speech->start)->over
+                ));
             }
         }
         out.push_back(speech);

@@ -137,7 +137,7 @@ inline Ref<LineTiming> pace_text(
     const std::string& text,
     const std::optional<double>& seconds
 );
-inline List<double> _paces(const Ref<Alphabet>& alphabet, const std::string& text);
+inline double _measure_word(const Ref<Alphabet>& alphabet, const std::string& word);
 inline List<Ref<SpokenWord>> join_letters(const Ref<Alphabet>& alphabet, const List<Ref<SpokenWord>>& letters);
 inline std::string told_text(const Ref<LineTiming>& timing);
 inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<double>& duration);
@@ -405,7 +405,11 @@ inline Ref<LineTiming> timing_of(
 
 /// Return how long a text takes where more of it may come before or after, seconds.
 inline double measure_text(const Ref<Alphabet>& alphabet, const std::string& text) {
-    return lang::sum(line_timing::_paces(alphabet, text));
+    double out = 0.0;
+    for (const auto& [word, pause] : graphemes::split_words(alphabet, text)) {
+        out += line_timing::_measure_word(alphabet, word) + pause / graphemes::PACE;
+    }
+    return out;
 }
 
 /// Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters
@@ -415,34 +419,26 @@ inline Ref<LineTiming> pace_text(
     const std::string& text,
     const std::optional<double>& seconds
 ) {
-    List<double> paces = line_timing::_paces(alphabet, text);
-    double scale = !seconds.has_value() ? 1.0 : *seconds / std::max(lang::sum(paces), 0.001);
+    double scale = !seconds.has_value() ? 1.0 : *seconds / std::max(line_timing::measure_text(alphabet, text), 0.001);
     double at = 0.0;
     List<Ref<SpokenWord>> words;
-    int n = 0;
-    for (const auto& [word, _] : graphemes::split_words(alphabet, text)) {
-        double end = at + scale * lang::at(paces, n);
+    for (const auto& [word, pause] : graphemes::split_words(alphabet, text)) {
+        double end = at + scale * line_timing::_measure_word(alphabet, word);
         if (word != "") {
             words.push_back(lang::made<SpokenWord>(word, at, end));
         }
-        at = end + scale * lang::at(paces, n + 1);
-        n += 2;
+        at = end + scale * pause / graphemes::PACE;
     }
     return lang::made<LineTiming>(words, List<Ref<VisemeMark>>{}, 0.0, true);
 }
 
-/// Return how long each word of a text takes, and the pause after it, seconds in turn.
-inline List<double> _paces(const Ref<Alphabet>& alphabet, const std::string& text) {
-    List<double> out;
-    for (const auto& [word, pause] : graphemes::split_words(alphabet, text)) {
-        List<double> found;
-        for (const auto& letter : alphabet->letters(word)) {
-            found.push_back(graphemes::measure_letter(alphabet->code(letter)));
-        }
-        out.push_back(lang::sum(found) / graphemes::PACE);
-        out.push_back(pause / graphemes::PACE);
+/// Return how long a word takes, seconds.
+inline double _measure_word(const Ref<Alphabet>& alphabet, const std::string& word) {
+    List<double> found;
+    for (const auto& letter : alphabet->letters(word)) {
+        found.push_back(graphemes::measure_letter(alphabet->code(letter)));
     }
-    return out;
+    return lang::sum(found) / graphemes::PACE;
 }
 
 /// Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter
@@ -459,8 +455,12 @@ inline List<Ref<SpokenWord>> join_letters(const Ref<Alphabet>& alphabet, const L
         if (parted || alone) {
             out.push_back(letter);
         } else {
-            Ref<SpokenWord> last = out.pop_back();
-            out.push_back(lang::made<SpokenWord>(last->text + letter->text, last->start, letter->end));
+            Ref<SpokenWord> last = lang::at(out, -1);
+            lang::at(out, lang::len(out) - 1) = lang::made<SpokenWord>(
+                last->text + letter->text,
+                last->start,
+                letter->end
+            );
         }
         parted = alone;
     }

@@ -245,7 +245,19 @@ inline Ref<Track> pause(
         if (speech->id != ident || speech->start >= utterances::PAUSED || speech->end <= stop) {
             kept.push_back(speech);
         } else if (speech->start < stop) {
-            kept.push_back(items::cut(speech, stop));
+            kept.push_back(lang::made<Speech>(
+                items::cut(speech, stop)->id,
+                items::cut(speech, stop)->start,
+                items::cut(speech, stop)->end,
+                items::cut(speech, stop)->line,
+                items::cut(speech, stop)->text,
+                items::cut(speech, stop)->priority,
+                items::cut(speech, stop)->length,
+                items::cut(speech, stop)->timing,
+                items::cut(speech, stop)->skip,
+                false,
+                items::cut(speech, stop)->over
+            ));
             double skip = stop - items::find_line_start(speech);
             held.push_back(lang::made<Speech>(
                 speech->id,

@@ -170,7 +170,7 @@ export class Character {
     for (const speech of speeches) {
       const { start, end, line, text, id, over } = speech;
       if (Math.max(end, over ?? end) <= seen || start > now) continue;
-      const reason = explainEnd(speeches, speech);
+      const reason = end > now ? "" : explainEnd(speeches, speech);
       this.note(start, end, "speech", line ?? text, id, over === null ? reason : "");
       if (over !== null && over > seen && over <= now) this.happened.push({ kind: "end", at: over, layer: "speech", action: line ?? text, meta: id, reason });
     }

@@ -156,22 +156,30 @@ export function cut(speech, at) {
 }
 
 /**
- * Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a lesser
- * one is not said.
+ * Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with what
+ * is said behind it under its id; a lesser one is not said.
  * @param {Speech[]} speeches
  * @returns {Speech[]}
  */
 export function apart(speeches) {
   const out = [];
+  const ends = new Map(); // when what was cut would have ended
   for (const speech of speeches) {
+    if (ends.has(speech.id) && speech.start === ends.get(speech.id)) {
+      ends.set(speech.id, speech.end);
+      continue;
+    }
     if (out.length > 0 && out[out.length - 1].end > speech.start) {
       const last = out[out.length - 1];
       if (speech.priority < last.priority) {
         continue;
       }
       out.pop();
+      if (last.id !== speech.id) {
+        ends.set(last.id, last.end);
+      }
       if (last.start < speech.start) {
-        out.push(cut(last, speech.start));
+        out.push(but(cut(last, speech.start), { more: false }));
       }
     }
     out.push(speech);

@@ -297,7 +297,11 @@ export function timingOf(alphabet, words, marks, name) {
  * @returns {number}
  */
 export function measureText(alphabet, text) {
-  return sum(_paces(alphabet, text));
+  let out = 0;
+  for (const [word, pause] of splitWords(alphabet, text)) {
+    out += _measureWord(alphabet, word) + pause / PACE;
+  }
+  return out;
 }
 
 /**
@@ -308,35 +312,27 @@ export function measureText(alphabet, text) {
  * @returns {LineTiming}
  */
 export function paceText(alphabet, text, seconds) {
-  const paces = _paces(alphabet, text);
-  const scale = seconds === null ? 1 : seconds / Math.max(sum(paces), 0.001);
+  const scale = seconds === null ? 1 : seconds / Math.max(measureText(alphabet, text), 0.001);
   let at = 0;
   const words = [];
-  let n = 0;
-  for (const [word, ] of splitWords(alphabet, text)) {
-    const end = at + scale * paces[n];
+  for (const [word, pause] of splitWords(alphabet, text)) {
+    const end = at + scale * _measureWord(alphabet, word);
     if (word !== "") {
       words.push(new SpokenWord(word, at, end));
     }
-    at = end + scale * paces[n + 1];
-    n += 2;
+    at = end + scale * pause / PACE;
   }
   return new LineTiming([...words], [], 0, true);
 }
 
 /**
- * Return how long each word of a text takes, and the pause after it, seconds in turn.
+ * Return how long a word takes, seconds.
  * @param {Alphabet} alphabet
- * @param {string} text
- * @returns {number[]}
+ * @param {string} word
+ * @returns {number}
  */
-function _paces(alphabet, text) {
-  const out = [];
-  for (const [word, pause] of splitWords(alphabet, text)) {
-    out.push(sum(alphabet.letters(word).map((letter) => measureLetter(alphabet.code(letter)))) / PACE);
-    out.push(pause / PACE);
-  }
-  return out;
+function _measureWord(alphabet, word) {
+  return sum(alphabet.letters(word).map((letter) => measureLetter(alphabet.code(letter)))) / PACE;
 }
 
 /**
@@ -358,8 +354,8 @@ export function joinLetters(alphabet, letters) {
     if (parted || alone) {
       out.push(letter);
     } else {
-      const last = out.pop();
-      out.push(new SpokenWord(last.text + letter.text, last.start, letter.end));
+      const last = out[out.length - 1];
+      out[out.length - 1] = new SpokenWord(last.text + letter.text, last.start, letter.end);
     }
     parted = alone;
   }

@@ -196,7 +196,7 @@ export function pause(track, ident, made, stop, slot) {
     if (speech.id !== ident || speech.start >= PAUSED || speech.end <= stop) {
       kept.push(speech);
     } else if (speech.start < stop) {
-      kept.push(cut(speech, stop));
+      kept.push(but(cut(speech, stop), { more: false }));
       const skip = stop - findLineStart(speech);
       held.push(but(speech, { start: slot, end: speech.end + by, skip: skip }));
     } else {

@@ -262,7 +262,8 @@ namespace Metagraph
                 {
                     continue;
                 }
-                string reason = UtterancesRules.ExplainEnd(Plan.Track.Speeches, speech), said = speech.Line ?? speech.Text;
+                string reason = speech.End > Now ? "" : UtterancesRules.ExplainEnd(Plan.Track.Speeches, speech);
+                string said = speech.Line ?? speech.Text;
                 Note(speech.Start, speech.End, "speech", said, speech.Id, speech.Over == null ? reason : "");
                 if (speech.Over > seen && speech.Over <= Now)
                 {

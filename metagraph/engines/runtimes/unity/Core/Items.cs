@@ -181,14 +181,20 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a
-        /// lesser one is not said.
+        /// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with
+        /// what is said behind it under its id; a lesser one is not said.
         /// </summary>
         public static List<Speech> Apart(List<Speech> speeches)
         {
             var out_ = new List<Speech>();
+            var ends = new Dictionary<string, double>(); // when what was cut would have ended
             foreach (Speech speech in speeches)
             {
+                if (ends.ContainsKey(speech.Id) && speech.Start == ends[speech.Id])
+                {
+                    ends[speech.Id] = speech.End;
+                    continue;
+                }
                 if (out_.Count > 0 && out_[out_.Count - 1].End > speech.Start)
                 {
                     var last = out_[out_.Count - 1];
@@ -197,9 +203,25 @@ namespace Metagraph
                         continue;
                     }
                     out_.RemoveAt(out_.Count - 1);
+                    if (last.Id != speech.Id)
+                    {
+                        ends[last.Id] = last.End;
+                    }
                     if (last.Start < speech.Start)
                     {
-                        out_.Add(Cut(last, speech.Start));
+                        out_.Add(new Speech(
+                            Cut(last, speech.Start).Id,
+                            Cut(last, speech.Start).Start,
+                            Cut(last, speech.Start).End,
+                            Cut(last, speech.Start).Line,
+                            Cut(last, speech.Start).Text,
+                            Cut(last, speech.Start).Priority,
+                            Cut(last, speech.Start).Length,
+                            Cut(last, speech.Start).Timing,
+                            Cut(last, speech.Start).Skip,
+                            false,
+                            Cut(last, speech.Start).Over
+                        ));
                     }
                 }
                 out_.Add(speech);

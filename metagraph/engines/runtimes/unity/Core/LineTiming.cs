@@ -344,7 +344,14 @@ namespace Metagraph
         /// <summary>Return how long a text takes where more of it may come before or after, seconds.</summary>
         public static double MeasureText(Alphabet alphabet, string text)
         {
-            return Paces(alphabet, text).Sum();
+            var out_ = 0.0;
+            foreach (var one in GraphemesRules.SplitWords(alphabet, text))
+            {
+                var word = one.Item1;
+                var pause = one.Item2;
+                out_ += MeasureWord(alphabet, word) + pause / GraphemesRules.Pace;
+            }
+            return out_;
         }
 
         /// <summary>
@@ -353,41 +360,28 @@ namespace Metagraph
         /// </summary>
         public static LineTiming PaceText(Alphabet alphabet, string text, double? seconds)
         {
-            var paces = Paces(alphabet, text);
-            var scale = seconds == null ? 1.0 : seconds.Value / Math.Max(paces.Sum(), 0.001);
+            var scale = seconds == null ? 1.0 : seconds.Value / Math.Max(MeasureText(alphabet, text), 0.001);
             var at = 0.0;
             var words = new List<SpokenWord>();
-            var n = 0;
-            foreach (var one in GraphemesRules.SplitWords(alphabet, text))
-            {
-                var word = one.Item1;
-                var  = one.Item2;
-                var end = at + scale * paces[n];
-                if (word != "")
-                {
-                    words.Add(new SpokenWord(word, at, end));
-                }
-                at = end + scale * paces[n + 1];
-                n += 2;
-            }
-            return new LineTiming(words.ToList(), new List<VisemeMark>(), 0.0, true);
-        }
-
-        /// <summary>Return how long each word of a text takes, and the pause after it, seconds in turn.</summary>
-        private static List<double> Paces(Alphabet alphabet, string text)
-        {
-            var out_ = new List<double>();
             foreach (var one in GraphemesRules.SplitWords(alphabet, text))
             {
                 var word = one.Item1;
                 var pause = one.Item2;
-                out_.Add(alphabet.Letters(word).Select(letter => GraphemesRules.MeasureLetter(
-                        alphabet.Code(letter)
-                    )).ToList().Sum()
-                    / GraphemesRules.Pace);
-                out_.Add(pause / GraphemesRules.Pace);
+                var end = at + scale * MeasureWord(alphabet, word);
+                if (word != "")
+                {
+                    words.Add(new SpokenWord(word, at, end));
+                }
+                at = end + scale * pause / GraphemesRules.Pace;
             }
-            return out_;
+            return new LineTiming(words.ToList(), new List<VisemeMark>(), 0.0, true);
+        }
+
+        /// <summary>Return how long a word takes, seconds.</summary>
+        private static double MeasureWord(Alphabet alphabet, string word)
+        {
+            return alphabet.Letters(word).Select(letter => GraphemesRules.MeasureLetter(alphabet.Code(letter))).ToList().Sum()
+                / GraphemesRules.Pace;
         }
 
         /// <summary>
@@ -412,8 +406,8 @@ namespace Metagraph
                 }
                 else
                 {
-                    var last = out_.RemoveAt(out_.Count - 1);
-                    out_.Add(new SpokenWord(last.Text + letter.Text, last.Start, letter.End));
+                    var last = out_[out_.Count - 1];
+                    out_[out_.Count - 1] = new SpokenWord(last.Text + letter.Text, last.Start, letter.End);
                 }
                 parted = alone;
             }

@@ -182,7 +182,19 @@ namespace Metagraph
                 }
                 else if (speech.Start < stop)
                 {
-                    kept.Add(ItemsRules.Cut(speech, stop));
+                    kept.Add(new Speech(
+                        ItemsRules.Cut(speech, stop).Id,
+                        ItemsRules.Cut(speech, stop).Start,
+                        ItemsRules.Cut(speech, stop).End,
+                        ItemsRules.Cut(speech, stop).Line,
+                        ItemsRules.Cut(speech, stop).Text,
+                        ItemsRules.Cut(speech, stop).Priority,
+                        ItemsRules.Cut(speech, stop).Length,
+                        ItemsRules.Cut(speech, stop).Timing,
+                        ItemsRules.Cut(speech, stop).Skip,
+                        false,
+                        ItemsRules.Cut(speech, stop).Over
+                    ));
                     var skip = stop - ItemsRules.FindLineStart(speech);
                     held.Add(new Speech(
                         speech.Id,

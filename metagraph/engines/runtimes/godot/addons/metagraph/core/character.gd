@@ -193,7 +193,7 @@ func _listen():
 		if Util.most(speech.end, over) <= _seen or speech.start > now:
 			continue
 		var said = speech.text if speech.line == null else speech.line
-		var reason = Utterances.explain_end(plan.track.speeches, speech)
+		var reason = "" if speech.end > now else Utterances.explain_end(plan.track.speeches, speech)
 		_note(new, speech.start, speech.end, "speech", said, speech.id, reason if speech.over == null else "")
 		if speech.over != null and over > _seen and over <= now:
 			new.append({kind = "end", at = over, layer = "speech", action = said, meta = speech.id, reason = reason})

@@ -150,18 +150,36 @@ static func cut(speech, at):
 	)
 
 
-# Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a lesser one is
-# not said.
+# Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with what is
+# said behind it under its id; a lesser one is not said.
 static func apart(speeches):
 	var out = []
+	var ends = {}  # when what was cut would have ended
 	for speech in speeches:
+		if ends.has(speech.id) and speech.start == ends[speech.id]:
+			ends[speech.id] = speech.end
+			continue
 		if out.size() > 0 and out[-1].end > speech.start:
 			var last = out[-1]
 			if speech.priority < last.priority:
 				continue
 			out.pop_back()
+			if last.id != speech.id:
+				ends[last.id] = last.end
 			if last.start < speech.start:
-				out.append(cut(last, speech.start))
+				out.append(Speech.new(
+					cut(last, speech.start).id,
+					cut(last, speech.start).start,
+					cut(last, speech.start).end,
+					cut(last, speech.start).line,
+					cut(last, speech.start).text,
+					cut(last, speech.start).priority,
+					cut(last, speech.start).length,
+					cut(last, speech.start).timing,
+					cut(last, speech.start).skip,
+					false,
+					cut(last, speech.start).over
+				))
 		out.append(speech)
 	return out
 

@@ -269,38 +269,35 @@ static func timing_of(alphabet, words, marks, name):
 
 # Return how long a text takes where more of it may come before or after, seconds.
 static func measure_text(alphabet, text):
-	return Util.sum(_paces(alphabet, text))
+	var out = 0.0
+	for pair in Graphemes.split_words(alphabet, text):
+		var word = pair[0]
+		var pause = pair[1]
+		out += _measure_word(alphabet, word) + pause / Graphemes.PACE
+	return out
 
 
 # Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters tell.
 static func pace_text(alphabet, text, seconds):
-	var paces = _paces(alphabet, text)
-	var scale = 1.0 if seconds == null else seconds / Util.most(Util.sum(paces), 0.001)
+	var scale = 1.0 if seconds == null else seconds / Util.most(measure_text(alphabet, text), 0.001)
 	var at = 0.0
 	var words = []
-	var n = 0
-	for pair in Graphemes.split_words(alphabet, text):
-		var word = pair[0]
-		var end = at + scale * paces[n]
-		if word != "":
-			words.append(SpokenWord.new(word, at, end))
-		at = end + scale * paces[n + 1]
-		n += 2
-	return LineTiming.new(Util.list(words), [], 0.0, true)
-
-
-# Return how long each word of a text takes, and the pause after it, seconds in turn.
-static func _paces(alphabet, text):
-	var out = []
 	for pair in Graphemes.split_words(alphabet, text):
 		var word = pair[0]
 		var pause = pair[1]
-		var found = []
-		for letter in alphabet.letters(word):
-			found.append(Graphemes.measure_letter(alphabet.code(letter)))
-		out.append(Util.sum(found) / Graphemes.PACE)
-		out.append(pause / Graphemes.PACE)
-	return out
+		var end = at + scale * _measure_word(alphabet, word)
+		if word != "":
+			words.append(SpokenWord.new(word, at, end))
+		at = end + scale * pause / Graphemes.PACE
+	return LineTiming.new(Util.list(words), [], 0.0, true)
+
+
+# Return how long a word takes, seconds.
+static func _measure_word(alphabet, word):
+	var found = []
+	for letter in alphabet.letters(word):
+		found.append(Graphemes.measure_letter(alphabet.code(letter)))
+	return Util.sum(found) / Graphemes.PACE
 
 
 # Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter that is a
@@ -316,8 +313,8 @@ static func join_letters(alphabet, letters):
 		if parted or alone:
 			out.append(letter)
 		else:
-			var last = out.pop_back()
-			out.append(SpokenWord.new(last.text + letter.text, last.start, letter.end))
+			var last = out[-1]
+			out[out.size() - 1] = SpokenWord.new(last.text + letter.text, last.start, letter.end)
 		parted = alone
 	return out
 

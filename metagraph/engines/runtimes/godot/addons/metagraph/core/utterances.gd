@@ -152,7 +152,19 @@ static func pause(track, ident, made, stop, slot):
 		if speech.id != ident or speech.start >= PAUSED or speech.end <= stop:
 			kept.append(speech)
 		elif speech.start < stop:
-			kept.append(Items.cut(speech, stop))
+			kept.append(Items.Speech.new(
+				Items.cut(speech, stop).id,
+				Items.cut(speech, stop).start,
+				Items.cut(speech, stop).end,
+				Items.cut(speech, stop).line,
+				Items.cut(speech, stop).text,
+				Items.cut(speech, stop).priority,
+				Items.cut(speech, stop).length,
+				Items.cut(speech, stop).timing,
+				Items.cut(speech, stop).skip,
+				false,
+				Items.cut(speech, stop).over
+			))
 			var skip = stop - Items.find_line_start(speech)
 			held.append(Items.Speech.new(
 				speech.id,
