@@ -201,8 +201,9 @@ class Happenings:
         why = one.why or WHY.get(reason, why)
         event = replace(event, reason=reason, why=why, spoken=spoken, last_word=word)
         self._tell(one.owner, one.ident, event)
-        if request in ledger.known:
-            ledger.known[request].ended = True
+        ask = ledger.known.get(request)
+        if ask is not None and ask.at <= now:  # else it was asked again, and is still to come
+            ask.ended = True
 
 
 def _begins(plan: Plan, request: str, layer: Layer | None, now: float, fixed: float) -> bool:

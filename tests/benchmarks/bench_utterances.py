@@ -87,7 +87,7 @@ def flood(port: int, clients: int, until: float) -> None:
         {"do": "withdraw", "what": "nothing"},
         {"do": "pause"},
         {"do": "interrupt"},
-        {"do": "say", "text": "Well.", "priority": -1},
+        {"do": "resume"},
     ]
     lines = [connect(f"ws://127.0.0.1:{port}") for _ in range(clients)]
     n = 0

@@ -166,6 +166,7 @@ def run(examples: int, steps: int) -> None:
             stateful_step_count=steps,
             deadline=None,
             suppress_health_check=list(HealthCheck),
+            print_blob=True,
         ),
     )
 
@@ -176,7 +177,7 @@ def test_utterances_end_once_and_nothing_is_silent() -> None:
 
 @pytest.mark.nightly
 def test_thousands_of_utterances_end_once_and_nothing_is_silent() -> None:
-    run(many(300, 10_000), 25)
+    run(many(400, 10_000), 20)
 
 
 def test_what_is_finished_was_spoken_whole(sample: Project) -> None:

@@ -19,13 +19,15 @@ from metagraph.playback.life.track import Track
 from metagraph.playback.planning.mood import MoodFrom
 
 PAUSED = 1e9  # seconds from which on lies what is paused
-VOICE = 0.04  # seconds in which a voice can begin or stop; more than lips look ahead
+VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
+EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
+SOUND = 0.02  # seconds by which it may stop later for the sound that is made to end
 TOGETHER = 1e-3  # seconds between two pieces of one utterance, at most
 
 
 def find_soon(now: float, lookahead: float) -> float:
-    """Return when a voice can begin or stop: sooner than gestures, which blend. Nothing has been shown at the
-    very beginning.
+    """Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very
+    beginning.
     """
     return now + min(lookahead, VOICE) if now > 0 else 0.0
 
@@ -56,25 +58,27 @@ def find_utterances(track: Track, what: str, now: float) -> list[str]:
     return out
 
 
-def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, latest: float) -> float:
-    """Return when the voice of an utterance stops that should: at the end of the sound that is made at
-    `soon`, by `latest`; where its sounds are not known, or it pauses, at `soon`; where it has not begun, when
-    it would.
+def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, now: float) -> float:
+    """Return when the voice of an utterance stops that should: at the end of the sound that is made, by
+    `soon` and a little; where its sounds are not known, or it pauses, at once; where it has not begun, when
+    it would. now: when gestures can stop.
     """
-    running = next((s for s in track.speeches if s.id == ident and s.start < soon and soon < s.end), None)
+    first = soon - EARLIER if now > soon else soon
+    latest = min(soon + SOUND, max(soon, now))
+    running = next((s for s in track.speeches if s.id == ident and s.start < first and first < s.end), None)
     if running is None:
-        coming = [s.start for s in track.speeches if s.id == ident and s.start >= soon]
+        coming = [s.start for s in track.speeches if s.id == ident and s.start >= first]
         return min([*coming, PAUSED]) if len(coming) > 0 else soon
     if running.line is not None and running.timing is None:
-        return soon
+        return first
     begin = find_line_start(running)
     said = (
         spelled(alphabet, running.text, measure_line(running))
         if running.timing is None
         else timed_sounds(alphabet, running.timing)
     )
-    ends = [begin + p.end for p in said.pieces if begin + p.start < soon and soon < begin + p.end]
-    return min([latest, running.end, *ends]) if len(ends) > 0 else soon
+    ends = [begin + p.end for p in said.pieces if begin + p.start < first and first < begin + p.end]
+    return min([latest, running.end, *ends]) if len(ends) > 0 else first
 
 
 def find_slot(track: Track) -> float:

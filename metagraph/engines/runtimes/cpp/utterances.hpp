@@ -20,7 +20,9 @@ namespace metagraph {
 namespace utterances {
 
 inline constexpr double PAUSED = 1000000000.0; // seconds from which on lies what is paused
-inline constexpr double VOICE = 0.04; // seconds in which a voice can begin or stop; more than lips look ahead
+inline constexpr double VOICE = 0.04; // seconds in which a voice can begin; more than lips look ahead
+inline constexpr double EARLIER = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
+inline constexpr double SOUND = 0.02; // seconds by which it may stop later for the sound that is made to end
 inline constexpr double TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 inline double find_soon(double now, double lookahead);
 inline bool is_paused(double start);
@@ -32,7 +34,7 @@ inline double find_stop(
     const Ref<Track>& track,
     const std::string& ident,
     double soon,
-    double latest
+    double now
 );
 inline double find_slot(const Ref<Track>& track);
 inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, double stop);
@@ -68,8 +70,7 @@ inline bool is_same_utterance(const Ref<Speech>& one, const Ref<Speech>& other);
 
 namespace utterances {
 
-/// Return when a voice can begin or stop: sooner than gestures, which blend. Nothing has been shown at the very
-/// beginning.
+/// Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
 inline double find_soon(double now, double lookahead) {
     return now > 0 ? now + std::min(lookahead, utterances::VOICE) : 0.0;
 }
@@ -109,34 +110,37 @@ inline List<std::string> find_utterances(const Ref<Track>& track, const std::str
     return out;
 }
 
-/// Return when the voice of an utterance stops that should: at the end of the sound that is made at `soon`, by
-/// `latest`; where its sounds are not known, or it pauses, at `soon`; where it has not begun, when it would.
+/// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a
+/// little; where its sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when
+/// gestures can stop.
 inline double find_stop(
     const Ref<Alphabet>& alphabet,
     const Ref<Track>& track,
     const std::string& ident,
     double soon,
-    double latest
+    double now
 ) {
-    Ref<Speech> first;
+    double first = now > soon ? soon - utterances::EARLIER : soon;
+    double latest = std::min(soon + utterances::SOUND, std::max(soon, now));
+    Ref<Speech> first2;
     for (const auto& s : track->speeches) {
-        if (s->id == ident && s->start < soon && soon < s->end) {
-            first = s;
+        if (s->id == ident && s->start < first && first < s->end) {
+            first2 = s;
             break;
         }
     }
-    Ref<Speech> running = first;
+    Ref<Speech> running = first2;
     if (running == nullptr) {
         List<double> coming;
         for (const auto& s : track->speeches) {
-            if (s->id == ident && s->start >= soon) {
+            if (s->id == ident && s->start >= first) {
                 coming.push_back(s->start);
             }
         }
         return lang::len(coming) > 0 ? lang::min_of(lang::together(coming, List<double>{utterances::PAUSED})) : soon;
     }
     if (running->line.has_value() && running->timing == nullptr) {
-        return soon;
+        return first;
     }
     double begin = items::find_line_start(running);
     Ref<Spelled> said = running->timing == nullptr
@@ -144,13 +148,13 @@ inline double find_stop(
         : line_timing::timed_sounds(alphabet, running->timing);
     List<double> ends;
     for (const auto& p : said->pieces) {
-        if (begin + p->start < soon && soon < begin + p->end) {
+        if (begin + p->start < first && first < begin + p->end) {
             ends.push_back(begin + p->end);
         }
     }
     return lang::len(ends) > 0
         ? lang::min_of(lang::together(List<double>{latest}, List<double>{running->end}, ends))
-        : soon;
+        : first;
 }
 
 /// Return a time among those that never come in which nothing lies.

@@ -14,11 +14,13 @@ import { Track } from "./track.js";
 import { but, maxOf, minOf, range } from "./basics.js";
 
 export const PAUSED = 1000000000; // seconds from which on lies what is paused
-export const VOICE = 0.04; // seconds in which a voice can begin or stop; more than lips look ahead
+export const VOICE = 0.04; // seconds in which a voice can begin; more than lips look ahead
+export const EARLIER = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
+export const SOUND = 0.02; // seconds by which it may stop later for the sound that is made to end
 export const TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 
 /**
- * Return when a voice can begin or stop: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+ * Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
  * @param {number} now
  * @param {number} lookahead
  * @returns {number}
@@ -76,30 +78,32 @@ export function findUtterances(track, what, now) {
 }
 
 /**
- * Return when the voice of an utterance stops that should: at the end of the sound that is made at `soon`, by `latest`;
- * where its sounds are not known, or it pauses, at `soon`; where it has not begun, when it would.
+ * Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a little;
+ * where its sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
  * @param {Alphabet} alphabet
  * @param {Track} track
  * @param {string} ident
  * @param {number} soon
- * @param {number} latest
+ * @param {number} now
  * @returns {number}
  */
-export function findStop(alphabet, track, ident, soon, latest) {
-  const running = track.speeches.find((s) => s.id === ident && s.start < soon && soon < s.end) ?? null;
+export function findStop(alphabet, track, ident, soon, now) {
+  const first = now > soon ? soon - EARLIER : soon;
+  const latest = Math.min(soon + SOUND, Math.max(soon, now));
+  const running = track.speeches.find((s) => s.id === ident && s.start < first && first < s.end) ?? null;
   if (running === null) {
-    const coming = track.speeches.filter((s) => s.id === ident && s.start >= soon).map((s) => s.start);
+    const coming = track.speeches.filter((s) => s.id === ident && s.start >= first).map((s) => s.start);
     return coming.length > 0 ? minOf([...coming, PAUSED]) : soon;
   }
   if (running.line !== null && running.timing === null) {
-    return soon;
+    return first;
   }
   const begin = findLineStart(running);
   const said = running.timing === null
     ? spelled(alphabet, running.text, measureLine(running))
     : timedSounds(alphabet, running.timing);
-  const ends = said.pieces.filter((p) => begin + p.start < soon && soon < begin + p.end).map((p) => begin + p.end);
-  return ends.length > 0 ? minOf([latest, running.end, ...ends]) : soon;
+  const ends = said.pieces.filter((p) => begin + p.start < first && first < begin + p.end).map((p) => begin + p.end);
+  return ends.length > 0 ? minOf([latest, running.end, ...ends]) : first;
 }
 
 /**

@@ -14,12 +14,13 @@ namespace Metagraph
     public static class UtterancesRules
     {
         public const double Paused = 1000000000.0; // seconds from which on lies what is paused
-        public const double Voice = 0.04; // seconds in which a voice can begin or stop; more than lips look ahead
+        public const double Voice = 0.04; // seconds in which a voice can begin; more than lips look ahead
+        public const double Earlier = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
+        public const double Sound = 0.02; // seconds by which it may stop later for the sound that is made to end
         public const double Together = 0.001; // seconds between two pieces of one utterance, at most
 
         /// <summary>
-        /// Return when a voice can begin or stop: sooner than gestures, which blend. Nothing has been shown at the very
-        /// beginning.
+        /// Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
         /// </summary>
         public static double FindSoon(double now, double lookahead)
         {
@@ -65,29 +66,33 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return when the voice of an utterance stops that should: at the end of the sound that is made at `soon`, by `latest`;
-        /// where its sounds are not known, or it pauses, at `soon`; where it has not begun, when it would.
+        /// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a little;
+        /// where its sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can
+        /// stop.
         /// </summary>
-        public static double FindStop(Alphabet alphabet, Track track, string ident, double soon, double latest)
+        public static double FindStop(Alphabet alphabet, Track track, string ident, double soon, double now)
         {
-            var running = track.Speeches.Where(s => s.Id == ident && s.Start < soon && soon < s.End).FirstOrDefault();
+            var first = now > soon ? soon - Earlier : soon;
+            var latest = Math.Min(soon + Sound, Math.Max(soon, now));
+            var running = track.Speeches.Where(s => s.Id == ident && s.Start < first && first < s.End).FirstOrDefault();
             if (running == null)
             {
-                var coming = track.Speeches.Where(s => s.Id == ident && s.Start >= soon).Select(s => s.Start).ToList();
+                var coming = track.Speeches.Where(s => s.Id == ident && s.Start >= first).Select(s => s.Start).ToList();
                 return coming.Count > 0 ? PlainNumbers.MinOf(coming.Concat(new List<double> { Paused }).ToList()) : soon;
             }
             if (running.Line != null && running.Timing == null)
             {
-                return soon;
+                return first;
             }
             var begin = ItemsRules.FindLineStart(running);
             var said = running.Timing == null
                 ? GraphemesRules.Spelled(alphabet, running.Text, ItemsRules.MeasureLine(running))
                 : LineTimingRules.TimedSounds(alphabet, running.Timing);
-            var ends = said.Pieces.Where(p => begin + p.Start < soon && soon < begin + p.End).Select(p => begin + p.End).ToList();
+            var ends = said.Pieces.Where(p => begin + p.Start < first && first < begin + p.End).Select(p => begin
+                + p.End).ToList();
             return ends.Count > 0
                 ? PlainNumbers.MinOf(new List<double> { latest }.Concat(new List<double> { running.End }).Concat(ends).ToList())
-                : soon;
+                : first;
         }
 
         /// <summary>Return a time among those that never come in which nothing lies.</summary>

@@ -12,11 +12,13 @@ const Track = preload("track.gd")
 const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 const PAUSED = 1000000000.0  # seconds from which on lies what is paused
-const VOICE = 0.04  # seconds in which a voice can begin or stop; more than lips look ahead
+const VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
+const EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
+const SOUND = 0.02  # seconds by which it may stop later for the sound that is made to end
 const TOGETHER = 0.001  # seconds between two pieces of one utterance, at most
 
 
-# Return when a voice can begin or stop: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+# Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
 static func find_soon(now, lookahead):
 	return now + Util.least(lookahead, VOICE) if now > 0 else 0.0
 
@@ -52,23 +54,25 @@ static func find_utterances(track, what, now):
 	return out
 
 
-# Return when the voice of an utterance stops that should: at the end of the sound that is made at `soon`, by `latest`; where its
-# sounds are not known, or it pauses, at `soon`; where it has not begun, when it would.
-static func find_stop(alphabet, track, ident, soon, latest):
-	var first = null
+# Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a little; where its
+# sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+static func find_stop(alphabet, track, ident, soon, now):
+	var first = soon - EARLIER if now > soon else soon
+	var latest = Util.least(soon + SOUND, Util.most(soon, now))
+	var first2 = null
 	for s in track.speeches:
-		if s.id == ident and s.start < soon and soon < s.end:
-			first = s
+		if s.id == ident and s.start < first and first < s.end:
+			first2 = s
 			break
-	var running = first
+	var running = first2
 	if running == null:
 		var coming = []
 		for s in track.speeches:
-			if s.id == ident and s.start >= soon:
+			if s.id == ident and s.start >= first:
 				coming.append(s.start)
 		return Util.least_of(coming + [PAUSED]) if coming.size() > 0 else soon
 	if running.line != null and running.timing == null:
-		return soon
+		return first
 	var begin = Items.find_line_start(running)
 	var said = Graphemes.spelled(alphabet, running.text, Items.measure_line(running)) if running.timing == null else LineTiming.timed_sounds(
 		alphabet,
@@ -76,9 +80,9 @@ static func find_stop(alphabet, track, ident, soon, latest):
 	)
 	var ends = []
 	for p in said.pieces:
-		if begin + p.start < soon and soon < begin + p.end:
+		if begin + p.start < first and first < begin + p.end:
 			ends.append(begin + p.end)
-	return Util.least_of([latest] + [running.end] + ends) if ends.size() > 0 else soon
+	return Util.least_of([latest] + [running.end] + ends) if ends.size() > 0 else first
 
 
 # Return a time among those that never come in which nothing lies.
