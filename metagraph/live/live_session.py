@@ -270,6 +270,8 @@ class LiveSession:
         why = self._admit(client, ident, key, ask, work)
         if why:
             return Reply(id=ident, state="refused", why=why, notes=notes)
+        if before is not None and before.replaces is not None and before.replaces.settled:
+            waits = before.replaces
         also = [before, *before.also] if before is not None and before not in work.over else []
         work.open[key] = Open(place, ident, key, notes=notes, adds=adds, replaces=waits, also=also)
         return None
@@ -439,9 +441,10 @@ class LiveSession:
 
     def _take_back(self, keys: Iterable[str], work: TickWork) -> None:
         for key in keys:
-            work.close(key, "taken back")
+            before = work.close(key, "taken back")
             self.happenings.stop(key, "withdrawn")
-            for each, ask in self.ledger.drop(key):
+            dropped = self.ledger.drop(key)
+            for each, ask in dropped if before is None else [(key, before), *dropped]:
                 self.happenings.stop(each, "withdrawn")
                 self._end_waiting(each, ask, "withdrawn", "taken back")
                 work.close(each, "taken back")

@@ -138,10 +138,11 @@ class Steering:
         for key in keys:
             made = [x for x in self.happenings.list_lasting() if key in makers(x)]
             for each in dict.fromkeys([key, *self.ledger.belonging(key), *made]):
-                work.close(each, INTERRUPTED)
+                before = work.close(each, INTERRUPTED)
                 work.asks.pop(each, None)
                 self.happenings.stop(each, "interrupted", INTERRUPTED)
-                for name, one in self.ledger.drop(each):
+                dropped = self.ledger.drop(each)
+                for name, one in dropped if before is None else [(each, before), *dropped]:
                     fixed = now + self.project.settings.lookahead
                     self.happenings.end_waiting(name, one, "interrupted", INTERRUPTED, now, plan, fixed)
         return reply

@@ -91,12 +91,16 @@ class TickWork:
     turned: set[str] = field(default_factory=set)
     paused: set[str] = field(default_factory=set)
 
-    def close(self, key: str, why: str) -> None:
-        """Answer a request at once: something else has taken its place."""
+    def close(self, key: str, why: str) -> OpenAsk | None:
+        """Answer a request at once: something else has taken its place. Return what it would have replaced,
+        if that was promised.
+        """
         found = self.open.pop(key, None)
-        for each in () if found is None else (*found.also, found):
+        every = () if found is None else (*found.also, found)
+        for each in every:
             each.why = why
             self.over.append(each)
+        return next((x.replaces for x in every if x.replaces is not None and x.replaces.settled), None)
 
 
 def order_requests(clients: Sequence[int]) -> list[int]:

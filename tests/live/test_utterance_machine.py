@@ -177,7 +177,7 @@ def test_utterances_end_once_and_nothing_is_silent() -> None:
 
 @pytest.mark.nightly
 def test_thousands_of_utterances_end_once_and_nothing_is_silent() -> None:
-    run(many(400, 10_000), 20)
+    run(many(250, 10_000), 20)
 
 
 def test_what_is_finished_was_spoken_whole(sample: Project) -> None:
