@@ -68,7 +68,9 @@ def talk(port: int, count: int, result: Any) -> None:
             ask({"do": "gesture", "id": f"{ident}/0"})
             time.sleep(max(0.0, SPEAKS - (time.perf_counter() - asked)))
             stopped = time.perf_counter()
-            ask({"do": "interrupt", "what": ident})
+            told = ask({"do": "interrupt", "what": ident})
+            if told.get("state") != "done":
+                print("refused", told, flush=True)
             result.send((kind, ident, asked, stopped))
             time.sleep(RESTS)
     result.send(None)

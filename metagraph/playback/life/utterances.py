@@ -21,7 +21,6 @@ from metagraph.playback.planning.mood import MoodFrom
 PAUSED = 1e9  # seconds from which on lies what is paused
 VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
 EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
-SOUND = 0.02  # seconds by which it may stop later for the sound that is made to end
 TOGETHER = 1e-3  # seconds between two pieces of one utterance, at most
 
 
@@ -60,11 +59,10 @@ def find_utterances(track: Track, what: str, now: float) -> list[str]:
 
 def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, now: float) -> float:
     """Return when the voice of an utterance stops that should: at the end of the sound that is made, by
-    `soon` and a little; where its sounds are not known, or it pauses, at once; where it has not begun, when
-    it would. now: when gestures can stop.
+    `soon`; where its sounds are not known, or it pauses, at once; where it has not begun, when it would.
+    now: when gestures can stop.
     """
     first = soon - EARLIER if now > soon else soon
-    latest = min(soon + SOUND, max(soon, now))
     running = next((s for s in track.speeches if s.id == ident and s.start < first and first < s.end), None)
     if running is None:
         coming = [s.start for s in track.speeches if s.id == ident and s.start >= first]
@@ -78,7 +76,7 @@ def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, now: fl
         else timed_sounds(alphabet, running.timing)
     )
     ends = [begin + p.end for p in said.pieces if begin + p.start < first and first < begin + p.end]
-    return min([latest, running.end, *ends]) if len(ends) > 0 else first
+    return min([soon, running.end, *ends]) if len(ends) > 0 else first
 
 
 def find_slot(track: Track) -> float:

@@ -22,7 +22,6 @@ namespace utterances {
 inline constexpr double PAUSED = 1000000000.0; // seconds from which on lies what is paused
 inline constexpr double VOICE = 0.04; // seconds in which a voice can begin; more than lips look ahead
 inline constexpr double EARLIER = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
-inline constexpr double SOUND = 0.02; // seconds by which it may stop later for the sound that is made to end
 inline constexpr double TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 inline double find_soon(double now, double lookahead);
 inline bool is_paused(double start);
@@ -110,9 +109,8 @@ inline List<std::string> find_utterances(const Ref<Track>& track, const std::str
     return out;
 }
 
-/// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a
-/// little; where its sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when
-/// gestures can stop.
+/// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its
+/// sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
 inline double find_stop(
     const Ref<Alphabet>& alphabet,
     const Ref<Track>& track,
@@ -121,7 +119,6 @@ inline double find_stop(
     double now
 ) {
     double first = now > soon ? soon - utterances::EARLIER : soon;
-    double latest = std::min(soon + utterances::SOUND, std::max(soon, now));
     Ref<Speech> first2;
     for (const auto& s : track->speeches) {
         if (s->id == ident && s->start < first && first < s->end) {
@@ -153,7 +150,7 @@ inline double find_stop(
         }
     }
     return lang::len(ends) > 0
-        ? lang::min_of(lang::together(List<double>{latest}, List<double>{running->end}, ends))
+        ? lang::min_of(lang::together(List<double>{soon}, List<double>{running->end}, ends))
         : first;
 }
 

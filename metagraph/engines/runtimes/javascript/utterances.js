@@ -16,7 +16,6 @@ import { but, maxOf, minOf, range } from "./basics.js";
 export const PAUSED = 1000000000; // seconds from which on lies what is paused
 export const VOICE = 0.04; // seconds in which a voice can begin; more than lips look ahead
 export const EARLIER = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
-export const SOUND = 0.02; // seconds by which it may stop later for the sound that is made to end
 export const TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 
 /**
@@ -78,8 +77,8 @@ export function findUtterances(track, what, now) {
 }
 
 /**
- * Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a little;
- * where its sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+ * Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its sounds
+ * are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
  * @param {Alphabet} alphabet
  * @param {Track} track
  * @param {string} ident
@@ -89,7 +88,6 @@ export function findUtterances(track, what, now) {
  */
 export function findStop(alphabet, track, ident, soon, now) {
   const first = now > soon ? soon - EARLIER : soon;
-  const latest = Math.min(soon + SOUND, Math.max(soon, now));
   const running = track.speeches.find((s) => s.id === ident && s.start < first && first < s.end) ?? null;
   if (running === null) {
     const coming = track.speeches.filter((s) => s.id === ident && s.start >= first).map((s) => s.start);
@@ -103,7 +101,7 @@ export function findStop(alphabet, track, ident, soon, now) {
     ? spelled(alphabet, running.text, measureLine(running))
     : timedSounds(alphabet, running.timing);
   const ends = said.pieces.filter((p) => begin + p.start < first && first < begin + p.end).map((p) => begin + p.end);
-  return ends.length > 0 ? minOf([latest, running.end, ...ends]) : first;
+  return ends.length > 0 ? minOf([soon, running.end, ...ends]) : first;
 }
 
 /**

@@ -16,7 +16,6 @@ namespace Metagraph
         public const double Paused = 1000000000.0; // seconds from which on lies what is paused
         public const double Voice = 0.04; // seconds in which a voice can begin; more than lips look ahead
         public const double Earlier = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
-        public const double Sound = 0.02; // seconds by which it may stop later for the sound that is made to end
         public const double Together = 0.001; // seconds between two pieces of one utterance, at most
 
         /// <summary>
@@ -66,14 +65,12 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a little;
-        /// where its sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can
-        /// stop.
+        /// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its
+        /// sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
         /// </summary>
         public static double FindStop(Alphabet alphabet, Track track, string ident, double soon, double now)
         {
             var first = now > soon ? soon - Earlier : soon;
-            var latest = Math.Min(soon + Sound, Math.Max(soon, now));
             var running = track.Speeches.Where(s => s.Id == ident && s.Start < first && first < s.End).FirstOrDefault();
             if (running == null)
             {
@@ -91,7 +88,7 @@ namespace Metagraph
             var ends = said.Pieces.Where(p => begin + p.Start < first && first < begin + p.End).Select(p => begin
                 + p.End).ToList();
             return ends.Count > 0
-                ? PlainNumbers.MinOf(new List<double> { latest }.Concat(new List<double> { running.End }).Concat(ends).ToList())
+                ? PlainNumbers.MinOf(new List<double> { soon }.Concat(new List<double> { running.End }).Concat(ends).ToList())
                 : first;
         }
 

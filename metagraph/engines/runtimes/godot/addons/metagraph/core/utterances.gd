@@ -14,7 +14,6 @@ const Util = preload("util.gd")
 const PAUSED = 1000000000.0  # seconds from which on lies what is paused
 const VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
 const EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
-const SOUND = 0.02  # seconds by which it may stop later for the sound that is made to end
 const TOGETHER = 0.001  # seconds between two pieces of one utterance, at most
 
 
@@ -54,11 +53,10 @@ static func find_utterances(track, what, now):
 	return out
 
 
-# Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon` and a little; where its
-# sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+# Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its sounds are
+# not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
 static func find_stop(alphabet, track, ident, soon, now):
 	var first = soon - EARLIER if now > soon else soon
-	var latest = Util.least(soon + SOUND, Util.most(soon, now))
 	var first2 = null
 	for s in track.speeches:
 		if s.id == ident and s.start < first and first < s.end:
@@ -82,7 +80,7 @@ static func find_stop(alphabet, track, ident, soon, now):
 	for p in said.pieces:
 		if begin + p.start < first and first < begin + p.end:
 			ends.append(begin + p.end)
-	return Util.least_of([latest] + [running.end] + ends) if ends.size() > 0 else first
+	return Util.least_of([soon] + [running.end] + ends) if ends.size() > 0 else first
 
 
 # Return a time among those that never come in which nothing lies.
