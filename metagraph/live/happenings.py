@@ -41,7 +41,7 @@ class Listener(Protocol):
 class Running:
     """A request of a client that has started and not ended. owner, ident: whose it is, and what that one
     calls it. request: of the plan, that plays it. layer: None for speech. start: of what plays, seconds.
-    reason: why it ends, None as long as nothing but its own end is known; why: in words, where that is told.
+    reason: why it ends, None as long as nothing but its own end is known; why: in words, if that is given.
     """
 
     owner: int

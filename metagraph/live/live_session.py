@@ -70,7 +70,7 @@ from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.utterances import find_soon, goes_on, is_open, is_paused
+from metagraph.playback.life.utterances import find_soon, goes_on, is_paused, takes_more
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
 from metagraph.playback.planning.plan_head import RECENT
@@ -588,7 +588,7 @@ class LiveSession:
         """Report that what waited under an id has ended, if something else has taken its place; so have the
         gestures that were made for what was said.
         """
-        if self._goes_on_from(open_) or (open_.adds is not None and is_open(open_.adds)):
+        if self._goes_on_from(open_) or (open_.adds is not None and takes_more(open_.adds)):
             return
         gone = [] if open_.replaces is None else [(open_.key, open_.replaces)]
         if open_.adds is not None:

@@ -112,7 +112,7 @@ class VmcPerson:
         return tuple((-float(x), -float(y), -float(z)) for x, y, z in places)
 
     def find_mood(self) -> Feeling | None:
-        """Return the mood of the strongest expression, None where none is strong."""
+        """Return the mood of the strongest expression, None if none is strong."""
         shown = {
             MOODS[name.lower()]: value for name, value in self.expressions.items() if name.lower() in MOODS
         }
@@ -132,7 +132,8 @@ class VmcPersonLine(asyncio.DatagramProtocol):
     def __init__(self, hub: Hub, clock: Callable[[], float]) -> None:
         self.hub, self.clock, self.person = hub, clock, VmcPerson()
         self.transport: Any = None
-        self._number, self._seen, self._mood = 0, 0.0, None
+        self._number, self._seen = 0, 0.0
+        self._mood: Feeling | None = None
 
     def connection_made(self, transport: Any) -> None:
         self.transport = transport

@@ -36,7 +36,7 @@ def is_paused(start: float) -> bool:
     return start >= PAUSED
 
 
-def is_open(speech: Speech) -> bool:
+def takes_more(speech: Speech) -> bool:
     """Return whether a piece can be added to though it does not run: more was promised, or it is paused."""
     return speech.more or speech.start >= PAUSED
 
@@ -95,7 +95,7 @@ def break_off(track: Track, ident: str, stop: float) -> Track:
     return _closed(track, speeches, ident, stop, True)
 
 
-def finish(track: Track, ident: str, soon: float) -> Track:
+def finish_speech(track: Track, ident: str, soon: float) -> Track:
     """Return the track with an utterance that is over when all that is known of it was said."""
     return _closed(track, list(track.speeches), ident, soon, False)
 
@@ -164,7 +164,7 @@ def resume(track: Track, ident: str, made: AbstractSet[str], soon: float) -> Tra
     moods = [_until(m, end) if m.id == ident and m.end == PAUSED else m for m in track.moods]
     left = Track(track.looks, tuple(kept), track.modes, track.places, track.blinks, track.stays, tuple(moods))
     if len(on) == 0:  # it had fallen silent when it was paused
-        left = left if held[-1].more else finish(left, ident, soon)
+        left = left if held[-1].more else finish_speech(left, ident, soon)
     return _moved(left, on, made, PAUSED, math.inf, by)
 
 

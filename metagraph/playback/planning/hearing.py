@@ -18,12 +18,12 @@ from metagraph.playback.life.utterances import (
     find_slot,
     find_stop,
     find_utterances,
-    finish,
+    finish_speech,
     goes_on,
-    is_open,
     is_paused,
     pause,
     resume,
+    takes_more,
 )
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planning.meaning import Meaning
@@ -212,7 +212,7 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
                 said.extend([s for s in track.speeches if s.id == one.id and s is not last])
         elif one is asked and not taken:
             one = behind([*track.speeches, *said], asked, now)
-            opens = last is not None and is_open(last) and told.line is None and one.start <= now
+            opens = last is not None and takes_more(last) and told.line is None and one.start <= now
             if one is not asked or opens:
                 on.add(one.id)
         if one.start != told.start:
@@ -258,7 +258,7 @@ def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: f
             elif ask.do == "resume":
                 steered.resume(ident, made, now, soon)
             else:
-                steered.track = finish(steered.track, ident, soon)
+                steered.track = finish_speech(steered.track, ident, soon)
     fresh = [r for r in steered.requests if r.id in steered.anew]
     return Heard(steered.track, fresh, steered.withdrawn, steered.stopped, steered.touched)
 

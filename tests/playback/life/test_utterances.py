@@ -16,7 +16,7 @@ from metagraph.playback.life.utterances import (
     find_soon,
     find_stop,
     find_utterances,
-    finish,
+    finish_speech,
     goes_on,
     pause,
     resume,
@@ -27,7 +27,9 @@ LINE = Speech("a", 1.0, 3.0, text="It rains all day.")
 
 def test_a_voice_stops_at_the_end_of_a_sound_and_at_the_latest_a_moment_later() -> None:
     track = Track(speeches=(LINE,))
-    stops = {find_stop(ALPHABET, track, "a", at, at + 0.06) - at for at in (1.5, 1.52, 1.54, 1.56)}
+    stops = {
+        find_stop(ALPHABET, track, "a", at, at + 0.06) - at for at in (1.5 + 0.01 * n for n in range(30))
+    }
     assert all(-0.03 <= stop <= 1e-9 for stop in stops)
     assert any(stop < -1e-3 for stop in stops), "a sound ends in time"
 
@@ -76,16 +78,16 @@ def test_what_is_broken_off_is_interrupted_whether_it_runs_is_silent_or_is_pause
 def test_what_has_more_to_come_is_over_when_it_is_finished() -> None:
     open_ = Speech("a", 1.0, 3.0, text="It rains", more=True)
     assert goes_on((open_,), "a", 50.0) and explain_end((open_,), open_) == ""
-    (over,) = finish(Track(speeches=(open_,)), "a", 50.0).speeches
+    (over,) = finish_speech(Track(speeches=(open_,)), "a", 50.0).speeches
     assert (over.over, explain_end((over,), over)) == (50.0, "finished")
-    (running,) = finish(Track(speeches=(open_,)), "a", 2.0).speeches
+    (running,) = finish_speech(Track(speeches=(open_,)), "a", 2.0).speeches
     assert running.over is None and not running.more
 
 
 def test_all_pieces_of_what_is_not_over_are_remembered() -> None:
     pieces = (Speech("a", 1.0, 2.0, text="It", more=True), Speech("a", 5.0, 6.0, text=" rains", more=True))
     assert Track(speeches=pieces).since(60.0).speeches == pieces
-    assert finish(Track(speeches=pieces), "a", 61.0).since(90.0).speeches == ()
+    assert finish_speech(Track(speeches=pieces), "a", 61.0).since(90.0).speeches == ()
 
 
 def test_who_is_cut_short_does_not_go_on_behind_who_cut_it() -> None:

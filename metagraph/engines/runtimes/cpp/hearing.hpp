@@ -585,7 +585,10 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
             }
         } else if (one == asked && !taken) {
             one = items::behind(lang::together(track->speeches, said), asked, now);
-            bool opens = last != nullptr && utterances::is_open(last) && !told->line.has_value() && one->start <= now;
+            bool opens = last != nullptr
+                && utterances::takes_more(last)
+                && !told->line.has_value()
+                && one->start <= now;
             if (one != asked || opens) {
                 on.insert(one->id);
             }
@@ -681,7 +684,7 @@ inline Ref<Heard> _steer(
             } else if (ask->do_ == "resume") {
                 steered->resume(ident, made, now, soon);
             } else {
-                steered->track = utterances::finish(steered->track, ident, soon);
+                steered->track = utterances::finish_speech(steered->track, ident, soon);
             }
         }
     }

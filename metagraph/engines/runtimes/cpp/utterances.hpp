@@ -25,7 +25,7 @@ inline constexpr double EARLIER = 0.03; // seconds by which it can stop sooner, 
 inline constexpr double TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 inline double find_soon(double now, double lookahead);
 inline bool is_paused(double start);
-inline bool is_open(const Ref<Speech>& speech);
+inline bool takes_more(const Ref<Speech>& speech);
 inline bool goes_on(const List<Ref<Speech>>& speeches, const std::string& ident, double now);
 inline List<std::string> find_utterances(const Ref<Track>& track, const std::string& what, double now);
 inline double find_stop(
@@ -37,7 +37,7 @@ inline double find_stop(
 );
 inline double find_slot(const Ref<Track>& track);
 inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, double stop);
-inline Ref<Track> finish(const Ref<Track>& track, const std::string& ident, double soon);
+inline Ref<Track> finish_speech(const Ref<Track>& track, const std::string& ident, double soon);
 inline Ref<Track> _closed(
     const Ref<Track>& track,
     const List<Ref<Speech>>& speeches,
@@ -80,7 +80,7 @@ inline bool is_paused(double start) {
 }
 
 /// Return whether a piece can be added to though it does not run: more was promised, or it is paused.
-inline bool is_open(const Ref<Speech>& speech) {
+inline bool takes_more(const Ref<Speech>& speech) {
     return speech->more || speech->start >= utterances::PAUSED;
 }
 
@@ -179,7 +179,7 @@ inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, d
 }
 
 /// Return the track with an utterance that is over when all that is known of it was said.
-inline Ref<Track> finish(const Ref<Track>& track, const std::string& ident, double soon) {
+inline Ref<Track> finish_speech(const Ref<Track>& track, const std::string& ident, double soon) {
     return utterances::_closed(track, track->speeches, ident, soon, false);
 }
 
@@ -376,7 +376,7 @@ inline Ref<Track> resume(const Ref<Track>& track, const std::string& ident, cons
         moods
     );
     if (lang::len(on) == 0) { // it had fallen silent when it was paused
-        left = lang::at(held, -1)->more ? left : utterances::finish(left, ident, soon);
+        left = lang::at(held, -1)->more ? left : utterances::finish_speech(left, ident, soon);
     }
     return utterances::_moved(left, on, made, utterances::PAUSED, INFINITY, by);
 }

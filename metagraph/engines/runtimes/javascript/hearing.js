@@ -14,12 +14,12 @@ import {
   findSlot,
   findStop,
   findUtterances,
-  finish,
+  finishSpeech,
   goesOn,
-  isOpen,
   isPaused,
   pause,
   resume,
+  takesMore,
 } from "./utterances.js";
 import { MoodFrom } from "./mood.js";
 import { but, isDigits, partedLast } from "./basics.js";
@@ -249,7 +249,7 @@ export function addSpeeches(meant, track, soon) {
       }
     } else if (one === asked && !taken) {
       one = behind([...track.speeches, ...said], asked, now);
-      const opens = last !== null && isOpen(last) && told.line === null && one.start <= now;
+      const opens = last !== null && takesMore(last) && told.line === null && one.start <= now;
       if (one !== asked || opens) {
         on.add(one.id);
       }
@@ -313,7 +313,7 @@ function _steer(requests, heard, meant, now, soon) {
       } else if (ask.do === "resume") {
         steered.resume(ident, made, now, soon);
       } else {
-        steered.track = finish(steered.track, ident, soon);
+        steered.track = finishSpeech(steered.track, ident, soon);
       }
     }
   }

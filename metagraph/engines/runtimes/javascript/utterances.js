@@ -42,7 +42,7 @@ export function isPaused(start) {
  * @param {Speech} speech
  * @returns {boolean}
  */
-export function isOpen(speech) {
+export function takesMore(speech) {
   return speech.more || speech.start >= PAUSED;
 }
 
@@ -139,7 +139,7 @@ export function breakOff(track, ident, stop) {
  * @param {number} soon
  * @returns {Track}
  */
-export function finish(track, ident, soon) {
+export function finishSpeech(track, ident, soon) {
   return _closed(track, [...track.speeches], ident, soon, false);
 }
 
@@ -237,7 +237,7 @@ export function resume(track, ident, made, soon) {
   const moods = track.moods.map((m) => (m.id === ident && m.end === PAUSED) ? _until(m, end) : m);
   let left = new Track(track.looks, [...kept], track.modes, track.places, track.blinks, track.stays, [...moods]);
   if (on.length === 0) { // it had fallen silent when it was paused
-    left = held[held.length - 1].more ? left : finish(left, ident, soon);
+    left = held[held.length - 1].more ? left : finishSpeech(left, ident, soon);
   }
   return _moved(left, on, made, PAUSED, Infinity, by);
 }

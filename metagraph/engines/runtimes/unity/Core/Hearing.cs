@@ -485,7 +485,7 @@ namespace Metagraph
                 else if (one == asked && !taken)
                 {
                     one = ItemsRules.Behind(track.Speeches.Concat(said).ToList(), asked, now);
-                    var opens = last != null && UtterancesRules.IsOpen(last) && told.Line == null && one.Start <= now;
+                    var opens = last != null && UtterancesRules.TakesMore(last) && told.Line == null && one.Start <= now;
                     if (one != asked || opens)
                     {
                         on.Add(one.Id);
@@ -572,7 +572,7 @@ namespace Metagraph
                     }
                     else
                     {
-                        steered.Track = UtterancesRules.Finish(steered.Track, ident, soon);
+                        steered.Track = UtterancesRules.FinishSpeech(steered.Track, ident, soon);
                     }
                 }
             }

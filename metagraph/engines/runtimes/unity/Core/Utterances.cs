@@ -35,7 +35,7 @@ namespace Metagraph
         /// <summary>
         /// Return whether a piece can be added to though it does not run: more was promised, or it is paused.
         /// </summary>
-        public static bool IsOpen(Speech speech)
+        public static bool TakesMore(Speech speech)
         {
             return speech.More || speech.Start >= Paused;
         }
@@ -120,7 +120,7 @@ namespace Metagraph
         }
 
         /// <summary>Return the track with an utterance that is over when all that is known of it was said.</summary>
-        public static Track Finish(Track track, string ident, double soon)
+        public static Track FinishSpeech(Track track, string ident, double soon)
         {
             return Closed(track, track.Speeches.ToList(), ident, soon, false);
         }
@@ -289,7 +289,7 @@ namespace Metagraph
             );
             if (on.Count == 0) // it had fallen silent when it was paused
             {
-                left = held[held.Count - 1].More ? left : Finish(left, ident, soon);
+                left = held[held.Count - 1].More ? left : FinishSpeech(left, ident, soon);
             }
             return Moved(left, on, made, Paused, double.PositiveInfinity, by);
         }

@@ -298,7 +298,7 @@ static func add_speeches(meant, track, soon):
 				Util.extend(said, found2)
 		elif one == asked and not taken:
 			one = Items.behind(track.speeches + said, asked, now)
-			var opens = last != null and Utterances.is_open(last) and told.line == null and one.start <= now
+			var opens = last != null and Utterances.takes_more(last) and told.line == null and one.start <= now
 			if one != asked or opens:
 				Util.add_to(on, one.id)
 		if one.start != told.start:
@@ -358,7 +358,7 @@ static func _steer(requests, heard, meant, now, soon):
 			elif ask.do == "resume":
 				steered.resume(ident, made, now, soon)
 			else:
-				steered.track = Utterances.finish(steered.track, ident, soon)
+				steered.track = Utterances.finish_speech(steered.track, ident, soon)
 	var fresh = []
 	for r in steered.requests:
 		if steered.anew.has(r.id):

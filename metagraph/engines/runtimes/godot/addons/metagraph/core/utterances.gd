@@ -28,7 +28,7 @@ static func is_paused(start):
 
 
 # Return whether a piece can be added to though it does not run: more was promised, or it is paused.
-static func is_open(speech):
+static func takes_more(speech):
 	return speech.more or speech.start >= PAUSED
 
 
@@ -104,7 +104,7 @@ static func break_off(track, ident, stop):
 
 
 # Return the track with an utterance that is over when all that is known of it was said.
-static func finish(track, ident, soon):
+static func finish_speech(track, ident, soon):
 	return _closed(track, Util.list(track.speeches), ident, soon, false)
 
 
@@ -258,7 +258,7 @@ static func resume(track, ident, made, soon):
 		Util.list(moods)
 	)
 	if on.size() == 0:  # it had fallen silent when it was paused
-		left = left if held[-1].more else finish(left, ident, soon)
+		left = left if held[-1].more else finish_speech(left, ident, soon)
 	return _moved(left, on, made, PAUSED, INF, by)
 
 
