@@ -27,9 +27,8 @@ LINE = Speech("a", 1.0, 3.0, text="It rains all day.")
 
 def test_a_voice_stops_at_the_end_of_a_sound_and_at_the_latest_a_moment_later() -> None:
     track = Track(speeches=(LINE,))
-    stops = {
-        find_stop(ALPHABET, track, "a", at, at + 0.06) - at for at in (1.5 + 0.01 * n for n in range(30))
-    }
+    times = [1.5 + 0.01 * n for n in range(30)]
+    stops = {find_stop(ALPHABET, track, "a", at, at + 0.06) - at for at in times}
     assert all(-0.03 <= stop <= 1e-9 for stop in stops)
     assert any(stop < -1e-3 for stop in stops), "a sound ends in time"
 
