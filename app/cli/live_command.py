@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from app.cli import live_graph_options
 from app.cli.kept_options import check_kept_name, parse_kept_seed
 from app.cli.outputs import ProjectOutput
-from metagraph.live import OSC_PORT, PORT, VMC_PORT
+from metagraph.live import FACE_PORT, OSC_PORT, PORT, VMC_PORT
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Project
@@ -36,6 +36,16 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--vmc", nargs="?", const="", metavar="[HOST:]PORT",
         help="send poses to a program that receives VMC, such as VSeeFace, VNyan or Warudo "
         f"(default: 127.0.0.1:{VMC_PORT})",
+    )  # fmt: skip
+    parser.add_argument(
+        "--vmc-in", nargs="?", type=int, const=VMC_PORT, metavar="PORT",
+        help="mimic a person whom another program tracks, as it sends VMC to this UDP port "
+        f"(default: {VMC_PORT})",
+    )  # fmt: skip
+    parser.add_argument(
+        "--face", nargs="?", const="", metavar="[HOST:]PORT",
+        help="send the face to Unreal as the app Live Link Face does "
+        f"(default: 127.0.0.1:{FACE_PORT})",
     )  # fmt: skip
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
@@ -98,7 +108,9 @@ def run(options: Namespace) -> int:
             origins=tuple(options.origin),
             stdio=options.mcp or not options.no_stdin,
             mcp=options.mcp,
-            vmc=_parse_receiver(options.vmc) if options.vmc is not None else None,
+            vmc=_parse_receiver("--vmc", options.vmc, VMC_PORT),
+            face=_parse_receiver("--face", options.face, FACE_PORT),
+            person=options.vmc_in,
         )
     )
     live_graph_options.require_consistent_options(options)
@@ -133,15 +145,19 @@ def _port(options: Namespace, none: bool, named: int | None, usual: int) -> int 
     return usual if named is None else named
 
 
-def _parse_receiver(text: str) -> tuple[str, int]:
-    """Return host and port of what receives VMC: "", "39539", "host" or "host:39539". Raises LiveError."""
+def _parse_receiver(name: str, text: str | None, usual: int) -> tuple[str, int] | None:
+    """Return host and port of a receiver: "", "39539", "host" or "host:39539"; None for None. name: of the
+    option. Raises LiveError.
+    """
     from metagraph.live.server import LiveError
 
+    if text is None:
+        return None
     host, _, port = text.rpartition(":") if ":" in text or text.isdecimal() else (text, "", "")
     try:
-        return host or "127.0.0.1", int(port or VMC_PORT)
+        return host or "127.0.0.1", int(port or usual)
     except ValueError:
-        raise LiveError(f"--vmc: '{text}' is no host and port, such as 127.0.0.1:{VMC_PORT}") from None
+        raise LiveError(f"{name}: '{text}' is no host and port, such as 127.0.0.1:{usual}") from None
 
 
 def _require_humanoid(project: Project) -> None:
@@ -205,6 +221,8 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     ways += [f"WebSocket on {ready.websocket}"] if ready.websocket is not None else []
     ways += [f"OSC on {ready.osc[0]}, port {ready.osc[1]}"] if ready.osc is not None else []
     sent = f" It sends VMC to {options.vmc[0]}:{options.vmc[1]}." if options.vmc is not None else ""
+    sent += f" It sends the face to {options.face[0]}:{options.face[1]}." if options.face is not None else ""
+    sent += f" It mimics whom VMC on port {options.person} shows." if options.person is not None else ""
     token = "; clients need the token" if ready.token else ""
     where = f": {', '.join(ways)}" if ways else " to no one"
     print(

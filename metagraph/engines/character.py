@@ -25,11 +25,15 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.offered import list_offered_requests, list_tools
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.line_timing import VisemeMark
 from metagraph.playback.life.streamed_voice import StreamedVoice
+from metagraph.playback.life.utterances import explain_end, find_soon
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import AskAnswer, answer_ask, answer_asks
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
+from metagraph.speech.spoken_so_far import spoken_until
 
 LEAP = 3600.0  # seconds by which an update may advance, because everything in between is planned
 SOUNDS = 16  # lines whose sound is kept
@@ -41,7 +45,8 @@ class Happening:
     """Something that began or ended.
 
     `at` is in seconds. `layer` is "speech" for speech. `action` is the action's name, or for speech the
-    line's id, else the text. `meta` is the id of the request, or the model's.
+    line's id, else the text. `meta` is the id of the request, or the model's. `reason` is "finished",
+    "interrupted" or "replaced" where all that is said under an id is over, else "".
     """
 
     kind: Literal["begin", "end"]
@@ -49,6 +54,7 @@ class Happening:
     layer: Layer | Literal["speech"]
     action: str
     meta: str
+    reason: str = ""
 
 
 class Character:
@@ -144,7 +150,7 @@ class Character:
         if voice is None or voice.rate != rate or (begun is None and waiting is None):
             voice = StreamedVoice(float(rate))
         if begun is not None:
-            voice.follow(self.now + self.project.settings.lookahead - begun.start)
+            voice.follow(find_soon(self.now, self.project.settings.lookahead) - find_line_start(begun))
         self._sounds[ident] = voice
         if len(self._sounds) > SOUNDS:
             del self._sounds[next(iter(self._sounds))]
@@ -198,7 +204,7 @@ class Character:
         self._running.reach(self.now)
         self._running.hear(self.now, self._queue)
         for ask in self._queue:
-            if isinstance(ask, a.Withdraw):
+            if isinstance(ask, a.Withdraw | a.Interrupt | a.Pause | a.Resume | a.Finish):
                 self._settle(AskAnswer(ask.id, "done", None, None, (), ""))
         self._queue = []
         if self._seen - self._cut >= CUT:  # what has begun and ended since then is still to be reported
@@ -222,19 +228,34 @@ class Character:
         """Note what has begun or ended since the previous update."""
         found: list[Happening] = []
 
-        def note(start: float, end: float, layer: Layer | Literal["speech"], action: str, meta: str) -> None:
+        def note(
+            start: float,
+            end: float,
+            layer: Layer | Literal["speech"],
+            action: str,
+            meta: str,
+            reason: str = "",
+        ) -> None:
             if self._seen < start <= self.now:
                 found.append(Happening("begin", start, layer, action, meta))
             if self._seen < end <= self.now:
-                found.append(Happening("end", end, layer, action, meta))
+                found.append(Happening("end", end, layer, action, meta, reason))
 
         for layer in LAYERS:
             for cue in self.plan.layers[layer].cues:
                 note(
                     cue.start, cue.end, layer, cue.action.name, cue.meta.partition("+")[0]
                 )  # what goes on after a cut is the same
-        for speech in self.plan.track.speeches:
-            note(speech.start, speech.end, "speech", speech.line or speech.text, speech.id)
+        speeches = self.plan.track.speeches
+        for speech in speeches:
+            last = speech.end if speech.over is None else max(speech.end, speech.over)
+            if last <= self._seen or speech.start > self.now:
+                continue
+            reason = "" if speech.end > self.now else explain_end(speeches, speech)
+            said = speech.line or speech.text
+            note(speech.start, speech.end, "speech", said, speech.id, reason if speech.over is None else "")
+            if speech.over is not None and self._seen < speech.over <= self.now:
+                found.append(Happening("end", speech.over, "speech", said, speech.id, reason))
         self._seen = self.now
         if found:
             self._happened = [*self._happened, *sorted(found, key=lambda event: event.at)][-REMEMBERED:]
@@ -253,6 +274,12 @@ class Character:
         if any(ask.id == ident for ask in self._queue):
             return AskAnswer(ident, "planned", None, None, (), "taken up at the next update")
         return answer_ask(self.plan, ident)
+
+    def spoken(self, ident: str) -> tuple[str, str]:
+        """Return what of something said was spoken until now, up to the word that was begun, and that word;
+        "" if nothing was.
+        """
+        return spoken_until(ALPHABET, self.plan.track.speeches, ident, self.now)
 
     def pose(self, alive: bool = True) -> Pose:
         """Return the pose at the time of the last update. With `alive`, it has the life layers."""

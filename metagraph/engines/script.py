@@ -21,6 +21,7 @@ from metagraph.engines.script_repeats import list_repeat_cases
 from metagraph.engines.script_replaced import list_replaced_cases
 from metagraph.engines.script_shades import list_shade_cases
 from metagraph.engines.script_timely import list_timely_cases
+from metagraph.engines.script_utterances import list_utterance_cases
 from metagraph.engines.script_weight import list_weight_cases
 from metagraph.graph.expand import find_chain
 from metagraph.graph.model import LAYERS, Layer, Project
@@ -43,6 +44,7 @@ def make_script_cases(project: Project) -> Iterator[ScriptCase]:
         list_shade_cases,
         list_face_cases,
         list_replaced_cases,
+        list_utterance_cases,
         list_chatter_cases,
         list_weight_cases,
         list_feet_cases,

@@ -171,11 +171,13 @@ class Say(Request, frozen=True, tag="say"):
     [word, start, end], seconds from the line's start, as a synthesiser gives them: the lips follow them and
     are shut between them; `text` may then be left out. visemes: [seconds, name] and, if known, how fully it
     is made, 0..1; each lasts until the next. Both may be objects, as in Amazon Polly's speech marks and
-    Azure's events. set: the naming of the visemes; null to detect it. While a line is said, a later request
-    with its id adds to it what comes after now; text alone is said behind text alone. audio: only in a live
-    session, the next samples of the line's sound, 16-bit little-endian numbers in base64, one channel, `rate`
-    a second: the lips follow its loudness if there are neither words nor visemes. mood, intensity: while it
-    is said, null for the line's own, else as the character is then.
+    Azure's events. set: the naming of the visemes; null to detect it. characters: [letter, start, end]
+    instead of words, as some synthesisers give them; blanks part words. While a line is said, a later request
+    with its id adds to it what comes after now; text alone is said behind text alone. more: whether more of
+    it comes under its id; it is then not over when it falls silent, and text may come in pieces of words.
+    audio: only in a live session, the next samples of the line's sound, 16-bit little-endian numbers in
+    base64, one channel, `rate` a second: the lips follow its loudness if there are neither words nor visemes.
+    mood, intensity: while it is said, null for the line's own, else as the character is then.
     """
 
     line: Annotated[str, Meta(min_length=1, max_length=200)] | int | None = None
@@ -184,6 +186,8 @@ class Say(Request, frozen=True, tag="say"):
     gestures: bool = True
     words: Annotated[tuple[Timed, ...], Meta(max_length=4000)] = ()
     visemes: Annotated[tuple[Timed, ...], Meta(max_length=20000)] = ()
+    characters: Annotated[tuple[Timed, ...], Meta(max_length=20000)] = ()
+    more: bool = False
     set: Literal["oculus", "azure", "sapi", "polly", "arkit"] | None = None
     audio: Annotated[str, Meta(max_length=60000)] | None = None
     rate: Annotated[int, Meta(ge=8000, le=48000)] = 16000
@@ -224,6 +228,37 @@ class Withdraw(Request, frozen=True, tag="withdraw"):
     what: Annotated[str, Meta(max_length=200)] = ""
 
 
+class Interrupt(Request, frozen=True, tag="interrupt"):
+    """Break off what is said under an id, or all that is said if `what` is empty, because the partner speaks:
+    the voice stops at its next sound, gestures made for it go back to their stance within 0.4 s, and the gaze
+    goes to the partner. The answer has what was spoken until then.
+    """
+
+    what: Annotated[str, Meta(max_length=200)] = ""
+
+
+class Pause(Request, frozen=True, tag="pause"):
+    """Hold what is said under an id, or all that is said if `what` is empty, at its next sound. What comes
+    for it waits, and so do its gestures that have not begun.
+    """
+
+    what: Annotated[str, Meta(max_length=200)] = ""
+
+
+class Resume(Request, frozen=True, tag="resume"):
+    """Go on with what was paused under an id, or with all that was if `what` is empty, where it stopped."""
+
+    what: Annotated[str, Meta(max_length=200)] = ""
+
+
+class Finish(Request, frozen=True, tag="finish"):
+    """Say that no more comes of what is said under an id with `more`, or of all that is if `what` is empty:
+    it is over when it falls silent.
+    """
+
+    what: Annotated[str, Meta(max_length=200)] = ""
+
+
 class Bml(Request, frozen=True, tag="bml"):
     """A block of Behaviour Markup Language; the parts that are understood become requests."""
 
@@ -231,8 +266,9 @@ class Bml(Request, frozen=True, tag="bml"):
 
 
 AnyRequest = Union[  # noqa: UP007 - msgspec reads it at run time
-    Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Feel, Place, Withdraw, Bml
-]
+    Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Feel, Place, Withdraw,
+    Interrupt, Pause, Resume, Finish, Bml,
+]  # fmt: skip
 
 
 class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):

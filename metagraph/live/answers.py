@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from metagraph.playback.life.track import Item, LookAt, MoodFrom, Speech
+from metagraph.playback.life.utterances import is_paused
 from metagraph.playback.plan import MetaAction, Plan, Report
 from metagraph.playback.planning.extend_performance import find_item_end, find_served, name_item
 
@@ -18,7 +19,7 @@ ENDLESS = 1e8  # seconds; what ends later than this ends when something else beg
 @dataclass(slots=True)
 class FoundAnswer:
     """All that a plan holds of one ask. starts, ends: seconds. what: actions, or words for what the life
-    layers do.
+    layers do. waits: when it begins that is not chosen yet, or is paused, seconds.
     """
 
     starts: list[float] = field(default_factory=list)
@@ -30,6 +31,8 @@ class FoundAnswer:
 
     @property
     def state(self) -> str:
+        if self.paused:
+            return "planned"
         if self.starts:
             return (
                 "late" if any(r.outcome in ("late", "queued", "resumed") for r in self.reports) else "planned"
@@ -45,16 +48,32 @@ class FoundAnswer:
         return "late" if missed > 0 and self.state == "planned" else self.state
 
     @property
-    def at(self) -> float | None:
+    def paused(self) -> bool:
+        """Whether it waits until what it belongs to goes on."""
+        return self.waits is not None and is_paused(self.waits)
+
+    @property
+    def begins(self) -> float | None:
+        """When it begins, seconds; what is paused in a time that never comes."""
+        if self.paused:
+            return self.waits
         return min(self.starts) if self.starts else self.waits if self.state != "refused" else None
 
     @property
+    def at(self) -> float | None:
+        return None if self.paused else self.begins
+
+    @property
     def until(self) -> float | None:
+        if self.paused:
+            return None
         end = max(self.ends, default=inf)
         return end if end < ENDLESS else None
 
     @property
     def why(self) -> str:
+        if self.paused:
+            return "it is paused"
         words = "; ".join(dict.fromkeys(r.message for r in self.reports))
         if words or self.starts:
             return words
@@ -89,7 +108,9 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
                 found.waits, found.layer = meta.start, found.layer or layer
     for item in _near(plan, since):
         found = of(item.id)
-        if found is not None:
+        if found is not None and is_paused(item.start):
+            found.waits = item.start
+        elif found is not None:
             found.starts.append(item.start)
             found.ends.append(find_item_end(item))
             found.what.append(name_item(item))

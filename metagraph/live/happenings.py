@@ -14,10 +14,12 @@ from metagraph.graph.model import LAYERS, Layer
 from metagraph.live.ledger import Ledger, OpenAsk, reword_for_client
 from metagraph.live.limits import ADDED
 from metagraph.live.messages import Event, Reason, round_seconds
-from metagraph.live.spoken_so_far import split_spoken_text
+from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.track import Speech
+from metagraph.playback.life.utterances import is_same_utterance
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.extend_performance import find_served
+from metagraph.speech.spoken_so_far import spoken_until
 
 LONGEST = 60.0  # seconds a speech is looked back for
 TOLD: tuple[str, ...] = (*LAYERS, "say", ADDED)  # of which it is told when they begin and end
@@ -39,7 +41,7 @@ class Listener(Protocol):
 class Running:
     """A request of a client that has started and not ended. owner, ident: whose it is, and what that one
     calls it. request: of the plan, that plays it. layer: None for speech. start: of what plays, seconds.
-    reason: why it ends, None as long as nothing but its own end is known.
+    reason: why it ends, None as long as nothing but its own end is known; why: in words, if that is given.
     """
 
     owner: int
@@ -49,6 +51,7 @@ class Running:
     event: Event
     start: float
     reason: Reason | None = None
+    why: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +74,14 @@ class Happenings:
         self._leaving: dict[str, Leaving] = {}
         self._told: list[tuple[int | None, str | None, Event]] = []  # whose, called what, which
 
-    def stop(self, request: str, reason: Reason) -> None:
+    def stop(self, request: str, reason: Reason, why: str = "") -> None:
         """Take note why a request ends."""
         if request in self.running:
-            self.running[request].reason = reason
+            self.running[request].reason, self.running[request].why = reason, why
+
+    def list_lasting(self) -> list[str]:
+        """Return the requests that run and are not known to end."""
+        return [request for request, one in self.running.items() if one.reason is None]
 
     def end_waiting(
         self, key: str, ask: OpenAsk, reason: Reason, why: str, now: float, plan: Plan, fixed: float
@@ -182,19 +189,21 @@ class Happenings:
         if speech is not None:
             event = _event_of_speech(speech, "ended", event.t)
             if speech.length is not None:
-                spoken, word = split_spoken_text(plan.track.speeches, speech, speech.end)
+                spoken, word = spoken_until(ALPHABET, plan.track.speeches, speech.id, speech.end)
                 reason = reason or ("replaced" if _said_again(plan, speech) else "interrupted")
-                why = WHY.get(reason, "something else is said")
+                why = one.why or WHY.get(reason, "something else is said")
         elif cue is not None and one.layer is not None:
             event = _event_of(cue, one.layer, "ended", event.t)
             cuts = [r for r in plan.reports if r.request == request and r.outcome in ("cut", "covered")]
             if reason is None and cuts:
                 reason, why = "interrupted", reword_for_client(cuts[-1].message, one.owner)
         reason = reason or "finished"
-        event = replace(event, reason=reason, why=WHY.get(reason, why), spoken=spoken, last_word=word)
+        why = one.why or WHY.get(reason, why)
+        event = replace(event, reason=reason, why=why, spoken=spoken, last_word=word)
         self._tell(one.owner, one.ident, event)
-        if request in ledger.known:
-            ledger.known[request].ended = True
+        ask = ledger.known.get(request)
+        if ask is not None and ask.at <= now:  # else it was asked again, and is still to come
+            ask.ended = True
 
 
 def _begins(plan: Plan, request: str, layer: Layer | None, now: float, fixed: float) -> bool:
@@ -214,11 +223,15 @@ def _lasts(plan: Plan, one: Running, now: float) -> bool:
     """Whether something of a request still plays, or comes."""
     latest = float("inf") if one.reason is None else one.start
     if one.layer is None:
-        pieces = [s for s in plan.track.speeches if s.id == one.request and s.start <= min(now, latest)]
-        if not pieces or pieces[-1].end <= now:
+        pieces = [s for s in plan.track.speeches if s.id == one.request and one.start <= s.start <= latest]
+        if not pieces:
             return False
-        ran = next((s for s in pieces if s.start == one.start), pieces[-1])
-        return ran is pieces[-1] or ran.length is None
+        last = pieces[0]
+        for piece in pieces[1:]:
+            if not is_same_utterance(last, piece):
+                break
+            last = piece
+        return last.end > now or (last.more and one.reason is None)
     lane = plan.layers[one.layer]
     for cue in reversed(lane.cues):
         if cue.end <= now:
@@ -245,4 +258,6 @@ def _event_of(cue: Cue, layer: Layer, word: Word, t: float) -> Event:
 
 def _event_of_speech(speech: Speech, word: Word, t: float) -> Event:
     at, until = round_seconds(speech.start), round_seconds(speech.end)
-    return Event(event=word, t=t, line=speech.line, text=speech.text or None, at=at, until=until)
+    skip = round_seconds(speech.skip) if speech.skip > 0 and word == "started" else None
+    text = speech.text or None
+    return Event(event=word, t=t, line=speech.line, text=text, at=at, until=until, skip=skip)

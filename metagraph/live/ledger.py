@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 
 from metagraph.live.answers import FoundAnswer, find_owning_ask
@@ -78,14 +78,14 @@ class OpenAsk:
         """Whether a plan now does something else than was answered. Times are reported to the millisecond."""
         if found is None:
             return True
-        at, until = found.at, found.until
+        at, until = found.begins, found.until
         same = found.said(self.missed) == self.state and _close(at, self.at) and _close(until, self.until)
         return not same or tuple(found.what) != self.actions
 
     def settle(self, found: FoundAnswer) -> None:
         """Take in what the plan does about it."""
         self.state, self.until, self.actions = found.said(self.missed), found.until, tuple(found.what)
-        self.at = self.at if found.at is None else found.at
+        self.at = self.at if found.begins is None else found.begins
 
 
 def _close(a: float | None, b: float | None) -> bool:
@@ -145,9 +145,10 @@ class Ledger:
         """How many have not begun."""
         return sum(1 for ask in self.known.values() if ask.at > now)
 
-    def forget(self, now: float) -> list[tuple[str, OpenAsk]]:
-        """Drop what is over; return it."""
+    def forget(self, now: float, open_: Collection[str]) -> list[tuple[str, OpenAsk]]:
+        """Drop what is over; return it. open_: keys of utterances that may have fallen silent and are not."""
         over = [key for key, ask in self.known.items() if ask.settled and ask.at < now and ask.over(now)]
+        over = [key for key in over if key not in open_]
         gone = [one for key in over for one in self.drop(key)]
         for key in [
             key for key, parts in self.blocks.items() if not any(part in self.known for part in parts)

@@ -61,14 +61,16 @@ from metagraph.live.messages import (
 from metagraph.live.partner_mood import LAUGH, MOOD, find_partner_feel
 from metagraph.live.pose_stream import Stream, collect_due_frames
 from metagraph.live.said_sound import SaidSounds, join_asks
-from metagraph.live.spoken_so_far import split_spoken_text
+from metagraph.live.steering import Steering, is_steering
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Agent, Client, Open, Out, TickWork, order_requests, thin_track
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml.reader import BmlBlock, read_block
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.track import Speech
+from metagraph.playback.life.utterances import find_soon, goes_on, is_paused, takes_more
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
 from metagraph.playback.planning.plan_head import RECENT
@@ -76,6 +78,7 @@ from metagraph.playback.planning.running_plan import CUT, RunningPlan
 from metagraph.playback.posing.overlay import Overlay
 from metagraph.playback.posing.weight import LOOKS_BACK
 from metagraph.playback.timing.phases import find_phases
+from metagraph.speech.spoken_so_far import spoken_until
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.word_gestures import telling
 
@@ -117,6 +120,7 @@ class LiveSession:
         self._queue: list[tuple[int, HeardMessage | Reply]] = []
         self.tape = Tape()
         self._sounds = SaidSounds()
+        self._steering = Steering(project, self.ledger, self.happenings)
         self._tidied = self._begin = 0.0
         self._past: deque[tuple[float, Plan]] = deque()
         self._edited = False
@@ -169,7 +173,7 @@ class LiveSession:
 
     def change(self, project: Project) -> None:
         """Continue with an edited project. What has not begun is planned again at the next tick."""
-        self.project = self.running.project = project
+        self.project = self.running.project = self._steering.project = project
         self._words, self._edited = RequestWords(project), True
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told.clear()
@@ -187,7 +191,7 @@ class LiveSession:
         queue, self._queue = [*self._queue, *heard], []
         self.ledger.limits.tick(self.now)
         self._told.pop("status", None)
-        out, work = Out(), TickWork()
+        out, work = Out(), TickWork(steered=self._steering.close_forgotten(self.now))
         out.replies = [Reply()] * len(queue)
         self.ledger.limits.several = len(self.clients) > 1
         self.ledger.limits.around = {client for client, _ in queue}
@@ -246,13 +250,19 @@ class LiveSession:
         if isinstance(ask, a.Bml):
             return self._block(client, Open(place, ident, key), ask, work)
         notes: tuple[str, ...] = ()
+        if is_steering(ask):
+            return self._steering.answer(client, ident, ask, self.plan, self.now, work)
         if isinstance(ask, a.Say) and ask.text:
+            opened = self._steering.is_open(self.plan, key, work)
             text, left_out = read_spoken_line(ask.text)
             notes = tuple(str(phrase("left out: {what}", what=what)) for what in left_out)
-            more = ask.words or ask.visemes or ask.audio or ask.line or ask.duration
-            if not telling(ALPHABET, text) and not more:
+            told = ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration
+            if not telling(ALPHABET, text) and not told and not opened:
                 silent = str(phrase("the text has nothing to say"))
-                return Reply(id=ident, state="refused", why=silent, notes=notes)
+                return Reply(id=ident, state="done" if ask.more else "refused", why=silent, notes=notes)
+            if (ask.more or opened) and not told:  # a piece of words: its blanks count
+                begins = len(ask.text) - len(ask.text.lstrip())
+                text = ask.text[:begins] + text + ask.text[len(ask.text.rstrip()) :]
             ask = msgspec.structs.replace(ask, text=text)
         before = work.open.get(key)
         adds = self.plan.track.last_speech(key) if isinstance(ask, a.Say) else None
@@ -260,6 +270,8 @@ class LiveSession:
         why = self._admit(client, ident, key, ask, work)
         if why:
             return Reply(id=ident, state="refused", why=why, notes=notes)
+        if before is not None and before.replaces is not None and before.replaces.settled:
+            waits = before.replaces
         also = [before, *before.also] if before is not None and before not in work.over else []
         work.open[key] = Open(place, ident, key, notes=notes, adds=adds, replaces=waits, also=also)
         return None
@@ -359,7 +371,8 @@ class LiveSession:
         """
         if ask.audio is not None:
             begun = self._speech(key)
-            said = 0.0 if begun is None else self.now + self.project.settings.lookahead - begun.start
+            soon = find_soon(self.now, self.project.settings.lookahead)
+            said = 0.0 if begun is None else soon - find_line_start(begun)
             ask = self._sounds.told(key, ask, goes_on, said)
         if len(ask.text) > SPEECH:
             raise a.RequestError(f"at most {SPEECH} characters can be said at once; say it in pieces")
@@ -405,17 +418,18 @@ class LiveSession:
         keys = [x for x in keys if not known[x].ended and (ask.what or x not in stays)]
         # What has begun and lasts is no longer in the ledger, but can still be ended.
         lasting = [x.id for x in self.plan.track.items if getattr(x, "end", 0.0) > until]
-        lasting += [x for x, one in self.happenings.running.items() if one.reason is None]
+        lasting += self.happenings.list_lasting()
         lasting = [x for x in dict.fromkeys(lasting) if x not in known]
         keys += [
             x for x in lasting if (target in makers(x) if ask.what else x.startswith(mine) and x not in stays)
         ]
         if not keys:
             return Reply(id=ident, state="done", why=self._why_nothing(target, ask.what))
-        speech = next((s for s in self.plan.track.speeches if s.id in keys and s.end > until), None)
+        speeches = self.plan.track.speeches
+        said = next((s.id for s in speeches if s.id in keys and goes_on(speeches, s.id, until)), None)
         spoken, word = None, None
-        if speech is not None:
-            spoken, word = split_spoken_text(self.plan.track.speeches, speech, until)
+        if said is not None:
+            spoken, word = spoken_until(ALPHABET, speeches, said, until)
         self._take_back([target, *keys] if ask.what else keys, work)
         why = f"{len(keys)} taken back; what has begun stops or goes back to its stance"
         return Reply(id=ident, state="done", why=why, spoken=spoken, last_word=word or None)
@@ -427,9 +441,10 @@ class LiveSession:
 
     def _take_back(self, keys: Iterable[str], work: TickWork) -> None:
         for key in keys:
-            work.close(key, "taken back")
+            before = work.close(key, "taken back")
             self.happenings.stop(key, "withdrawn")
-            for each, ask in self.ledger.drop(key):
+            dropped = self.ledger.drop(key)
+            for each, ask in dropped if before is None else [(key, before), *dropped]:
                 self.happenings.stop(each, "withdrawn")
                 self._end_waiting(each, ask, "withdrawn", "taken back")
                 work.close(each, "taken back")
@@ -508,19 +523,24 @@ class LiveSession:
         """Plan a tick's requests, answer them, and report others that changed because of them."""
         now, ledger = self.now, self.ledger
         self.running.reach(now, self._edited)
-        if work.asks or work.gone:
-            asks = [*work.gone.values(), *work.asks.values()]
+        if work.asks or work.gone or work.steered:
+            asks = [*work.gone.values(), *work.asks.values(), *work.steered]
             self.tape.keep(asks, now)
             self.running.hear(now, asks)
         for done in work.over:
             out.replies[done.place] = Reply(id=done.ident, state="refused", why=done.why)
-        if not (work.asks or work.gone or work.open or self._edited):
+        if not (work.asks or work.gone or work.steered or work.open or self._edited):
             return
         self._edited = False
         for open_ in work.open.values():
             self._end_replaced(open_)
-        watched = {key: ask for key, ask in ledger.known.items() if not ask.settled or ask.at > now}
+        watched = {
+            key: ask
+            for key, ask in ledger.known.items()
+            if not ask.settled or ask.at > now or key in work.turned
+        }
         found = find(self.plan, watched, now - 1.0)
+        self._steering.stop_paused(work, found)
         for key, ask in watched.items():
             if ask.settled and ask.differs(found.get(key)):
                 self._tell_changed(key, ask, found.get(key, FoundAnswer()), out)
@@ -568,7 +588,7 @@ class LiveSession:
         """Report that what waited under an id has ended, if something else has taken its place; so have the
         gestures that were made for what was said.
         """
-        if self._goes_on_from(open_):
+        if self._goes_on_from(open_) or (open_.adds is not None and takes_more(open_.adds)):
             return
         gone = [] if open_.replaces is None else [(open_.key, open_.replaces)]
         if open_.adds is not None:
@@ -601,10 +621,15 @@ class LiveSession:
             words -= {(w.start, w.text) for w in before.timing.words}
             marks -= {(m.at, m.viseme) for m in before.timing.marks}
             if words or marks:
-                at = round_seconds(speech.start + min(words | marks)[0])
+                at = round_seconds(find_line_start(speech) + min(words | marks)[0])
+            elif speech.text != before.text:  # a mark behind what was said
+                at = round_seconds(before.end)
             else:
                 notes = (*notes, str(phrase("nothing new is said: it was said before, or its time is over")))
-        return msgspec.structs.replace(reply, at=at, since=round_seconds(before.start), notes=notes)
+        if is_paused(before.start):
+            return msgspec.structs.replace(reply, notes=notes)
+        since = round_seconds(find_line_start(before))
+        return msgspec.structs.replace(reply, at=at, since=since, notes=notes)
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:
         """Return the reply to a block of BML: for each behaviour, and for all of them."""
@@ -671,7 +696,8 @@ class LiveSession:
         if self.now < self._tidied + TIDY:
             return
         now = self._tidied = self.now
-        for key, ask in self.ledger.forget(now):
+        open_ = self._steering.find_open(self.plan, now)
+        for key, ask in self.ledger.forget(now, open_):
             why = reword_for_client(
                 "; ".join(r.message for r in self.plan.reports if r.request == key), ask.client
             )

@@ -230,6 +230,7 @@ def _instructions(project: Project) -> str:
         "with its words are made (`gestures` false leaves them to you). `gesture` with a tag, `nod`, `shake` "
         "and `look` do more where it matters; `mode` 'listening' while the other speaks, 'thinking' "
         "while you prepare an answer, 'reacting' for a second when something surprises you, `mood` when it "
-        "changes. Times are seconds; without `at` or `after` things begin as soon as can be. A result tells "
-        "when it plays, or in `why` why it does not."
+        "changes. Call `interrupt` when the other begins to speak while you do: its result tells what was "
+        "heard of your words. Times are seconds; without `at` or `after` things begin as soon as can be. A "
+        "result tells when it plays, or in `why` why it does not."
     )

@@ -170,7 +170,8 @@ class Part(Struct, frozen=True, kw_only=True, omit_defaults=True):
 class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """What becomes of a request. at, until: seconds of the session at which it plays. since: when the line
     began that it adds to, where it does. actions: what plays. notes: what was left out of it. spoken,
-    last_word: of something said that is withdrawn, what was spoken until then. seen: for keypoints, layer ->
+    last_word: of something said that is withdrawn, interrupted or paused, what was spoken until then. skip:
+    where in its line it is paused, or goes on, seconds. seen: for keypoints, layer ->
     the stance the person is in. error: what is wrong with it if it could not be understood; then there is
     nothing else.
     """
@@ -186,6 +187,7 @@ class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
     notes: tuple[str, ...] = ()
     spoken: str | None = None
     last_word: str | None = None
+    skip: float | None = None
     parts: tuple[Part, ...] = ()
     seen: dict[Layer, str] = {}
     error: str | None = None
@@ -193,8 +195,9 @@ class Reply(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 class Event(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Something that happened. changed: the plan for a request changed; state and times are as in a reply.
-    started, ended: an action, or speech, with its words. reason: why it ended; of speech that did not end by
-    itself, spoken and last_word tell what was spoken.
+    started, ended: an action, or speech, with its words. skip: of speech that goes on after a pause, where in
+    its line, seconds. reason: why it ended; of speech that did not end by itself, spoken and last_word tell
+    what was spoken.
     """
 
     event: Literal["changed", "started", "ended", "closed"]
@@ -208,6 +211,7 @@ class Event(Struct, frozen=True, kw_only=True, omit_defaults=True):
     action: str | None = None
     line: str | None = None
     text: str | None = None
+    skip: float | None = None
     reason: Reason | None = None
     spoken: str | None = None
     last_word: str | None = None

@@ -18,9 +18,10 @@ from metagraph.live.osc_bytes import OscError, measure_seconds_ahead, pad_osc, r
 ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
 SENDERS = 32  # known at once
-AT_ONCE = ("hello", "status", "describe", "withdraw")  # whatever the time tag of their bundle says
+STEERING = ("withdraw", "interrupt", "pause", "resume", "finish")
+AT_ONCE = ("hello", "status", "describe", *STEERING)  # whatever the time tag of their bundle says
 # Addresses that take no number, so that a number reports a button: 0 when it is let go.
-BUTTONS = ("gesture", "fidget", "change", "nod", "shake", "action", "stance", "blink", "text", "withdraw")
+BUTTONS = ("gesture", "fidget", "change", "nod", "shake", "action", "stance", "blink", "text", *STEERING)
 LET_GO = "a value of 0 means a released button; send another number"
 LARGEST = 60_000  # bytes of one datagram that is sent
 
@@ -107,7 +108,7 @@ def _of_session(word: str, said: _Values) -> Mapping[str, Any] | None:
             return {"do": word, "mode": texts[0] if texts and texts[0] else None} | more
         case "place":
             return {"do": word, "name": texts[0] if texts else "user", "point": numbers} | more
-        case "withdraw":
+        case "withdraw" | "interrupt" | "pause" | "resume" | "finish":
             return {"do": word, "what": texts[0] if texts else ""} | more
         case "hello":
             return {"do": word} | said.first("token") | more

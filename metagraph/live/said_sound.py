@@ -73,7 +73,8 @@ def join_asks(before: Say, ask: Say) -> Say | None:
         seconds = None
         if before.duration is not None and ask.duration is not None:
             seconds = before.duration + ask.duration
-        text = f"{before.text} {ask.text}"
+        pieces = before.more  # of words, which have their blanks
+        text = before.text + ask.text if pieces else f"{before.text} {ask.text}"
         return msgspec.structs.replace(ask, text=text, duration=seconds, at=before.at)
     if old is None or new is None:
         return None
@@ -83,6 +84,7 @@ def join_asks(before: Say, ask: Say) -> Say | None:
         ask,
         text=" ".join(texts) if len(texts) == 2 else "",
         words=tuple([w.text, w.start, w.start if w.end is None else w.end] for w in both.words),
+        characters=(),
         visemes=tuple([m.at, m.viseme, m.weight] for m in both.marks),
         set="oculus" if both.marks else None,
         at=before.at,
@@ -112,6 +114,6 @@ class SaidSounds:
         while len(self._lines) > LINES:
             self._lines.popitem(last=False)
         marks = line.hear(np.frombuffer(data, "<i2") / 32768.0, said)
-        if ask.words or ask.visemes:  # which tell more
+        if ask.words or ask.characters or ask.visemes:  # which tell more
             return msgspec.structs.replace(ask, audio=None)
         return msgspec.structs.replace(ask, audio=None, visemes=tuple(map(tuple, marks)), set="oculus")

@@ -31,7 +31,9 @@ class Options(Struct, frozen=True):
     """Where to listen. host: loopback, on both IP versions, where it is empty. port, osc: 0 for any free one,
     None for none. origins: web pages that may connect besides those of this machine, "null" for those from
     files. stdio: whether standard input and output are a client. mcp: whether that speaks the Model Context
-    Protocol. vmc: host and port of a program that receives VMC, None for none.
+    Protocol. vmc, face: host and port of a program that receives VMC, and of an Unreal Engine that receives
+    Live Link Face, None for none. person: the UDP port at which VMC of a tracked person is read, on this
+    machine alone, None for none.
     """
 
     host: str = ""
@@ -42,6 +44,8 @@ class Options(Struct, frozen=True):
     stdio: bool = False
     mcp: bool = False
     vmc: tuple[str, int] | None = None
+    face: tuple[str, int] | None = None
+    person: int | None = None
 
 
 class LiveError(ValueError):
@@ -58,7 +62,8 @@ def check_live_options(options: Options) -> Options:
             "character; "
         )
         raise LiveError(words + f"choose one, for example --token {secrets.token_urlsafe(12)}")
-    for port in (options.port, options.osc, options.vmc[1] if options.vmc is not None else None):
+    sent = [to[1] for to in (options.vmc, options.face) if to is not None]
+    for port in (options.port, options.osc, options.person, *sent):
         if port is not None and not 0 <= port <= 65535:
             raise LiveError(f"a port is a number from 0 to 65535, not {port}")
     return options
@@ -93,6 +98,7 @@ class Server:
         self._sockets: set[Any] = set()
         self._servers: list[asyncio.Server] = []
         self._osc: Any = None
+        self.person_port = 0  # at which VMC of a tracked person is read, once it is
         self._stdio: StdioLine | None = None
         self._stdio_number = 0
 
@@ -112,6 +118,10 @@ class Server:
                 osc = await self._open_osc(hosts[0], options.osc)
             if options.vmc is not None:
                 await self._open_vmc(*options.vmc)
+            if options.face is not None:
+                await self._open_face(*options.face)
+            if options.person is not None:
+                await self._open_person(options.person)
         except OSError as error:
             await self.close()
             words = error.strerror or str(error)
@@ -165,6 +175,23 @@ class Server:
         await loop.create_datagram_endpoint(
             lambda: VmcLine(self.hub, self.clock), remote_addr=(host.strip("[]"), port)
         )
+
+    async def _open_face(self, host: str, port: int) -> None:
+        from metagraph.live.face_link import FaceLinkLine
+
+        loop = asyncio.get_running_loop()
+        await loop.create_datagram_endpoint(
+            lambda: FaceLinkLine(self.hub, self.clock), remote_addr=(host.strip("[]"), port)
+        )
+
+    async def _open_person(self, port: int) -> None:
+        from metagraph.live.vmc_person import VmcPersonLine
+
+        loop = asyncio.get_running_loop()
+        transport, _ = await loop.create_datagram_endpoint(
+            lambda: VmcPersonLine(self.hub, self.clock), ("127.0.0.1", port)
+        )
+        self.person_port = int(transport.get_extra_info("sockname")[1])
 
     def _line(self, line: bytes | None) -> None:
         if line is not None:

@@ -78,19 +78,29 @@ class Open:
 
 @dataclass
 class TickWork:
-    """A tick's asks on their way into the plan. gone: what is taken back before they count, by its key."""
+    """A tick's asks on their way into the plan. gone: what is taken back before they count, by its key.
+    steered: what is done to what is said, in turn; turned: keys of what that concerns, and of the words that
+    are paused for it.
+    """
 
     asks: dict[str, a.AnyRequest] = field(default_factory=dict)
     gone: dict[str, a.AnyRequest] = field(default_factory=dict)
     open: dict[str, Open] = field(default_factory=dict)
     over: list[Open] = field(default_factory=list)
+    steered: list[a.AnyRequest] = field(default_factory=list)
+    turned: set[str] = field(default_factory=set)
+    paused: set[str] = field(default_factory=set)
 
-    def close(self, key: str, why: str) -> None:
-        """Answer a request at once: something else has taken its place."""
+    def close(self, key: str, why: str) -> OpenAsk | None:
+        """Answer a request at once: something else has taken its place. Return what it would have replaced,
+        if that was promised.
+        """
         found = self.open.pop(key, None)
-        for each in () if found is None else (*found.also, found):
+        every = () if found is None else (*found.also, found)
+        for each in every:
             each.why = why
             self.over.append(each)
+        return next((x.replaces for x in every if x.replaces is not None and x.replaces.settled), None)
 
 
 def order_requests(clients: Sequence[int]) -> list[int]:

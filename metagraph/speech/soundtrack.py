@@ -57,6 +57,7 @@ def place_lines(plan: Plan, sounds: Mapping[str, Array], rate: int = RATE) -> li
         samples = sounds.get(speech.line or "")
         if samples is None:
             continue
+        samples = samples[round(speech.skip * rate) :]  # what was said before a pause
         count = round((speech.end - speech.start) * rate)
         if count < len(samples) - rate // 100:
             samples = samples[: max(count, 0)].copy()

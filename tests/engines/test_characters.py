@@ -25,7 +25,7 @@ SEED, AHEAD, RECENT = 5, 20.0, 5.0  # a short memory, so that much is forgotten 
 STEPS = (0.013, 0.047, 0.2, 0.111, 0.029)  # seconds between updates
 FRAMES = 500
 # more updates, quarters of a minute apart, after which it is asked for the first time again what happened
-UNHEARD = 120
+UNHEARD = 180
 SHOWN = range(49, FRAMES, 50)  # frames at which answers, poses and morph targets are compared
 
 ASKED: dict[int, list[Any]] = {
@@ -89,6 +89,15 @@ ASKED: dict[int, list[Any]] = {
         {"do": "mode"},
         {"do": "say", "line": "hello", "gestures": False, "after": 1},
     ],
+    455: [{"do": "say", "id": "told", "text": "We", "more": True}],
+    456: [{"do": "say", "id": "told", "text": "ll, it", "more": True}, {"do": "gesture", "id": "told/1"}],
+    457: [{"do": "say", "id": "told", "text": " rains all day long.", "more": True}],
+    462: [{"do": "pause", "what": "told"}],
+    466: [{"do": "say", "id": "told", "text": " Take a coat.", "more": True}],
+    468: [{"do": "resume"}],
+    480: [{"do": "interrupt", "what": "told", "id": "cut"}],
+    485: [{"do": "say", "id": "told", "text": "Yes", "more": True}],
+    498: [{"do": "finish"}],
 }
 
 
@@ -158,12 +167,14 @@ def in_python(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[s
         out["ids"] += [character.say_sound(s["id"], s["samples"], s["rate"]) for s in step["sounds"]]
         character.update(math.nan if step["now"] is None else step["now"])
         if step["hear"]:
-            out["events"] += [[e.kind, e.at, e.layer, e.action, e.meta] for e in character.events()]
+            events = character.events()
+            out["events"] += [[e.kind, e.at, e.layer, e.action, f"{e.meta} {e.reason}"] for e in events]
         if step["show"]:
             answers = [character.answer(ident) for ident in [*out["ids"], "nobody"]]
             pose = character.pose()
             shown = {
                 "now": character.now,
+                "spoken": list(character.spoken("told")),
                 "answers": [[a.state, a.at, a.until, list(a.what), bool(a.why)] for a in answers],
             }
             shown |= {
@@ -188,11 +199,12 @@ for (const step of JSON.parse(readFileSync(stepsFile, "utf8"))) {
   for (const request of step.ask) out.ids.push(character.ask(request));
   for (const { id, samples, rate } of step.sounds) out.ids.push(character.saySound(id, samples, rate));
   character.update(step.now ?? NaN);
-  if (step.hear) for (const e of character.events()) out.events.push([e.kind, e.at, e.layer, e.action, e.meta]);
+  if (step.hear) for (const e of character.events()) out.events.push([e.kind, e.at, e.layer, e.action, `${e.meta} ${e.reason}`]);
   if (!step.show) continue;
   const { rotations, translations } = character.pose();
   out.shown.push({
     now: character.now,
+    spoken: Object.values(character.spoken("told")),
     answers: [...out.ids, "nobody"].map((id) => character.answer(id)).map((a) => [a.state, a.at, a.until, a.what, a.why !== ""]),
     rotations: rows(rotations, 4),
     positions: rows(positions(graph.parents, rotations, translations), 3),
@@ -264,11 +276,14 @@ public static class Game
             character.Update(step["now"] == null ? double.NaN : Convert.ToDouble(step["now"], CultureInfo.InvariantCulture));
             if ((bool)step["hear"])
             {
-                events.AddRange(character.Events().Select(e => (object)new object[] { e.Kind, e.At, e.Layer, e.Action, e.Meta }));
+                events.AddRange(character.Events().Select(e => (object)new object[] { e.Kind, e.At, e.Layer, e.Action, e.Meta + " " + e.Reason }));
             }
             if (!(bool)step["show"]) { continue; }
             var one = new JsonObject();
             one["now"] = character.Now;
+            string text, word;
+            character.Spoken("told", out text, out word);
+            one["spoken"] = new object[] { text, word };
             one["answers"] = ids.Concat(new object[] { "nobody" }).Select(id => character.AnswerTo((string)id))
                 .Select(a => (object)new object[] { a.State, a.At, a.Until, a.What, a.Why != "" }).ToArray();
             BodyPose pose = character.Pose();
@@ -332,10 +347,10 @@ func _init():
 		character.update(NAN if step.now == null else step.now)
 		if step.hear:
 			for e in character.events():
-				out.events.append([e.kind, e.at, e.layer, e.action, e.meta])
+				out.events.append([e.kind, e.at, e.layer, e.action, e.meta + " " + e.reason])
 		if not step.show:
 			continue
-		var one = {now = character.now, answers = [], rotations = [], positions = [], morphs = character.morphs()}
+		var one = {now = character.now, spoken = character.spoken("told"), answers = [], rotations = [], positions = [], morphs = character.morphs()}
 		for id in out.ids + ["nobody"]:
 			var a = character.answer(id)
 			one.answers.append([a.state, a.at, a.until, a.what, a.why != ""])
@@ -403,8 +418,11 @@ def test_the_script_has_something_of_everything(wanted: Made) -> None:
     _, found = wanted
     states = {state for shown in found["shown"] for state, *_ in shown["answers"]}
     assert states == {"planned", "late", "refused", "done"}
-    spoken = [e for e in found["events"] if e[2] == "speech" and e[4] == "voice"]
+    spoken = [e for e in found["events"] if e[2] == "speech" and e[4].startswith("voice ")]
     assert [e[0] for e in spoken] == ["begin", "end"] and 0.5 < spoken[1][1] - spoken[0][1] < 1.0
+    ends = [e[4] for e in found["events"] if e[2] == "speech" and e[4].startswith("told ") and e[0] == "end"]
+    assert ends == ["told ", "told interrupted", "told ", "told finished"]
+    assert found["shown"][FRAMES // 50 - 1]["spoken"] == ["Yes", "Yes"]
     assert {layer for _, _, layer, _, _ in found["events"]} == {"body", "arms", "head", "speech"}
     assert found["ids"][:5] == ["#1", "#2", "#3", "#4", "g"]
     *times, heard, once, twice = [shown["now"] for shown in found["shown"]]
@@ -443,6 +461,7 @@ def test_a_character_is_the_same_in_every_language(
     assert found["ids"] == python["ids"]
     for ours, theirs in zip(python["shown"], found["shown"], strict=True):
         assert theirs["now"] == pytest.approx(ours["now"], abs=1e-6)
+        assert theirs["spoken"] == ours["spoken"]
         for number, (mine, other) in enumerate(zip(ours["answers"], theirs["answers"], strict=True)):
             asked = [*python["ids"], "nobody"][number], ours["now"]
             assert [mine[0], *mine[3:]] == [other[0], *other[3:]], asked

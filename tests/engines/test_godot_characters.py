@@ -176,7 +176,7 @@ var graph = read(words()[0])
 var Voice = load("res://addons/metagraph/core/voice.gd")
 var Graphemes = load("res://addons/metagraph/core/graphemes.gd")
 for text in words()[1]:
-	var voice = Voice.of(graph, {"line": null, "text": text, "start": 0.0, "end": 2.0, "length": null})
+	var voice = Voice.of(graph, {"line": null, "text": text, "start": 0.0, "end": 2.0, "length": null, "skip": 0.0})
 	var said = Graphemes.spelled(graph.alphabet, text, 2.0)
 	var shapes = []
 	for piece in said.pieces:

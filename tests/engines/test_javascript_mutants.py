@@ -331,7 +331,7 @@ MUTATIONS = [
         "export const SHAPE = 0.4;",
         "how long a last shape stays",
     ),
-    ("items.js", "Math.max(now - old.start, 0)", "0", "what has been said of a line stands"),
+    ("items.js", "Math.max(now - findLineStart(old), old.skip)", "0", "what has been said of a line stands"),
     ("graphemes.js", '["th", ["TH"]]', '["th", ["DD"]]', "spelling"),
     ("graphemes.js", "const finalE = ", "const finalE = false && ", "the silent e"),
     (

@@ -63,7 +63,11 @@ def test_vectors_that_are_broken_fail(game: Path, tmp_path: Path) -> None:
 MUTATIONS = {
     "the curve of blends": ("util.gd", "x * x * (3.0 - 2.0 * x)", "x"),
     "what synthesisers count seconds in": ("told_timing.gd", "const TICKS = 1e7", "const TICKS = 1e6"),
-    "what has been said of a line stands": ("items.gd", "Util.most(now - old.start, 0.0)", "0.0"),
+    "what has been said of a line stands": (
+        "items.gd",
+        "Util.most(now - find_line_start(old), old.skip)",
+        "0.0",
+    ),
     "uses are counted": ("remembering.gd", "uses.get(ident, 0) + 1", "1"),
     "ties go by id": (
         "replan.gd",

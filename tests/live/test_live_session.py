@@ -285,7 +285,7 @@ def test_withdrawing_all_leaves_the_look_at_the_user(session: LiveSession) -> No
     ask(session, {"do": "look", "to": "user"}, {"do": "say", "text": "It rains all day."})
     events(session, session.now + 0.5)
     gone = one(session, {"do": "withdraw"})
-    assert gone["why"].startswith("1 taken back") and gone["spoken"] == "It rains"
+    assert gone["why"].startswith("1 taken back") and gone["spoken"] == "It rains all"
     assert [look.end for look in session.plan.track.looks] == [pytest.approx(1e9)]
 
 

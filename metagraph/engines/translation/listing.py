@@ -90,6 +90,7 @@ LISTING = (
     Translated("metagraph.playback.life.lane", "lane", ("Lane",), without=("Lane.starts", "Lane.values")),
     Translated("metagraph.playback.life.items", "items"),
     Translated("metagraph.playback.life.track", "track", ("Track",), without=("Track.items", "Track.plus")),
+    Translated("metagraph.playback.life.utterances", "utterances"),
     Translated("metagraph.playback.life.wanted", "wanted"),
     Translated("metagraph.playback.life.expressions", "expressions"),
     Translated("metagraph.playback.life.sympathy", "sympathy"),
@@ -98,6 +99,7 @@ LISTING = (
     Translated("metagraph.playback.planning.finding", "finding"),
     Translated("metagraph.playback.planning.meaning", "meaning"),
     Translated("metagraph.speech.word_gestures", "word_gestures"),
+    Translated("metagraph.speech.spoken_so_far", "spoken_so_far"),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.

@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from metagraph.graph.life import Life
+from metagraph.playback.life.items import find_line_start, measure_line
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, stressed
@@ -112,15 +113,18 @@ def emphases_on(
         if speech.end <= cut or speech.start >= drawn:
             continue
         for n, peak in enumerate(stressed(voices, speech)):
-            at = max(speech.start, speech.start + peak - EARLY)
-            if at >= speech.end or uniform(seed, speech.id, "brows", str(n)) >= life.accent_brows:
+            begin = find_line_start(speech)
+            at = max(speech.start, begin + peak - EARLY)
+            if at >= speech.end or begin + peak < speech.start:
+                continue
+            if uniform(seed, speech.id, "brows", str(n)) >= life.accent_brows:
                 continue
             chance = uniform(seed, speech.id, "raise", str(n))
             found.append([at, RAISE + RAISE_CHANCE * chance, 0.5 + 0.5 * chance, RAISE_RISES])
         if asks(speech):
-            length = speech.end - speech.start if speech.length is None else speech.length
+            length = measure_line(speech)
             lead = min(ASKING, 0.5 * length)
-            at = speech.start + length - lead
+            at = max(speech.start, find_line_start(speech) + length - lead)
             if at < speech.end:
                 found.append([at, lead + ASKING_ON, ASKING_LIFTS, lead])
     for change in track.modes:

@@ -95,7 +95,7 @@ def _unknown(alphabet: Alphabet, letter: str, before: list[str]) -> list[str]:
     return []
 
 
-def _words(alphabet: Alphabet, text: str) -> list[tuple[str, float]]:
+def split_words(alphabet: Alphabet, text: str) -> list[tuple[str, float]]:
     """Return each word and how many characters' time of pause follows it."""
     out: list[tuple[str, float]] = []
     word, pause = "", 0.0
@@ -170,10 +170,10 @@ class Spelled:
 def read_aloud(alphabet: Alphabet, text: str) -> float:
     """Return how long a text takes to say, seconds."""
     letters = alphabet.letters(alphabet.stripped(text))
-    return max(SHORTEST, sum([_size_of(alphabet.code(letter)) for letter in letters]) / PACE)
+    return max(SHORTEST, sum([measure_letter(alphabet.code(letter)) for letter in letters]) / PACE)
 
 
-def _size_of(code: int) -> float:
+def measure_letter(code: int) -> float:
     """Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean
     is a syllable.
     """
@@ -187,7 +187,7 @@ def spelled(alphabet: Alphabet, text: str, duration: float) -> Spelled:
     """Return what a text says in `duration` seconds; nothing where no letter of it is known."""
     out = Spelled()
     plan: list[SpelledSound] = []
-    for word, pause in _words(alphabet, alphabet.stripped(text)):
+    for word, pause in split_words(alphabet, alphabet.stripped(text)):
         plan.extend(sounds(alphabet, word))
         if pause > 0:
             plan.append(SpelledSound("", pause))

@@ -10,10 +10,13 @@ from dataclasses import dataclass, replace
 
 from metagraph.graph.requests import Point
 from metagraph.graph.words import Layer, Mode
+from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.line_timing import (
     LineTiming,
     alike_timings,
     extended,
+    measure_text,
+    pace_text,
     place_told,
     shifted,
     tells_on,
@@ -42,8 +45,10 @@ class LookAt:
 @dataclass(frozen=True, slots=True)
 class Speech:
     """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts
-    the lower. length: seconds it would have taken, where something cut it short. timing: when its words and
-    mouth shapes come, where that was told.
+    the lower. length: seconds all of it would have taken, where something cut it short. timing: when its
+    words and mouth shapes come, where that was told. skip: seconds of it that were said before a pause. more:
+    whether more of it may come, so that it is not over when it falls silent. over: when it was said that none
+    does, where it had fallen silent.
     """
 
     id: str
@@ -54,6 +59,9 @@ class Speech:
     priority: int = 1
     length: float | None = None
     timing: LineTiming | None = None
+    skip: float = 0.0
+    more: bool = False
+    over: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,28 +107,40 @@ class StayFrom:
 Item = LookAt | Speech | ModeFrom | PlaceFrom | BlinkAt | StayFrom | MoodFrom
 
 
+def find_line_start(speech: Speech) -> float:
+    """Return the second that what is said counts from: before its start if it goes on after a pause."""
+    return speech.start - speech.skip
+
+
+def measure_line(speech: Speech) -> float:
+    """Return how long all of it takes, seconds, with what was said before a pause and what was cut off."""
+    return speech.end - find_line_start(speech) if speech.length is None else speech.length
+
+
 def cut(speech: Speech, at: float) -> Speech:
     """Return the speech, ending no later than `at`; how long it would have been is remembered."""
-    if speech.end <= at:
-        return speech
-    return replace(
-        speech, end=at, length=speech.end - speech.start if speech.length is None else speech.length
-    )
+    return speech if speech.end <= at else replace(speech, end=at, length=measure_line(speech))
 
 
 def apart(speeches: Sequence[Speech]) -> list[Speech]:
     """Return speeches, which come in order, without overlaps: one that is at least as important cuts the
-    running one, a lesser one is not said.
+    running one, with what is said behind it under its id; a lesser one is not said.
     """
     out: list[Speech] = []
+    ends: dict[str, float] = {}  # when what was cut would have ended
     for speech in speeches:
+        if speech.id in ends and speech.start == ends[speech.id]:
+            ends[speech.id] = speech.end
+            continue
         if len(out) > 0 and out[-1].end > speech.start:
             last = out[-1]
             if speech.priority < last.priority:
                 continue
             out.pop()
+            if last.id != speech.id:
+                ends[last.id] = last.end
             if last.start < speech.start:
-                out.append(cut(last, speech.start))
+                out.append(replace(cut(last, speech.start), more=False))
         out.append(speech)
     return out
 
@@ -144,21 +164,42 @@ def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
     """
     if old is None or old.timing is None or new.timing is None or old.length is not None:
         return new
+    if new.timing.paced:
+        return new if old.end <= now else _behind_words(old, old.timing, new, new.timing, now)
     if max(old.start, new.start) > now and old.start != new.start:
         return new
-    said = max(now - old.start, 0.0)
+    said = max(now - find_line_start(old), old.skip)
     if old.end <= now and not tells_on(old.timing, shifted(new.timing, old.timing.later)):
         return new
-    told = new.timing if old.start > now else place_told(old.timing, new.timing, said)
+    told = new.timing if old.start > now and old.skip == 0 else place_told(old.timing, new.timing, said)
     timing = extended(old.timing, told, said)
     length = max(timed_seconds(timing, None), new.end - new.start)
     more = new.text == "" or new.text == told_text(new.timing)
     return replace(
         new,
         start=old.start,
-        end=old.start + length,
+        end=find_line_start(old) + length,
         text=told_text(timing) if more else new.text,
         timing=timing,
+        skip=old.skip,
+    )
+
+
+def pace_speech(alphabet: Alphabet, new: Speech) -> Speech:
+    """Return a text with the times its letters tell, so that what comes of it later can be added."""
+    timing = pace_text(alphabet, new.text, None)
+    length = timed_seconds(timing, measure_text(alphabet, new.text))
+    return replace(new, end=new.start + length, timing=timing)
+
+
+def _behind_words(old: Speech, told: LineTiming, new: Speech, more: LineTiming, now: float) -> Speech:
+    """Return a line with a text behind what was told of it. told, more: their words."""
+    begin = find_line_start(old)
+    at = max(now - begin, old.skip, old.end - begin)
+    timing = replace(told, words=(*told.words, *shifted(more, at).words), paced=True)
+    length = timed_seconds(timing, at + new.end - new.start)
+    return replace(
+        new, start=old.start, end=begin + length, text=old.text + new.text, timing=timing, skip=old.skip
     )
 
 
@@ -181,6 +222,8 @@ def alike_speeches(one: Sequence[Speech], other: Sequence[Speech]) -> bool:
 
 def _same_speech(a: Speech, b: Speech) -> bool:
     if a.line != b.line or a.text != b.text or a.length != b.length or a.priority != b.priority:
+        return False
+    if a.skip != b.skip or a.more != b.more or a.over != b.over:
         return False
     return a.id == b.id and a.start == b.start and a.end == b.end and alike_timings(a.timing, b.timing)
 

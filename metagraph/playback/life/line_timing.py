@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from math import ceil
 
 from metagraph.playback.life.alphabet import Alphabet
-from metagraph.playback.life.graphemes import Spelled, sounds
+from metagraph.playback.life.graphemes import PACE, Spelled, measure_letter, sounds, split_words
 from metagraph.playback.life.mouth import LATE, STEP, VOWELS, MouthPiece
 
 WORD = 0.15  # seconds a word takes of which only the start is told, if nothing comes before
@@ -70,12 +70,14 @@ class VisemeMark:
 @dataclass(frozen=True, slots=True)
 class LineTiming:
     """A line's words and mouth shapes, each by time. later: seconds by which what is told later is said
-    later, because something came after its time.
+    later, because something came after its time. paced: whether nobody told the times, and they follow from
+    the letters.
     """
 
     words: tuple[SpokenWord, ...] = ()
     marks: tuple[VisemeMark, ...] = ()
     later: float = 0.0
+    paced: bool = False
 
 
 def alike_timings(one: LineTiming | None, other: LineTiming | None) -> bool:
@@ -177,6 +179,54 @@ def timing_of(
             end = min(end, next((m.at for m in shown if m.viseme == "sil" and m.at > word.start), end))
         said.append(SpokenWord(word.text, word.start, max(end, word.start)))
     return LineTiming(tuple(said), tuple(shown))
+
+
+def measure_text(alphabet: Alphabet, text: str) -> float:
+    """Return how long a text takes where more of it may come before or after, seconds."""
+    out = 0.0
+    for word, pause in split_words(alphabet, text):
+        out += _measure_word(alphabet, word) + pause / PACE
+    return out
+
+
+def pace_text(alphabet: Alphabet, text: str, seconds: float | None) -> LineTiming:
+    """Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as
+    its letters tell.
+    """
+    scale = 1.0 if seconds is None else seconds / max(measure_text(alphabet, text), 1e-3)
+    at = 0.0
+    words: list[SpokenWord] = []
+    for word, pause in split_words(alphabet, text):
+        end = at + scale * _measure_word(alphabet, word)
+        if word != "":
+            words.append(SpokenWord(word, at, end))
+        at = end + scale * pause / PACE
+    return LineTiming(tuple(words), (), 0.0, True)
+
+
+def _measure_word(alphabet: Alphabet, word: str) -> float:
+    """Return how long a word takes, seconds."""
+    return sum([measure_letter(alphabet.code(letter)) for letter in alphabet.letters(word)]) / PACE
+
+
+def join_letters(alphabet: Alphabet, letters: Sequence[SpokenWord]) -> list[SpokenWord]:
+    """Return the words that letters make whose times are told one by one: a blank parts words, and so does
+    each letter that is a syllable.
+    """
+    out: list[SpokenWord] = []
+    parted = True
+    for letter in letters:
+        if alphabet.stripped(letter.text) == "":
+            parted = True
+            continue
+        alone = measure_letter(alphabet.code(alphabet.letters(letter.text)[0])) > 1
+        if parted or alone:
+            out.append(letter)
+        else:
+            last = out[-1]
+            out[len(out) - 1] = SpokenWord(last.text + letter.text, last.start, letter.end)
+        parted = alone
+    return out
 
 
 def told_text(timing: LineTiming) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.face.names import VISEMES
+from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.mouth import soften
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, choose_voice
@@ -55,7 +56,7 @@ def _shown(speech: Speech, voice: Voice, smoothing: float, times: Array) -> Arra
 
 
 def _at(speech: Speech, voice: Voice, times: Array) -> Array:
-    said = np.minimum(times, speech.end) - speech.start
+    said = np.minimum(times, speech.end) - find_line_start(speech)
     keys = voice.times
     low = np.minimum(np.maximum(keys.searchsorted(said, "right") - 1, 0), len(keys) - 2)
     part = np.minimum(np.maximum((said - keys[low]) / np.maximum(keys[low + 1] - keys[low], 1e-9), 0.0), 1.0)[

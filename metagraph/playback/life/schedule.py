@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from metagraph.graph.life import Life, Manner, get_manner, is_same_life
 from metagraph.graph.words import MODES
 from metagraph.playback.life.expressions import emphases_on, swells_on
+from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Track
 from metagraph.playback.life.voice import Voice, are_same_voices, stressed
@@ -407,8 +408,8 @@ class LifeDraw:
                 continue
             end = min(speech.end, self.drawn)
             for n, peak in enumerate(stressed(self.voices, speech)):
-                at = speech.start + peak
-                if at < start or at >= end:
+                at = find_line_start(speech) + peak
+                if at < max(start, speech.start) or at >= end:
                     continue
                 if n == 0 or uniform(self.seed, speech.id, "accent", str(n)) < self.life.accent_blinks:
                     out.append((at, n == 0))

@@ -160,18 +160,23 @@ class Track:
             if look.start <= seconds:
                 looks = [x for x in looks if x.priority > look.priority]
             looks.append(look)
+        latest = {x.id: x for x in self.speeches}
+        lasts = {ident for ident, x in latest.items() if x.more or x.end > seconds}
         mode = max(0, bisect_right(self.modes, seconds, key=lambda m: m.start) - 1)
         places = {x.name: n for n, x in enumerate(self.places) if x.start <= seconds}
         stays = {x.layer: n for n, x in enumerate(self.stays) if x.start <= seconds}
         return Track(
             tuple(looks),
-            tuple([x for x in self.speeches if x.start > seconds or x.end > seconds]),
+            tuple([  # of an utterance that is not over all pieces
+                x for x in self.speeches
+                if x.start > seconds or x.end > seconds or (x.more and x.id in lasts)
+            ]),
             tuple(self.modes[mode:]),
             tuple([x for n, x in enumerate(self.places) if x.start > seconds or places[x.name] == n]),
             tuple([x for x in self.blinks if x.start > seconds]),
             tuple([x for n, x in enumerate(self.stays) if x.start > seconds or stays[x.layer] == n]),
             tuple(lasting(self.moods, seconds)),
-        )
+        )  # fmt: skip
 
     def last_speech(self, ident: str) -> Speech | None:
         """Return the last of an id that is said."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
-from metagraph.playback.life.items import Speech
+from metagraph.playback.life.items import Speech, measure_line
 from metagraph.playback.life.line_timing import LineTiming, timed_sounds
 from metagraph.playback.life.mouth import MouthPiece, accents_of, mouth_track
 
@@ -78,15 +78,11 @@ def choose_voice(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     the sound, else one guessed from its text.
     """
     if speech.timing is not None:
-        return make_voice_from_timing(
-            speech.timing, speech.end - speech.start if speech.length is None else speech.length
-        )
+        return make_voice_from_timing(speech.timing, measure_line(speech))
     known = voices.get(speech.line) if speech.line is not None else None
     if isinstance(known, Voice):
         return known
-    return guess_voice(
-        speech.text, max(0.0, speech.length if speech.length is not None else speech.end - speech.start)
-    )
+    return guess_voice(speech.text, max(0.0, measure_line(speech)))
 
 
 def stressed(voices: Mapping[str, Voice], speech: Speech) -> list[float]:

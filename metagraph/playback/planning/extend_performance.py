@@ -9,6 +9,7 @@ from typing import Any, Literal
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.playback.life.items import BlinkAt, ModeFrom, PlaceFrom, Speech, StayFrom
+from metagraph.playback.life.utterances import find_soon, is_paused
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import Revision, extend_plan
 from metagraph.playback.planning.hearing import heard, owners
@@ -32,15 +33,14 @@ def hear_asks(
     """Return the plan with asks worked in that became known at `now`, and the horizon moved to `end`.
 
     What begins before now + the settings' lookahead stays as it was, but at the very beginning, when nothing
-    has been shown. Asks need ids; of two with one id the later counts.
+    has been shown; voices begin and stop sooner (`utterances.VOICE`). Asks need ids; of two with one id the
+    later counts.
     """
     fixed = now + project.settings.lookahead if now > 0 else 0.0
-    meant = understand(project, asks, fixed)
+    soon = find_soon(now, project.settings.lookahead)
+    meant = understand(project, asks, fixed, soon)
     turning = [layer for layer in LAYERS if model(project, layer).modes]
-    refused = [r.request for r in meant.refused]
-    found = heard(
-        plan.requests, plan.track, meant.requests, meant.track(), meant.withdrawn, refused, fixed, turning
-    )
+    found = heard(plan.requests, plan.track, meant, fixed, soon, turning)
     # Without any asks everything is planned again, so that an edited project shows; with some, what they have
     # to do with.
     leave = (
@@ -50,7 +50,7 @@ def hear_asks(
     )
     plan = replace(plan, track=found.track)
     revision = Revision(frozenset(found.withdrawn), frozenset(found.stopped), leave)
-    after = extend_plan(project, plan, fixed, meant.requests, end, stances, idle, revision)
+    after = extend_plan(project, plan, fixed, found.fresh, end, stances, idle, revision)
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
 
 
@@ -94,7 +94,10 @@ def answer_asks(plan: Plan, idents: Iterable[str]) -> dict[str, AskAnswer]:
     for item in plan.track.items:
         if not isinstance(item, StayFrom) and (not isinstance(item, Speech) or latest[item.id] is item):
             for x in of(item.id):
-                x.items.append(item)
+                if is_paused(item.start):
+                    x.waiting.append(item.start)
+                else:
+                    x.items.append(item)
     for report in plan.reports:
         for x in of(report.request):
             x.told.append(report)
@@ -131,6 +134,8 @@ def _answer(ident: str, found: _Found) -> AskAnswer:
         return AskAnswer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
     if any(r.outcome == "already-there" for r in told):
         return AskAnswer(ident, "done", None, None, (), why)
+    if found.waiting and is_paused(found.waiting[0]):
+        return AskAnswer(ident, "planned", None, None, (), "it is paused")
     if found.waiting and all(r.played for r in told):
         return AskAnswer(
             ident,

@@ -6,23 +6,41 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from metagraph.graph.words import LAYERS, Layer
-from metagraph.playback.life.items import Speech, behind, going_on
+from metagraph.playback.life.items import LookAt, Speech, behind, going_on, pace_speech
 from metagraph.playback.life.spots import is_same_spot, named
 from metagraph.playback.life.track import Track
+from metagraph.playback.life.utterances import (
+    PAUSED,
+    break_off,
+    find_slot,
+    find_stop,
+    find_utterances,
+    finish_speech,
+    goes_on,
+    is_paused,
+    pause,
+    resume,
+    takes_more,
+)
 from metagraph.playback.plan import MetaRequest
+from metagraph.playback.planning.meaning import Meaning
 from metagraph.playback.planning.mood import MoodFrom
+
+LISTENS = 2.0  # seconds for which the gaze stays with the partner who interrupts
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """track: what lasts. withdrawn: ids of what was asked for before and is not any more; stopped: those of
-    them that were taken back and not asked for anew. touched: layers that asks have to do with.
+    """track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of
+    what was asked for before and is not any more; stopped: those of them that were taken back and not asked
+    for anew. touched: layers that asks have to do with.
     """
 
     track: Track
+    fresh: Sequence[MetaRequest]
     withdrawn: AbstractSet[str]
     stopped: AbstractSet[str]
     touched: AbstractSet[Layer]
@@ -55,54 +73,36 @@ def makers(ident: str) -> list[str]:
 def heard(
     requests: Sequence[MetaRequest],
     track: Track,
-    fresh: Sequence[MetaRequest],
-    more: Track,
-    withdrawn: AbstractSet[str],
-    refused: Sequence[str],
+    meant: Meaning,
     now: float,
+    soon: float,
     turning: Sequence[Layer],
 ) -> Heard:
-    """Return what asks do. requests, track: of the plan. fresh, more: what is asked for, where speeches may
-    overlap. withdrawn: ids taken back; every one where it holds "". refused: ids of what could not be
-    understood. now: what begins before stays. turning: layers whose models perform one thing in one mode
-    and another in another.
+    """Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may
+    overlap. now: what begins before stays; soon: so for voices. turning: layers whose models perform one
+    thing in one mode and another in another.
     """
-    gone = set(withdrawn)
-    for ident in refused:
-        gone.add(ident)
-    for request in fresh:
+    more = meant.track()
+    gone = set(meant.withdrawn)
+    for report in meant.refused:
+        gone.add(report.request)
+    for request in meant.requests:
         gone.add(request.id)
     for ident in more.idents():
         gone.add(ident)
-    said: list[Speech] = []
-    begun: set[str] = set()  # of which more is said
-    anew: set[str] = set()  # of which something else was said before
-    later: dict[str, float] = {}  # by how much those begin that are said behind others of their id
-    for asked in more.speeches:
-        before_it = None if asked.id in withdrawn else track.last_speech(asked.id)
-        last = next((s for s in reversed(said) if s.id == asked.id), before_it)
-        one = going_on(last, asked, now)
-        if one is not asked and last is not None and one.start == last.start:
-            begun.add(one.id)
-            said = [s for s in said if s.id != one.id]
-        elif one is asked and asked.id not in withdrawn:
-            one = behind([*track.speeches, *said], asked, now)
-            if one is not asked:
-                later[one.id] = one.start - asked.start
-        if one is asked and track.last_speech(one.id) is not None:
-            anew.add(one.id)
-        said.append(one)
+    words = add_speeches(meant, track, soon)
     before = [r.id for r in requests]
     before += track.idents()
     # Who takes everything back still looks at whom it talks with.
     user = {x.id for x in track.looks if x.start < now and is_same_spot(x.to, named("user"))}
     taken: set[str] = set()
     stopped: set[str] = set()
+    withdrawn = meant.withdrawn
     for ident in before:
         every = "" in withdrawn and ident not in user
         if every or (len(withdrawn) > 0 and any(o in withdrawn for o in makers(ident))):
             stopped.add(ident)
-        elif len(anew) > 0 and ident not in anew and any(o in anew for o in makers(ident)):
+        elif len(words.anew) > 0 and ident not in words.anew and any(o in words.anew for o in makers(ident)):
             stopped.add(ident)  # what was made for the words before
         if ident in stopped or ident in gone or ("." in ident and any(o in gone for o in owners(ident))):
             taken.add(ident)
@@ -112,7 +112,7 @@ def heard(
         if stay.on:
             staying.add(stay.layer)
     stays = [s for s in more.stays if s.layer in staying]
-    touched = {r.layer for r in fresh}
+    touched = {r.layer for r in meant.requests}
     for request in requests:
         if request.id in taken:
             touched.add(request.layer)
@@ -122,6 +122,7 @@ def heard(
     turns = (
         len(more.modes) > 0
         or len(more.speeches) > 0
+        or len(meant.steered) > 0
         or any(m.id in taken for m in track.modes)
         or any(s.id in taken for s in track.speeches)
     )
@@ -131,16 +132,210 @@ def heard(
     if len(more.moods) > 0 or any(m.id in taken for m in track.moods):
         for layer in LAYERS:
             touched.add(layer)
+    left = track
+    for ident in find_utterances(track, "", soon):
+        if ident in stopped:
+            left = break_off(left, ident, now)
     over: set[str] = set()
     for ident in taken:
-        if ident not in begun and ident not in later:
+        if ident not in words.on:
             over.add(ident)
-    moods = [
-        MoodFrom(
-            m.id, m.start + later[m.id], m.valence, m.arousal, m.intensity, m.end + later[m.id]
-        ) if m.id in later else m
-        for m in more.moods
-    ]  # fmt: skip
-    left = track.without(over, now).without(begun)
-    lasting = Track(more.looks, tuple(said), more.modes, more.places, more.blinks, tuple(stays), tuple(moods))
-    return Heard(left.joined(lasting), taken, stopped, touched)
+    left = words.leave(left.without(over, now))
+    lasting = Track(
+        more.looks, tuple(words.said), more.modes, more.places, more.blinks, tuple(stays), tuple(words.moods)
+    )
+    said = Heard(left.joined(lasting), meant.requests, taken, stopped, touched)
+    return _steer(requests, said, meant, now, soon)
+
+
+@dataclass(frozen=True, slots=True)
+class AddedSpeeches:
+    """What speeches become beside those that are said already. said: all that are new or changed. begun: ids
+    of those of which an earlier one is in them, changed; on: ids of which what is said already goes on. anew:
+    ids under which something else was said before. moods: what is asked for with them.
+    """
+
+    said: Sequence[Speech]
+    begun: AbstractSet[str]
+    on: AbstractSet[str]
+    anew: AbstractSet[str]
+    moods: Sequence[MoodFrom]
+
+    def leave(self, track: Track) -> Track:
+        """Return what of a track stays beside these: moods of what goes on last as long as that, where no
+        other is asked for.
+        """
+        if len(self.on) == 0:
+            return track
+        other = {m.id for m in self.moods}
+        ends: dict[str, float] = {}
+        for speech in self.said:
+            if speech.id in self.on:
+                ends[speech.id] = PAUSED if speech.more else speech.end
+        speeches = [s for s in track.speeches if s.id not in self.begun]
+        moods: list[MoodFrom] = []
+        for m in track.moods:
+            if m.id not in ends or m.id in other:
+                moods.append(m)
+            else:
+                moods.append(replace(m, end=ends[m.id]))
+        return Track(
+            track.looks, tuple(speeches), track.modes, track.places, track.blinks, track.stays, tuple(moods)
+        )
+
+
+def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
+    """Return what asks to say something make of a track: a line, something behind a line, or more of one."""
+    said: list[Speech] = []
+    begun: set[str] = set()
+    on: set[str] = set()
+    anew: set[str] = set()
+    later: dict[str, float] = {}  # by how much those begin that are said behind others of their id
+    for told in meant.speeches:
+        taken = told.id in meant.withdrawn or "" in meant.withdrawn
+        before = None if taken else track.last_speech(told.id)
+        last = next((s for s in reversed(said) if s.id == told.id), before)
+        asked = told
+        now = soon
+        if last is not None and is_paused(last.start) and told.start <= soon and told.line is None:
+            now = last.start  # it is said when that is
+            asked = replace(told, start=now, end=told.end + now - told.start)
+        paces = told.more or (last is not None and last.more)
+        if paces and asked.timing is None and asked.line is None:
+            asked = pace_speech(meant.alphabet, asked)
+        one = going_on(last, asked, now)
+        if one is not asked and last is not None and one.start == last.start:
+            begun.add(one.id)
+            on.add(one.id)
+            said = [s for s in said if s.id != one.id or s.start < one.start]
+            if last is before:
+                said.extend([s for s in track.speeches if s.id == one.id and s is not last])
+        elif one is asked and not taken:
+            one = behind([*track.speeches, *said], asked, now)
+            opens = last is not None and takes_more(last) and told.line is None and one.start <= now
+            if one is not asked or opens:
+                on.add(one.id)
+        if one.start != told.start:
+            later[one.id] = one.start - told.start
+        if one is asked and one.id not in on and track.last_speech(one.id) is not None:
+            anew.add(one.id)
+        said.append(one)
+    opened = {s.id for s in said if s.more}
+    moods: list[MoodFrom] = []
+    for m in meant.moods:
+        by = later[m.id] if m.id in later and m.id not in begun else 0.0
+        end = PAUSED if m.id in opened else m.end + by
+        moods.append(MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
+    return AddedSpeeches(said, begun, on, anew, moods)
+
+
+def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: float, soon: float) -> Heard:
+    """Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn.
+    requests: of the plan before.
+    """
+    if len(meant.steered) == 0:
+        return heard
+    steered = SteeredSpeech(heard.track, set(heard.withdrawn), set(heard.stopped), set(heard.touched))
+    steered.requests = [r for r in requests if r.id not in heard.withdrawn]
+    for request in heard.fresh:
+        steered.requests.append(request)
+        steered.anew.add(request.id)
+    for ask in meant.steered:
+        ids = find_utterances(steered.track, ask.what, soon)
+        if ask.do == "interrupt":
+            if len(ids) > 0:
+                look = LookAt(ask.id, now, now + LISTENS, named("user"), 1.0, True, ask.priority)
+                steered.track = steered.track.joined(Track((look,)))
+            if ask.what != "" and ask.what not in ids:  # it may have been said, and its gestures go on
+                ids.append(ask.what)
+        for ident in ids:
+            made = {x for x in steered.idents() if ident in makers(x)}
+            if ask.do == "interrupt":
+                stop = find_stop(meant.alphabet, steered.track, ident, soon, now)
+                steered.interrupt(ident, made, min(stop, now), now, soon)
+            elif ask.do == "pause":
+                steered.pause(ident, made, find_stop(meant.alphabet, steered.track, ident, soon, now), now)
+            elif ask.do == "resume":
+                steered.resume(ident, made, now, soon)
+            else:
+                steered.track = finish_speech(steered.track, ident, soon)
+    fresh = [r for r in steered.requests if r.id in steered.anew]
+    return Heard(steered.track, fresh, steered.withdrawn, steered.stopped, steered.touched)
+
+
+@dataclass
+class SteeredSpeech:
+    """A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew;
+    the rest is as in `Heard`.
+    """
+
+    track: Track
+    withdrawn: set[str]
+    stopped: set[str]
+    touched: set[Layer]
+    requests: list[MetaRequest] = field(default_factory=list)
+    anew: set[str] = field(default_factory=set)
+
+    def idents(self) -> list[str]:
+        """Return the ids of all of it."""
+        return [*[r.id for r in self.requests], *self.track.idents()]
+
+    def interrupt(self, ident: str, made: AbstractSet[str], stop: float, now: float, soon: float) -> None:
+        """Break off an utterance at `stop`, and what was made for it at `now`."""
+        if goes_on(self.track.speeches, ident, soon):
+            self.track = break_off(self.track, ident, stop)
+        if any(m.id in made for m in self.track.moods):
+            for layer in LAYERS:
+                self.touched.add(layer)
+        self.track = self.track.without(made, now)
+        for request in self.requests:
+            if request.id in made:
+                self.withdrawn.add(request.id)
+                self.stopped.add(request.id)
+                self.touched.add(request.layer)
+        self.requests = [r for r in self.requests if r.id not in made]
+
+    def pause(self, ident: str, made: AbstractSet[str], stop: float, now: float) -> None:
+        """Hold an utterance, and what was made for it and has not had its moment; what has begun goes
+        back.
+        """
+        if is_paused(stop):
+            return
+        slot = find_slot(self.track)
+        self.track = pause(self.track, ident, made, stop, slot)
+        kept: list[MetaRequest] = []
+        for request in self.requests:
+            if request.id not in made or is_paused(request.start):
+                kept.append(request)
+                continue
+            self.withdrawn.add(request.id)
+            self.touched.add(request.layer)
+            if request.start < now:
+                self.stopped.add(request.id)
+            wanted = request.start if request.stroke is None else request.stroke
+            if wanted >= stop:
+                kept.append(self.move_request(request, slot - stop, 0.0))
+                self.anew.add(request.id)
+        self.requests = kept
+
+    def resume(self, ident: str, made: AbstractSet[str], now: float, soon: float) -> None:
+        """Go on with an utterance that is paused, and with what waits for it."""
+        held = next((s for s in self.track.speeches if s.id == ident and is_paused(s.start)), None)
+        if held is None:
+            return
+        self.track = resume(self.track, ident, made, soon)
+        kept: list[MetaRequest] = []
+        for request in self.requests:
+            if request.id in made and is_paused(request.start):
+                self.withdrawn.add(request.id)
+                self.touched.add(request.layer)
+                self.anew.add(request.id)
+                kept.append(self.move_request(request, soon - held.start, now))
+            else:
+                kept.append(request)
+        self.requests = kept
+
+    def move_request(self, request: MetaRequest, by: float, least: float) -> MetaRequest:
+        """Return a request moved by so many seconds, to no earlier than `least`."""
+        stroke = None if request.stroke is None else request.stroke + by
+        return replace(request, start=max(least, request.start + by), stroke=stroke)

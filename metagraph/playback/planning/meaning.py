@@ -11,7 +11,7 @@ from metagraph.graph.repeating import cycle_of
 from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.graphemes import read_aloud
 from metagraph.playback.life.items import BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom
-from metagraph.playback.life.line_timing import LineTiming, timed_seconds, told_text
+from metagraph.playback.life.line_timing import LineTiming, pace_text, timed_seconds, told_text
 from metagraph.playback.life.spots import Spot, named
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import ASKED, MetaRequest, Report
@@ -59,6 +59,7 @@ class PlainAsk:
     name: str = ""
     point: tuple[float, ...] = ()
     what: str = ""
+    more: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,11 +86,24 @@ class AskedBlock:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class SteeringAsk:
+    """What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what
+    is said, "" for all of it.
+    """
+
+    do: str
+    id: str
+    what: str
+    priority: int
+
+
 @dataclass
 class Meaning:
     """What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one
-    where it holds "". unknown: what an ask names that is not there: "action", "stance" or "line". Speeches
-    may overlap.
+    where it holds "". steered: what is done to what is said, in turn. unknown: what an ask names that is not
+    there: "action", "stance" or "line". Speeches may overlap. fixed: seconds before which no gesture can
+    begin that a line asks for, though the line itself may.
     """
 
     project: Project
@@ -105,8 +119,10 @@ class Meaning:
     moods: list[MoodFrom] = field(default_factory=list)
     blocks: list[AskedBlock] = field(default_factory=list)
     withdrawn: set[str] = field(default_factory=set)
+    steered: list[SteeringAsk] = field(default_factory=list)
     refused: list[Report] = field(default_factory=list)
     unknown: str = ""
+    fixed: float = 0.0
 
     def track(self) -> Track:
         """Return what lasts."""
@@ -126,6 +142,7 @@ class Meaning:
         self.stays += other.stays
         self.moods += other.moods
         self.blocks += other.blocks
+        self.steered += other.steered
         for ident in other.withdrawn:
             self.withdrawn.add(ident)
 
@@ -203,6 +220,8 @@ class Meaning:
             self.places.append(PlaceFrom(ident, at, ask.name, ask.point))
         elif ask.do == "withdraw":
             self.withdrawn.add(ask.what)
+        elif ask.do == "interrupt" or ask.do == "pause" or ask.do == "resume" or ask.do == "finish":
+            self.steered.append(SteeringAsk(ask.do, ident, ask.what, priority))
         elif ask.do == "say":
             return self.say(ask, ident, at, priority)
         elif ask.do == "bml":
@@ -259,15 +278,20 @@ class Meaning:
             text = told_text(ask.timing)
         if line is None and text == "" and ask.timing is None:
             return "say what: a line's id, text, or words with their times"
-        if ask.timing is not None:
-            length = timed_seconds(ask.timing, ask.duration)
+        timing = ask.timing
+        if timing is None and line is None and ask.more and ask.duration is not None:
+            timing = pace_text(self.alphabet, text, ask.duration)
+        if timing is not None:
+            length = timed_seconds(timing, ask.duration)
         elif ask.duration is not None:
             length = max(ask.duration, 0.0)
         elif line is not None and line.seconds is not None:
             length = line.seconds
         else:
             length = read_aloud(self.alphabet, text)
-        self.speeches.append(Speech(ident, at, at + length, ask.line, text, priority, None, ask.timing))
+        self.speeches.append(
+            Speech(ident, at, at + length, ask.line, text, priority, None, timing, 0.0, ask.more)
+        )
         told = ask.valence is not None or line is None
         valence = ask.valence if told or line is None else line.valence
         arousal = ask.arousal if told or line is None else line.arousal
@@ -280,16 +304,20 @@ class Meaning:
             if inner.do == "say":
                 return "a line would say another line; its asks may not"
             begins = at if inner.at is None else at + inner.at
+            if ask.at is None:
+                begins = max(begins, self.fixed)
             why = self.add(inner, f"{ident}.{n + 1}", begins, max(inner.priority, priority), at)
             if why != "":
                 return why
         return ""
 
 
-def understood(whole: Meaning, ask: PlainAsk, now: float) -> None:
-    """Take what an ask means, or refuse all of it. now: when it begins where it does not say."""
-    one = Meaning(whole.project, whole.graphs, whole.alphabet)
-    at = now if ask.at is None else ask.at
+def understood(whole: Meaning, ask: PlainAsk, now: float, soon: float) -> None:
+    """Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it
+    is said, likewise.
+    """
+    one = Meaning(whole.project, whole.graphs, whole.alphabet, fixed=now)
+    at = (soon if ask.do == "say" else now) if ask.at is None else ask.at
     why = one.add(ask, ask.id, at, ask.priority, 0.0)
     if why == "":
         whole.take(one)

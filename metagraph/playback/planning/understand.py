@@ -19,16 +19,20 @@ from metagraph.playback.timing.told_timing import read_given_timing
 __all__ = ["find_action", "find_stance", "lead", "understand"]
 
 
-def understand(project: Project, asks: Iterable[a.AnyRequest], now: float) -> Meaning:
-    """Return what asks mean in a project. now: when those begin that do not say; seconds.
+def understand(
+    project: Project, asks: Iterable[a.AnyRequest], now: float, soon: float | None = None
+) -> Meaning:
+    """Return what asks mean in a project. now: when those begin that do not say; soon: when it is said, for
+    what is said, None for the same; seconds.
 
     An ask that makes several requests gives them ids of its own: `<id>`, then `<id>.1`, `<id>.2`, ...
     """
     graphs = [project.graphs[layer] for layer in LAYERS]
     out = Meaning(project, graphs, ALPHABET)
     for ask in asks:
-        one = Meaning(project, graphs, ALPHABET)
-        at = now if ask.at is None else ask.at
+        one = Meaning(project, graphs, ALPHABET, fixed=now)
+        usual = now if soon is None or not isinstance(ask, a.Say) else soon
+        at = usual if ask.at is None else ask.at
         try:
             _add(one, ask, ask.id, at)
             for block in one.blocks:
@@ -61,7 +65,7 @@ def _add(meaning: Meaning, ask: a.AnyRequest, ident: str, at: float) -> None:
 
 
 # Which fields of an ask are called otherwise, or otherwise told, in a plain one.
-_TOLD = frozenset(("told", "line", "words", "visemes", "set", "audio", "rate", "bml", "mood"))
+_TOLD = frozenset(("told", "line", "words", "visemes", "characters", "set", "audio", "rate", "bml", "mood"))
 _FIELDS: dict[type, tuple[str, ...]] = {}
 
 

@@ -9,7 +9,14 @@ from typing import Any
 
 from metagraph.graph.requests import RequestError, Say
 from metagraph.playback.life.alphabet import ALPHABET
-from metagraph.playback.life.line_timing import LineTiming, SpokenWord, VisemeMark, timing_of, wrong_in
+from metagraph.playback.life.line_timing import (
+    LineTiming,
+    SpokenWord,
+    VisemeMark,
+    join_letters,
+    timing_of,
+    wrong_in,
+)
 
 THOUSAND, TICKS = 1e3, 1e7  # of a second, in which Polly and Azure count
 LARGEST = 1e15
@@ -28,6 +35,14 @@ def read_given_timing(ask: Say) -> LineTiming | None:
     for n, entry in enumerate(ask.words):
         if not _word(entry, words):
             raise RequestError(f"words[{n}]: should be [word, start, end], seconds from the line's start")
+    letters: list[SpokenWord] = []
+    for n, entry in enumerate(ask.characters):
+        if not _word(entry, letters):
+            raise RequestError(
+                f"characters[{n}]: should be [letter, start, end], seconds from the line's start"
+            )
+    if not words:
+        words = join_letters(ALPHABET, letters)
     for n, entry in enumerate(ask.visemes):
         if not (_mark(entry, marks) or _word(entry, words, named=True)):
             raise RequestError(f"visemes[{n}]: should be [seconds, viseme], or with its weight from 0 to 1")
@@ -60,7 +75,8 @@ def _word(entry: Any, out: list[SpokenWord], named: bool = False) -> bool:
             end = (start + length) / TICKS if _number(start) and _number(length) else None
             entry = [entry.get("text"), _seconds(start, TICKS), end]
         else:
-            entry = [entry.get("word", entry.get("text")), entry.get("start"), entry.get("end")]
+            text = entry.get("word", entry.get("text", entry.get("character")))
+            entry = [text, entry.get("start"), entry.get("end")]
     elif named:
         return False
     if not isinstance(entry, Sequence) or not 2 <= len(entry) <= 3 or not isinstance(entry[0], str):

@@ -135,12 +135,16 @@ inline const Map<std::string, List<Field>>& fields() {
         {"blink", {}},
         {"say",
          {{"line", Json(), line}, {"text", "", words}, duration, {"gestures", true, flag},
-          {"words", Json::list(), word_list}, {"visemes", Json::list(), viseme_list}, {"set", Json(), viseme_set},
-          mood_, intensity_}},
+          {"words", Json::list(), word_list}, {"visemes", Json::list(), viseme_list},
+          {"characters", Json::list(), viseme_list}, {"more", false, flag}, {"set", Json(), viseme_set}, mood_, intensity_}},
         {"mode", {{"mode", Json(), mode}}},
         {"mood", {mood_, intensity_, duration}},
         {"place", {{"name", Json(), name, true}, {"point", Json(), point, true}}},
         {"withdraw", {{"what", "", id}}},
+        {"interrupt", {{"what", "", id}}},
+        {"pause", {{"what", "", id}}},
+        {"resume", {{"what", "", id}}},
+        {"finish", {{"what", "", id}}},
         {"bml", {{"bml", Json(), block, true}}},
     };
     return out;

@@ -4,16 +4,23 @@
 #include "describe.hpp"
 #include "hear.hpp"
 #include "pose.hpp"
+#include "spoken_so_far.hpp"
 #include "streamed_voice.hpp"
 
 namespace metagraph {
 
 /// What began or ended: kind "begin" or "end"; layer, "speech" for what is said; action, its name, of what is said the
-/// line's id, else the text; meta, the request's id, "auto/..." for what the models wrote.
+/// line's id, else the text; meta, the request's id, "auto/..." for what the models wrote; reason, where all that is said
+/// under an id is over: finished, interrupted or replaced, else "".
 struct Happening {
     std::string kind;
     double at = 0.0;
-    std::string layer, action, meta;
+    std::string layer, action, meta, reason;
+};
+
+/// What of something said was spoken, and the last word of it.
+struct Spoken {
+    std::string text, last_word;
 };
 
 /// seed: 32 bits, the export's where none is given; characters of one graph want different ones. idle: whether the models
@@ -86,7 +93,7 @@ public:
         const auto begun = plan_->track->last_speech(id);
         const bool goes_on = place != sounds_.end() && place->second.rate == rate && (begun || waiting != queue_.end());
         StreamedVoice voice = goes_on ? place->second : StreamedVoice(rate);
-        if (begun) voice.follow(now_ + graph_->project->settings->lookahead - begun->start);
+        if (begun) voice.follow(utterances::find_soon(now_, graph_->project->settings->lookahead) - items::find_line_start(begun));
         if (place != sounds_.end()) sounds_.erase(place);
         if (sounds_.size() == SOUNDS) sounds_.erase(sounds_.begin());
         const double from = voice.seconds;
@@ -136,6 +143,19 @@ public:
         }
         return metagraph::answer(*plan_, id);
     }
+
+    /// What of something said was spoken until now, up to the word that was begun, and that word; "" where nothing was.
+    Spoken spoken(const std::string& id) const {
+        const auto [text, last_word] = spoken_so_far::spoken_until(voice::alphabet(), plan_->track->speeches, id, now_);
+        return {text, last_word};
+    }
+
+    /// Break off something said because the partner speaks, hold it, go on with it, or say that no more of it comes; all of
+    /// it where no id is given.
+    std::string interrupt(const std::string& id = "") { return ask(Json::object({{"do", "interrupt"}, {"what", id}})); }
+    std::string pause(const std::string& id = "") { return ask(Json::object({{"do", "pause"}, {"what", id}})); }
+    std::string resume(const std::string& id = "") { return ask(Json::object({{"do", "resume"}, {"what", id}})); }
+    std::string finish_saying(const std::string& id = "") { return ask(Json::object({{"do", "finish"}, {"what", id}})); }
 
     /// What began and ended since this was last asked for, in order of time, of more than 1000 the latest.
     List<Happening> events() { return std::exchange(happened_, {}); }
@@ -198,7 +218,7 @@ private:
         if (!queue_.empty() || !enough) {
             plan_ = hear(*graph_, *plan_, now_, queue_, enough ? plan_->end : now_ + ahead_, options_);
             for (const Json& ask : std::exchange(queue_, {})) {
-                if (ask.find("do")->text != "withdraw") continue;
+                if (!lang::contains(List<std::string>{"withdraw", "interrupt", "pause", "resume", "finish"}, ask.find("do")->text)) continue;
                 Answer done;
                 done.id = ask.find("id")->text;
                 done.state = "done";
@@ -237,7 +257,14 @@ private:
             }
         }
         for (const auto& speech : plan_->track->speeches) {
-            note(speech->start, speech->end, "speech", speech->line.value_or(speech->text), speech->id);
+            const double over = speech->over.value_or(speech->end);
+            if (std::max(speech->end, over) <= seen_ || speech->start > now_) continue;
+            const std::string said = speech->line.value_or(speech->text);
+            const std::string reason = speech->end > now_ ? "" : utterances::explain_end(plan_->track->speeches, speech);
+            note(speech->start, speech->end, "speech", said, speech->id, speech->over.has_value() ? "" : reason);
+            if (speech->over.has_value() && over > seen_ && over <= now_) {
+                happened_.push_back({"end", over, "speech", said, speech->id, reason});
+            }
         }
         seen_ = now_;
         auto earlier = [](const Happening& a, const Happening& b) { return a.at < b.at; };
@@ -247,9 +274,12 @@ private:
         }
     }
 
-    void note(double start, double end, const std::string& layer, const std::string& action, const std::string& meta) {
-        if (start > seen_ && start <= now_) happened_.push_back({"begin", start, layer, action, meta});
-        if (end > seen_ && end <= now_) happened_.push_back({"end", end, layer, action, meta});
+    void note(
+        double start, double end, const std::string& layer, const std::string& action, const std::string& meta,
+        const std::string& reason = ""
+    ) {
+        if (start > seen_ && start <= now_) happened_.push_back({"begin", start, layer, action, meta, ""});
+        if (end > seen_ && end <= now_) happened_.push_back({"end", end, layer, action, meta, reason});
     }
 };
 

@@ -177,9 +177,12 @@ inline Ref<Lane> emphases_on(
         double at{};
         for (int n = 0; n < lang::len(voice::stressed(voices, speech)); n++) {
             const auto& peak = lang::at(voice::stressed(voices, speech), n);
-            at = std::max(speech->start, speech->start + peak - expressions::EARLY);
-            if (at >= speech->end
-                || choice::uniform(seed, List<std::string>{speech->id, "brows", lang::text(n)}) >= life->accent_brows) {
+            double begin = items::find_line_start(speech);
+            at = std::max(speech->start, begin + peak - expressions::EARLY);
+            if (at >= speech->end || begin + peak < speech->start) {
+                continue;
+            }
+            if (choice::uniform(seed, List<std::string>{speech->id, "brows", lang::text(n)}) >= life->accent_brows) {
                 continue;
             }
             chance = choice::uniform(seed, List<std::string>{speech->id, "raise", lang::text(n)});
@@ -191,9 +194,9 @@ inline Ref<Lane> emphases_on(
             });
         }
         if (expressions::asks(speech)) {
-            double length = !speech->length.has_value() ? speech->end - speech->start : *speech->length;
+            double length = items::measure_line(speech);
             double lead = std::min(expressions::ASKING, 0.5 * length);
-            at = speech->start + length - lead;
+            at = std::max(speech->start, items::find_line_start(speech) + length - lead);
             if (at < speech->end) {
                 found.push_back(List<double>{at, lead + expressions::ASKING_ON, expressions::ASKING_LIFTS, lead});
             }

@@ -185,10 +185,10 @@ inline List<std::string> _unknown(
     const std::string& letter,
     const List<std::string>& before
 );
-inline List<std::tuple<std::string, double>> _words(const Ref<Alphabet>& alphabet, const std::string& text);
+inline List<std::tuple<std::string, double>> split_words(const Ref<Alphabet>& alphabet, const std::string& text);
 inline List<Ref<SpelledSound>> sounds(const Ref<Alphabet>& alphabet, const std::string& word);
 inline double read_aloud(const Ref<Alphabet>& alphabet, const std::string& text);
-inline double _size_of(int code);
+inline double measure_letter(int code);
 inline Ref<Spelled> spelled(const Ref<Alphabet>& alphabet, const std::string& text, double duration);
 
 }  // namespace graphemes
@@ -317,7 +317,7 @@ inline List<std::string> _unknown(
 }
 
 /// Return each word and how many characters' time of pause follows it.
-inline List<std::tuple<std::string, double>> _words(const Ref<Alphabet>& alphabet, const std::string& text) {
+inline List<std::tuple<std::string, double>> split_words(const Ref<Alphabet>& alphabet, const std::string& text) {
     List<std::tuple<std::string, double>> out;
     std::string word = "";
     double pause = 0.0;
@@ -369,14 +369,14 @@ inline double read_aloud(const Ref<Alphabet>& alphabet, const std::string& text)
     List<std::string> letters = alphabet->letters(alphabet->stripped(text));
     List<double> found;
     for (const auto& letter : letters) {
-        found.push_back(graphemes::_size_of(alphabet->code(letter)));
+        found.push_back(graphemes::measure_letter(alphabet->code(letter)));
     }
     return std::max(graphemes::SHORTEST, lang::sum(found) / graphemes::PACE);
 }
 
 /// Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a
 /// syllable.
-inline double _size_of(int code) {
+inline double measure_letter(int code) {
     for (const auto& script : graphemes::_SYLLABARIES) {
         if (script->first <= code && code <= script->last) {
             return script->size;
@@ -389,7 +389,7 @@ inline double _size_of(int code) {
 inline Ref<Spelled> spelled(const Ref<Alphabet>& alphabet, const std::string& text, double duration) {
     Ref<Spelled> out = lang::made<Spelled>();
     List<Ref<SpelledSound>> plan;
-    for (const auto& [word, pause] : graphemes::_words(alphabet, alphabet->stripped(text))) {
+    for (const auto& [word, pause] : graphemes::split_words(alphabet, alphabet->stripped(text))) {
         lang::extend(plan, graphemes::sounds(alphabet, word));
         if (pause > 0) {
             plan.push_back(lang::made<SpelledSound>("", pause));

@@ -22,12 +22,16 @@ inline Answer answer(const std::string& id, const Plan& plan) {
     auto of = [&id](const std::string& made) { return lang::contains(hearing::owners(made), id); };
     Answer out;
     out.id = id;
-    auto plays = [&out](double start, double end, const std::string& what) {
+    List<double> waiting;
+    auto plays = [&out, &waiting](double start, double end, const std::string& what) {
+        if (utterances::is_paused(start)) {
+            waiting.push_back(start);
+            return;
+        }
         out.at = std::min(out.at.value_or(start), start);
         out.until = std::max(out.until.value_or(end), end);
         out.what.push_back(what);
     };
-    List<double> waiting;
     List<std::string> served; // keys of those whose action serves this request, too
     for (const auto& report : plan.reports) {
         if (!report->by.empty() && of(report->request)) served.push_back(report->by);
@@ -62,6 +66,9 @@ inline Answer answer(const std::string& id, const Plan& plan) {
         out.state = late ? "late" : "planned";
     } else if (there) {
         out.state = "done";
+    } else if (!waiting.empty() && utterances::is_paused(waiting[0])) {
+        out.state = "planned";
+        out.why = "it is paused";
     } else if (!waiting.empty() && all_played) {
         out.state = told ? "late" : "planned";
         out.at = waiting[0];
@@ -104,22 +111,20 @@ inline Ref<LayerPlan> since_layer(const LayerPlan& plan, double seconds) {
 
 /// Return the plan with asks worked in that became known at `now`, and the horizon moved to `end`.
 ///
-/// What begins before now + lookahead stays as it was, but at the very beginning, when nothing has been shown. Asks need
-/// ids; of two with one id the later counts. What cannot be understood is in the plan's reports.
+/// What begins before now + lookahead stays as it was, but at the very beginning, when nothing has been shown; voices
+/// begin and stop sooner. Asks need ids; of two with one id the later counts. What cannot be understood is in the plan's reports.
 inline Ref<const Plan> hear(
     const Graph& graph, const Plan& plan, double now, const List<Json>& asks, double end, const PlanOptions& options = {}
 ) {
     const double fixed = now > 0 ? now + graph.project->settings->lookahead : 0;
-    const Ref<Meaning> meaning = understand::understand(graph, asks, fixed);
+    const double soon = utterances::find_soon(now, graph.project->settings->lookahead);
+    const Ref<Meaning> meaning = understand::understand(graph, asks, fixed, soon);
     const Meaning& meant = *meaning;
-    List<std::string> refused, turning;
-    for (const auto& report : meant.refused) refused.push_back(report->request);
+    List<std::string> turning;
     for (const std::string& layer : graph::LAYERS) {
         if (!graph.layer(layer).markov->modes.empty()) turning.push_back(layer);
     }
-    const Ref<Heard> heard = hearing::heard(
-        plan.requests, plan.track, meant.requests, meaning->track(), meant.withdrawn, refused, fixed, turning
-    );
+    const Ref<Heard> heard = hearing::heard(plan.requests, plan.track, meaning, fixed, soon, turning);
     Set<std::string> leave;
     for (const std::string& layer : graph::LAYERS) {
         // Without any asks everything is planned on; with some, what they have to do with.
@@ -127,7 +132,7 @@ inline Ref<const Plan> hear(
     }
     Plan with = plan;
     with.track = heard->track;
-    const Ref<const Plan> after = planner::extend(graph, with, fixed, meant.requests, end, options, heard->withdrawn, leave, heard->stopped);
+    const Ref<const Plan> after = planner::extend(graph, with, fixed, heard->fresh, end, options, heard->withdrawn, leave, heard->stopped);
     if (meant.refused.empty()) return after;
     auto out = lang::made<Plan>(*after);
     lang::extend(out->reports, meant.refused);

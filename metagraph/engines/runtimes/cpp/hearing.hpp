@@ -8,45 +8,299 @@
 #include "items.hpp"
 #include "spots.hpp"
 #include "track.hpp"
+#include "utterances.hpp"
 #include "meta_plan.hpp"
+#include "meaning.hpp"
 #include "mood.hpp"
 #include "language.hpp"
 
 namespace metagraph {
 
 struct Heard;
+struct AddedSpeeches;
+struct SteeredSpeech;
 
 namespace hearing {
 
+inline constexpr double LISTENS = 2.0; // seconds for which the gaze stays with the partner who interrupts
 inline List<std::string> owners(const std::string& ident);
 inline List<std::string> makers(const std::string& ident);
 inline Ref<Heard> heard(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Track>& track,
-    const List<Ref<MetaRequest>>& fresh,
-    const Ref<Track>& more,
-    const Set<std::string>& withdrawn,
-    const List<std::string>& refused,
+    const Ref<Meaning>& meant,
     double now,
+    double soon,
     const List<std::string>& turning
+);
+inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon);
+inline Ref<Heard> _steer(
+    const List<Ref<MetaRequest>>& requests,
+    const Ref<Heard>& heard,
+    const Ref<Meaning>& meant,
+    double now,
+    double soon
 );
 
 }  // namespace hearing
 
-/// track: what lasts. withdrawn: ids of what was asked for before and is not any more; stopped: those of them that were
-/// taken back and not asked for anew. touched: layers that asks have to do with.
+/// track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked
+/// for before and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers
+/// that asks have to do with.
 struct Heard {
     Ref<Track> track;
+    List<Ref<MetaRequest>> fresh;
     Set<std::string> withdrawn;
     Set<std::string> stopped;
     Set<std::string> touched;
 
-    Heard(Ref<Track> track_, Set<std::string> withdrawn_, Set<std::string> stopped_, Set<std::string> touched_)
+    Heard(
+        Ref<Track> track_,
+        List<Ref<MetaRequest>> fresh_,
+        Set<std::string> withdrawn_,
+        Set<std::string> stopped_,
+        Set<std::string> touched_
+    )
         : track(std::move(track_)),
+            fresh(std::move(fresh_)),
             withdrawn(std::move(withdrawn_)),
             stopped(std::move(stopped_)),
             touched(std::move(touched_)) {}
 };
+
+/// What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of
+/// which an earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which
+/// something else was said before. moods: what is asked for with them.
+struct AddedSpeeches {
+    List<Ref<Speech>> said;
+    Set<std::string> begun;
+    Set<std::string> on;
+    Set<std::string> anew;
+    List<Ref<MoodFrom>> moods;
+
+    AddedSpeeches(
+        List<Ref<Speech>> said_,
+        Set<std::string> begun_,
+        Set<std::string> on_,
+        Set<std::string> anew_,
+        List<Ref<MoodFrom>> moods_
+    )
+        : said(std::move(said_)),
+            begun(std::move(begun_)),
+            on(std::move(on_)),
+            anew(std::move(anew_)),
+            moods(std::move(moods_)) {}
+
+    /// Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked
+    /// for.
+    Ref<Track> leave(const Ref<Track>& track) const;
+};
+
+/// A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is
+/// as in `Heard`.
+struct SteeredSpeech {
+    Ref<Track> track;
+    Set<std::string> withdrawn;
+    Set<std::string> stopped;
+    Set<std::string> touched;
+    List<Ref<MetaRequest>> requests;
+    Set<std::string> anew;
+
+    SteeredSpeech(
+        Ref<Track> track_,
+        Set<std::string> withdrawn_,
+        Set<std::string> stopped_,
+        Set<std::string> touched_,
+        List<Ref<MetaRequest>> requests_ = List<Ref<MetaRequest>>{},
+        Set<std::string> anew_ = Set<std::string>{}
+    )
+        : track(std::move(track_)),
+            withdrawn(std::move(withdrawn_)),
+            stopped(std::move(stopped_)),
+            touched(std::move(touched_)),
+            requests(std::move(requests_)),
+            anew(std::move(anew_)) {}
+
+    /// Return the ids of all of it.
+    List<std::string> idents();
+
+    /// Break off an utterance at `stop`, and what was made for it at `now`.
+    void interrupt(const std::string& ident, const Set<std::string>& made, double stop, double now, double soon);
+
+    /// Hold an utterance, and what was made for it and has not had its moment; what has begun goes back.
+    void pause(const std::string& ident, const Set<std::string>& made, double stop, double now);
+
+    /// Go on with an utterance that is paused, and with what waits for it.
+    void resume(const std::string& ident, const Set<std::string>& made, double now, double soon);
+
+    /// Return a request moved by so many seconds, to no earlier than `least`.
+    Ref<MetaRequest> move_request(const Ref<MetaRequest>& request, double by, double least);
+};
+
+inline Ref<Track> AddedSpeeches::leave(const Ref<Track>& track) const {
+    if (lang::len(this->on) == 0) {
+        return track;
+    }
+    Set<std::string> other;
+    for (const auto& m2 : this->moods) {
+        other.insert(m2->id);
+    }
+    Map<std::string, double> ends;
+    for (const auto& speech : this->said) {
+        if (lang::contains(this->on, speech->id)) {
+            ends[speech->id] = speech->more ? utterances::PAUSED : speech->end;
+        }
+    }
+    List<Ref<Speech>> speeches;
+    for (const auto& s : track->speeches) {
+        if (!lang::contains(this->begun, s->id)) {
+            speeches.push_back(s);
+        }
+    }
+    List<Ref<MoodFrom>> moods;
+    for (const auto& m : track->moods) {
+        if (!lang::contains(ends, m->id) || lang::contains(other, m->id)) {
+            moods.push_back(m);
+        } else {
+            moods.push_back(lang::made<MoodFrom>(
+                m->id,
+                m->start,
+                m->valence,
+                m->arousal,
+                m->intensity,
+                ends.at(m->id)
+            ));
+        }
+    }
+    return lang::made<Track>(track->looks, speeches, track->modes, track->places, track->blinks, track->stays, moods);
+}
+
+inline List<std::string> SteeredSpeech::idents() {
+    List<std::string> found;
+    for (const auto& r : this->requests) {
+        found.push_back(r->id);
+    }
+    return lang::together(found, this->track->idents());
+}
+
+inline void SteeredSpeech::interrupt(
+    const std::string& ident,
+    const Set<std::string>& made,
+    double stop,
+    double now,
+    double soon
+) {
+    if (utterances::goes_on(this->track->speeches, ident, soon)) {
+        this->track = utterances::break_off(this->track, ident, stop);
+    }
+    bool is_any = false;
+    for (const auto& m : this->track->moods) {
+        if (lang::contains(made, m->id)) {
+            is_any = true;
+            break;
+        }
+    }
+    if (is_any) {
+        for (const auto& layer : words::LAYERS) {
+            this->touched.insert(layer);
+        }
+    }
+    this->track = this->track->without(made, now);
+    for (const auto& request : this->requests) {
+        if (lang::contains(made, request->id)) {
+            this->withdrawn.insert(request->id);
+            this->stopped.insert(request->id);
+            this->touched.insert(request->layer);
+        }
+    }
+    List<Ref<MetaRequest>> found;
+    for (const auto& r : this->requests) {
+        if (!lang::contains(made, r->id)) {
+            found.push_back(r);
+        }
+    }
+    this->requests = found;
+}
+
+inline void SteeredSpeech::pause(const std::string& ident, const Set<std::string>& made, double stop, double now) {
+    if (utterances::is_paused(stop)) {
+        return;
+    }
+    double slot = utterances::find_slot(this->track);
+    this->track = utterances::pause(this->track, ident, made, stop, slot);
+    List<Ref<MetaRequest>> kept;
+    for (const auto& request : this->requests) {
+        if (!lang::contains(made, request->id) || utterances::is_paused(request->start)) {
+            kept.push_back(request);
+            continue;
+        }
+        this->withdrawn.insert(request->id);
+        this->touched.insert(request->layer);
+        if (request->start < now) {
+            this->stopped.insert(request->id);
+        }
+        double wanted = !request->stroke.has_value() ? request->start : *request->stroke;
+        if (wanted >= stop) {
+            kept.push_back(this->move_request(request, slot - stop, 0.0));
+            this->anew.insert(request->id);
+        }
+    }
+    this->requests = kept;
+}
+
+inline void SteeredSpeech::resume(const std::string& ident, const Set<std::string>& made, double now, double soon) {
+    Ref<Speech> first;
+    for (const auto& s : this->track->speeches) {
+        if (s->id == ident && utterances::is_paused(s->start)) {
+            first = s;
+            break;
+        }
+    }
+    Ref<Speech> held = first;
+    if (held == nullptr) {
+        return;
+    }
+    this->track = utterances::resume(this->track, ident, made, soon);
+    List<Ref<MetaRequest>> kept;
+    for (const auto& request : this->requests) {
+        if (lang::contains(made, request->id) && utterances::is_paused(request->start)) {
+            this->withdrawn.insert(request->id);
+            this->touched.insert(request->layer);
+            this->anew.insert(request->id);
+            kept.push_back(this->move_request(request, soon - held->start, now));
+        } else {
+            kept.push_back(request);
+        }
+    }
+    this->requests = kept;
+}
+
+inline Ref<MetaRequest> SteeredSpeech::move_request(const Ref<MetaRequest>& request, double by, double least) {
+    std::optional<double> stroke = !request->stroke.has_value()
+        ? std::nullopt
+        : std::optional<double>(*request->stroke + by);
+    return lang::made<MetaRequest>(
+        request->id,
+        request->layer,
+        request->kind,
+        std::max(least, request->start + by),
+        request->duration,
+        request->action,
+        request->tags,
+        request->limb,
+        request->stance,
+        request->priority,
+        request->resume,
+        stroke,
+        request->hold,
+        request->prepare,
+        request->among,
+        request->late,
+        request->valence,
+        request->arousal,
+        request->intensity
+    );
+}
 
 namespace hearing {
 
@@ -76,64 +330,29 @@ inline List<std::string> makers(const std::string& ident) {
     return out;
 }
 
-/// Return what asks do. requests, track: of the plan. fresh, more: what is asked for, where speeches may overlap.
-/// withdrawn: ids taken back; every one where it holds "". refused: ids of what could not be understood. now: what
-/// begins before stays. turning: layers whose models perform one thing in one mode and another in another.
+/// Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what
+/// begins before stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in
+/// another.
 inline Ref<Heard> heard(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Track>& track,
-    const List<Ref<MetaRequest>>& fresh,
-    const Ref<Track>& more,
-    const Set<std::string>& withdrawn,
-    const List<std::string>& refused,
+    const Ref<Meaning>& meant,
     double now,
+    double soon,
     const List<std::string>& turning
 ) {
-    Set<std::string> gone = lang::set_of(withdrawn);
-    for (const auto& ident : refused) {
-        gone.insert(ident);
+    Ref<Track> more = meant->track();
+    Set<std::string> gone = lang::set_of(meant->withdrawn);
+    for (const auto& report : meant->refused) {
+        gone.insert(report->request);
     }
-    for (const auto& request : fresh) {
+    for (const auto& request : meant->requests) {
         gone.insert(request->id);
     }
     for (const auto& ident : more->idents()) {
         gone.insert(ident);
     }
-    List<Ref<Speech>> said;
-    Set<std::string> begun; // of which more is said
-    Set<std::string> anew; // of which something else was said before
-    Map<std::string, double> later; // by how much those begin that are said behind others of their id
-    for (const auto& asked : more->speeches) {
-        Ref<Speech> before_it = lang::contains(withdrawn, asked->id) ? nullptr : track->last_speech(asked->id);
-        Ref<Speech> first = before_it;
-        for (const auto& s : lang::backwards(said)) {
-            if (s->id == asked->id) {
-                first = s;
-                break;
-            }
-        }
-        Ref<Speech> last = first;
-        Ref<Speech> one = items::going_on(last, asked, now);
-        if (one != asked && last != nullptr && one->start == last->start) {
-            begun.insert(one->id);
-            List<Ref<Speech>> found;
-            for (const auto& s : said) {
-                if (s->id != one->id) {
-                    found.push_back(s);
-                }
-            }
-            said = found;
-        } else if (one == asked && !lang::contains(withdrawn, asked->id)) {
-            one = items::behind(lang::together(track->speeches, said), asked, now);
-            if (one != asked) {
-                later[one->id] = one->start - asked->start;
-            }
-        }
-        if (one == asked && track->last_speech(one->id) != nullptr) {
-            anew.insert(one->id);
-        }
-        said.push_back(one);
-    }
+    Ref<AddedSpeeches> words = hearing::add_speeches(meant, track, soon);
     List<std::string> before;
     for (const auto& r : requests) {
         before.push_back(r->id);
@@ -148,6 +367,7 @@ inline Ref<Heard> heard(
     }
     Set<std::string> taken;
     Set<std::string> stopped;
+    Set<std::string> withdrawn = meant->withdrawn;
     for (const auto& ident : before) {
         bool every = lang::contains(withdrawn, "") && !lang::contains(user, ident);
         bool holds2 = every;
@@ -168,11 +388,11 @@ inline Ref<Heard> heard(
         if (holds2) {
             stopped.insert(ident);
         } else {
-            bool holds3 = lang::len(anew) > 0 && !lang::contains(anew, ident);
+            bool holds3 = lang::len(words->anew) > 0 && !lang::contains(words->anew, ident);
             if (holds3) {
                 bool is_any2 = false;
                 for (const auto& o : hearing::makers(ident)) {
-                    if (lang::contains(anew, o)) {
+                    if (lang::contains(words->anew, o)) {
                         is_any2 = true;
                         break;
                     }
@@ -221,7 +441,7 @@ inline Ref<Heard> heard(
         }
     }
     Set<std::string> touched;
-    for (const auto& r : fresh) {
+    for (const auto& r : meant->requests) {
         touched.insert(r->layer);
     }
     for (const auto& request : requests) {
@@ -234,7 +454,7 @@ inline Ref<Heard> heard(
             touched.insert(stay->layer);
         }
     }
-    bool holds6 = lang::len(more->modes) > 0 || lang::len(more->speeches) > 0;
+    bool holds6 = lang::len(more->modes) > 0 || lang::len(more->speeches) > 0 || lang::len(meant->steered) > 0;
     if (!holds6) {
         bool is_any4 = false;
         for (const auto& m : track->modes) {
@@ -277,28 +497,204 @@ inline Ref<Heard> heard(
             touched.insert(layer);
         }
     }
+    Ref<Track> left = track;
+    for (const auto& ident : utterances::find_utterances(track, "", soon)) {
+        if (lang::contains(stopped, ident)) {
+            left = utterances::break_off(left, ident, now);
+        }
+    }
     Set<std::string> over;
     for (const auto& ident : taken) {
-        if (!lang::contains(begun, ident) && !lang::contains(later, ident)) {
+        if (!lang::contains(words->on, ident)) {
             over.insert(ident);
         }
     }
-    List<Ref<MoodFrom>> moods;
-    for (const auto& m : more->moods) {
-        moods.push_back(lang::contains(later, m->id)
-            ? lang::made<MoodFrom>(
-                m->id,
-                m->start + later.at(m->id),
-                m->valence,
-                m->arousal,
-                m->intensity,
-                m->end + later.at(m->id)
-            )
-            : m);
+    left = words->leave(left->without(over, now));
+    Ref<Track> lasting = lang::made<Track>(
+        more->looks,
+        words->said,
+        more->modes,
+        more->places,
+        more->blinks,
+        stays,
+        words->moods
+    );
+    Ref<Heard> said = lang::made<Heard>(left->joined(lasting), meant->requests, taken, stopped, touched);
+    return hearing::_steer(requests, said, meant, now, soon);
+}
+
+/// Return what asks to say something make of a track: a line, something behind a line, or more of one.
+inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon) {
+    List<Ref<Speech>> said;
+    Set<std::string> begun;
+    Set<std::string> on;
+    Set<std::string> anew;
+    Map<std::string, double> later; // by how much those begin that are said behind others of their id
+    for (const auto& told : meant->speeches) {
+        bool taken = lang::contains(meant->withdrawn, told->id) || lang::contains(meant->withdrawn, "");
+        Ref<Speech> before = taken ? nullptr : track->last_speech(told->id);
+        Ref<Speech> first = before;
+        for (const auto& s : lang::backwards(said)) {
+            if (s->id == told->id) {
+                first = s;
+                break;
+            }
+        }
+        Ref<Speech> last = first;
+        Ref<Speech> asked = told;
+        double now = soon;
+        if (last != nullptr && utterances::is_paused(last->start) && told->start <= soon && !told->line.has_value()) {
+            now = last->start; // it is said when that is
+            asked = lang::made<Speech>(
+                told->id,
+                now,
+                told->end + now - told->start,
+                told->line,
+                told->text,
+                told->priority,
+                told->length,
+                told->timing,
+                told->skip,
+                told->more,
+                told->over
+            );
+        }
+        bool paces = told->more || (last != nullptr && last->more);
+        if (paces && asked->timing == nullptr && !asked->line.has_value()) {
+            asked = items::pace_speech(meant->alphabet, asked);
+        }
+        Ref<Speech> one = items::going_on(last, asked, now);
+        if (one != asked && last != nullptr && one->start == last->start) {
+            begun.insert(one->id);
+            on.insert(one->id);
+            List<Ref<Speech>> found;
+            for (const auto& s : said) {
+                if (s->id != one->id || s->start < one->start) {
+                    found.push_back(s);
+                }
+            }
+            said = found;
+            if (last == before) {
+                List<Ref<Speech>> found2;
+                for (const auto& s : track->speeches) {
+                    if (s->id == one->id && s != last) {
+                        found2.push_back(s);
+                    }
+                }
+                lang::extend(said, found2);
+            }
+        } else if (one == asked && !taken) {
+            one = items::behind(lang::together(track->speeches, said), asked, now);
+            bool opens = last != nullptr
+                && utterances::takes_more(last)
+                && !told->line.has_value()
+                && one->start <= now;
+            if (one != asked || opens) {
+                on.insert(one->id);
+            }
+        }
+        if (one->start != told->start) {
+            later[one->id] = one->start - told->start;
+        }
+        if (one == asked && !lang::contains(on, one->id) && track->last_speech(one->id) != nullptr) {
+            anew.insert(one->id);
+        }
+        said.push_back(one);
     }
-    Ref<Track> left = track->without(over, now)->without(begun);
-    Ref<Track> lasting = lang::made<Track>(more->looks, said, more->modes, more->places, more->blinks, stays, moods);
-    return lang::made<Heard>(left->joined(lasting), taken, stopped, touched);
+    Set<std::string> opened;
+    for (const auto& s : said) {
+        if (s->more) {
+            opened.insert(s->id);
+        }
+    }
+    List<Ref<MoodFrom>> moods;
+    for (const auto& m : meant->moods) {
+        double by = (lang::contains(later, m->id) && !lang::contains(begun, m->id)) ? later.at(m->id) : 0.0;
+        double end = lang::contains(opened, m->id) ? utterances::PAUSED : m->end + by;
+        moods.push_back(lang::made<MoodFrom>(m->id, m->start + by, m->valence, m->arousal, m->intensity, end));
+    }
+    return lang::made<AddedSpeeches>(said, begun, on, anew, moods);
+}
+
+/// Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the
+/// plan before.
+inline Ref<Heard> _steer(
+    const List<Ref<MetaRequest>>& requests,
+    const Ref<Heard>& heard,
+    const Ref<Meaning>& meant,
+    double now,
+    double soon
+) {
+    if (lang::len(meant->steered) == 0) {
+        return heard;
+    }
+    Ref<SteeredSpeech> steered = lang::made<SteeredSpeech>(
+        heard->track,
+        lang::set_of(heard->withdrawn),
+        lang::set_of(heard->stopped),
+        lang::set_of(heard->touched)
+    );
+    List<Ref<MetaRequest>> found;
+    for (const auto& r : requests) {
+        if (!lang::contains(heard->withdrawn, r->id)) {
+            found.push_back(r);
+        }
+    }
+    steered->requests = found;
+    for (const auto& request : heard->fresh) {
+        steered->requests.push_back(request);
+        steered->anew.insert(request->id);
+    }
+    for (const auto& ask : meant->steered) {
+        List<std::string> ids = utterances::find_utterances(steered->track, ask->what, soon);
+        if (ask->do_ == "interrupt") {
+            if (lang::len(ids) > 0) {
+                Ref<LookAt> look = lang::made<LookAt>(
+                    ask->id,
+                    now,
+                    now + hearing::LISTENS,
+                    spots::named("user"),
+                    1.0,
+                    true,
+                    ask->priority
+                );
+                steered->track = steered->track->joined(lang::made<Track>(List<Ref<LookAt>>{look}));
+            }
+            if (ask->what != "" && !lang::contains(ids, ask->what)) { // it may have been said, and its gestures go on
+                ids.push_back(ask->what);
+            }
+        }
+        for (const auto& ident : ids) {
+            Set<std::string> made;
+            for (const auto& x : steered->idents()) {
+                if (lang::contains(hearing::makers(x), ident)) {
+                    made.insert(x);
+                }
+            }
+            if (ask->do_ == "interrupt") {
+                double stop = utterances::find_stop(meant->alphabet, steered->track, ident, soon, now);
+                steered->interrupt(ident, made, std::min(stop, now), now, soon);
+            } else if (ask->do_ == "pause") {
+                steered->pause(
+                    ident,
+                    made,
+                    utterances::find_stop(meant->alphabet, steered->track, ident, soon, now),
+                    now
+                );
+            } else if (ask->do_ == "resume") {
+                steered->resume(ident, made, now, soon);
+            } else {
+                steered->track = utterances::finish_speech(steered->track, ident, soon);
+            }
+        }
+    }
+    List<Ref<MetaRequest>> fresh;
+    for (const auto& r : steered->requests) {
+        if (lang::contains(steered->anew, r->id)) {
+            fresh.push_back(r);
+        }
+    }
+    return lang::made<Heard>(steered->track, fresh, steered->withdrawn, steered->stopped, steered->touched);
 }
 
 }  // namespace hearing

@@ -4,6 +4,7 @@
 // Translated from metagraph/playback/life/items.py; change that, and translate anew.
 #pragma once
 
+#include "alphabet.hpp"
 #include "line_timing.hpp"
 #include "spots.hpp"
 #include "mood.hpp"
@@ -21,10 +22,20 @@ struct StayFrom;
 
 namespace items {
 
+inline double find_line_start(const Ref<Speech>& speech);
+inline double measure_line(const Ref<Speech>& speech);
 inline Ref<Speech> cut(const Ref<Speech>& speech, double at);
 inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches);
 inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_, double now);
 inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, double now);
+inline Ref<Speech> pace_speech(const Ref<Alphabet>& alphabet, const Ref<Speech>& new_);
+inline Ref<Speech> _behind_words(
+    const Ref<Speech>& old,
+    const Ref<LineTiming>& told,
+    const Ref<Speech>& new_,
+    const Ref<LineTiming>& more,
+    double now
+);
 inline bool alike_looks(const List<Ref<LookAt>>& one, const List<Ref<LookAt>>& other);
 inline bool _same_look(const Ref<LookAt>& a, const Ref<LookAt>& b);
 inline bool alike_speeches(const List<Ref<Speech>>& one, const List<Ref<Speech>>& other);
@@ -69,8 +80,9 @@ struct LookAt {
 };
 
 /// Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower.
-/// length: seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come,
-/// where that was told.
+/// length: seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes
+/// come, where that was told. skip: seconds of it that were said before a pause. more: whether more of it may come, so
+/// that it is not over when it falls silent. over: when it was said that none does, where it had fallen silent.
 struct Speech {
     std::string id;
     double start;
@@ -80,6 +92,9 @@ struct Speech {
     int priority;
     std::optional<double> length;
     Ref<LineTiming> timing;
+    double skip;
+    bool more;
+    std::optional<double> over;
 
     Speech(
         std::string id_,
@@ -89,7 +104,10 @@ struct Speech {
         std::string text_ = "",
         int priority_ = 1,
         std::optional<double> length_ = std::nullopt,
-        Ref<LineTiming> timing_ = nullptr
+        Ref<LineTiming> timing_ = nullptr,
+        double skip_ = 0.0,
+        bool more_ = false,
+        std::optional<double> over_ = std::nullopt
     )
         : id(std::move(id_)),
             start(start_),
@@ -98,7 +116,10 @@ struct Speech {
             text(std::move(text_)),
             priority(priority_),
             length(length_),
-            timing(std::move(timing_)) {}
+            timing(std::move(timing_)),
+            skip(skip_),
+            more(more_),
+            over(over_) {}
 };
 
 /// The mode from `start` on; None for talking while something is said and idling otherwise.
@@ -146,36 +167,68 @@ struct StayFrom {
 
 namespace items {
 
-/// Return the speech, ending no later than `at`; how long it would have been is remembered.
-inline Ref<Speech> cut(const Ref<Speech>& speech, double at) {
-    if (speech->end <= at) {
-        return speech;
-    }
-    return lang::made<Speech>(
-        speech->id,
-        speech->start,
-        at,
-        speech->line,
-        speech->text,
-        speech->priority,
-        !speech->length.has_value() ? speech->end - speech->start : *speech->length,
-        speech->timing
-    );
+/// Return the second that what is said counts from: before its start if it goes on after a pause.
+inline double find_line_start(const Ref<Speech>& speech) {
+    return speech->start - speech->skip;
 }
 
-/// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a
-/// lesser one is not said.
+/// Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+inline double measure_line(const Ref<Speech>& speech) {
+    return !speech->length.has_value() ? speech->end - items::find_line_start(speech) : *speech->length;
+}
+
+/// Return the speech, ending no later than `at`; how long it would have been is remembered.
+inline Ref<Speech> cut(const Ref<Speech>& speech, double at) {
+    return speech->end <= at
+        ? speech
+        : lang::made<Speech>(
+            speech->id,
+            speech->start,
+            at,
+            speech->line,
+            speech->text,
+            speech->priority,
+            items::measure_line(speech),
+            speech->timing,
+            speech->skip,
+            speech->more,
+            speech->over
+        );
+}
+
+/// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with
+/// what is said behind it under its id; a lesser one is not said.
 inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
     List<Ref<Speech>> out;
+    Map<std::string, double> ends; // when what was cut would have ended
     for (const auto& speech : speeches) {
+        if (lang::contains(ends, speech->id) && speech->start == ends.at(speech->id)) {
+            ends[speech->id] = speech->end;
+            continue;
+        }
         if (lang::len(out) > 0 && lang::at(out, -1)->end > speech->start) {
             Ref<Speech> last = lang::at(out, -1);
             if (speech->priority < last->priority) {
                 continue;
             }
             out.pop_back();
+            if (last->id != speech->id) {
+                ends[last->id] = last->end;
+            }
             if (last->start < speech->start) {
-                out.push_back(items::cut(last, speech->start));
+                out.push_back(lang::made<Speech>(
+                    items::cut(last, speech->start)->id,
+                    items::cut(last, speech->start)->start,
+                    items::cut(last, speech->start)->end,
+                    items::cut(last, speech->start)->line,
+                    items::cut(last, speech->start)->text,
+                    items::cut(last, speech->start)->priority,
+                    items::cut(last, speech->start)->length,
+                    items::cut(last, speech->start)->timing,
+                    items::cut(last, speech->start)->skip,
+                    false,
+                    items::cut(last, speech->start)->over
+                ));
             }
         }
         out.push_back(speech);
@@ -205,7 +258,10 @@ inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_
             new_->text,
             new_->priority,
             new_->length,
-            new_->timing
+            new_->timing,
+            new_->skip,
+            new_->more,
+            new_->over
         );
 }
 
@@ -215,27 +271,86 @@ inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, dou
     if (old == nullptr || old->timing == nullptr || new_->timing == nullptr || old->length.has_value()) {
         return new_;
     }
+    if (new_->timing->paced) {
+        return old->end <= now ? new_ : items::_behind_words(old, old->timing, new_, new_->timing, now);
+    }
     if (std::max(old->start, new_->start) > now && old->start != new_->start) {
         return new_;
     }
-    double said = std::max(now - old->start, 0.0);
+    double said = std::max(now - items::find_line_start(old), old->skip);
     if (old->end <= now
         && !line_timing::tells_on(old->timing, line_timing::shifted(new_->timing, old->timing->later))) {
         return new_;
     }
-    Ref<LineTiming> told = old->start > now ? new_->timing : line_timing::place_told(old->timing, new_->timing, said);
+    Ref<LineTiming> told = (old->start > now && old->skip == 0)
+        ? new_->timing
+        : line_timing::place_told(old->timing, new_->timing, said);
     Ref<LineTiming> timing = line_timing::extended(old->timing, told, said);
     double length = std::max(line_timing::timed_seconds(timing, std::nullopt), new_->end - new_->start);
     bool more = new_->text == "" || new_->text == line_timing::told_text(new_->timing);
     return lang::made<Speech>(
         new_->id,
         old->start,
-        old->start + length,
+        items::find_line_start(old) + length,
         new_->line,
         more ? line_timing::told_text(timing) : new_->text,
         new_->priority,
         new_->length,
-        timing
+        timing,
+        old->skip,
+        new_->more,
+        new_->over
+    );
+}
+
+/// Return a text with the times its letters tell, so that what comes of it later can be added.
+inline Ref<Speech> pace_speech(const Ref<Alphabet>& alphabet, const Ref<Speech>& new_) {
+    Ref<LineTiming> timing = line_timing::pace_text(alphabet, new_->text, std::nullopt);
+    double length = line_timing::timed_seconds(timing, line_timing::measure_text(alphabet, new_->text));
+    return lang::made<Speech>(
+        new_->id,
+        new_->start,
+        new_->start + length,
+        new_->line,
+        new_->text,
+        new_->priority,
+        new_->length,
+        timing,
+        new_->skip,
+        new_->more,
+        new_->over
+    );
+}
+
+/// Return a line with a text behind what was told of it. told, more: their words.
+inline Ref<Speech> _behind_words(
+    const Ref<Speech>& old,
+    const Ref<LineTiming>& told,
+    const Ref<Speech>& new_,
+    const Ref<LineTiming>& more,
+    double now
+) {
+    double begin = items::find_line_start(old);
+    double at = std::max(now - begin, std::max(old->skip, old->end - begin));
+    Ref<LineTiming> timing = lang::made<LineTiming>(
+        lang::together(told->words, line_timing::shifted(more, at)->words),
+        told->marks,
+        told->later,
+        true
+    );
+    double length = line_timing::timed_seconds(timing, at + new_->end - new_->start);
+    return lang::made<Speech>(
+        new_->id,
+        old->start,
+        begin + length,
+        new_->line,
+        old->text + new_->text,
+        new_->priority,
+        new_->length,
+        timing,
+        old->skip,
+        new_->more,
+        new_->over
     );
 }
 
@@ -283,6 +398,9 @@ inline bool alike_speeches(const List<Ref<Speech>>& one, const List<Ref<Speech>>
 
 inline bool _same_speech(const Ref<Speech>& a, const Ref<Speech>& b) {
     if (a->line != b->line || a->text != b->text || a->length != b->length || a->priority != b->priority) {
+        return false;
+    }
+    if (a->skip != b->skip || a->more != b->more || a->over != b->over) {
         return false;
     }
     return a->id == b->id

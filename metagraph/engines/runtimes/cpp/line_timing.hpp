@@ -131,6 +131,14 @@ inline Ref<LineTiming> timing_of(
     const List<Ref<VisemeMark>>& marks,
     const std::string& name
 );
+inline double measure_text(const Ref<Alphabet>& alphabet, const std::string& text);
+inline Ref<LineTiming> pace_text(
+    const Ref<Alphabet>& alphabet,
+    const std::string& text,
+    const std::optional<double>& seconds
+);
+inline double _measure_word(const Ref<Alphabet>& alphabet, const std::string& word);
+inline List<Ref<SpokenWord>> join_letters(const Ref<Alphabet>& alphabet, const List<Ref<SpokenWord>>& letters);
 inline std::string told_text(const Ref<LineTiming>& timing);
 inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<double>& duration);
 inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTiming>& timing);
@@ -169,18 +177,20 @@ struct VisemeMark {
 };
 
 /// A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because
-/// something came after its time.
+/// something came after its time. paced: whether nobody told the times, and they follow from the letters.
 struct LineTiming {
     List<Ref<SpokenWord>> words;
     List<Ref<VisemeMark>> marks;
     double later;
+    bool paced;
 
     explicit LineTiming(
         List<Ref<SpokenWord>> words_ = List<Ref<SpokenWord>>{},
         List<Ref<VisemeMark>> marks_ = List<Ref<VisemeMark>>{},
-        double later_ = 0.0
+        double later_ = 0.0,
+        bool paced_ = false
     )
-        : words(std::move(words_)), marks(std::move(marks_)), later(later_) {}
+        : words(std::move(words_)), marks(std::move(marks_)), later(later_), paced(paced_) {}
 };
 
 namespace line_timing {
@@ -393,6 +403,70 @@ inline Ref<LineTiming> timing_of(
     return lang::made<LineTiming>(said, shown);
 }
 
+/// Return how long a text takes where more of it may come before or after, seconds.
+inline double measure_text(const Ref<Alphabet>& alphabet, const std::string& text) {
+    double out = 0.0;
+    for (const auto& [word, pause] : graphemes::split_words(alphabet, text)) {
+        out += line_timing::_measure_word(alphabet, word) + pause / graphemes::PACE;
+    }
+    return out;
+}
+
+/// Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters
+/// tell.
+inline Ref<LineTiming> pace_text(
+    const Ref<Alphabet>& alphabet,
+    const std::string& text,
+    const std::optional<double>& seconds
+) {
+    double scale = !seconds.has_value() ? 1.0 : *seconds / std::max(line_timing::measure_text(alphabet, text), 0.001);
+    double at = 0.0;
+    List<Ref<SpokenWord>> words;
+    for (const auto& [word, pause] : graphemes::split_words(alphabet, text)) {
+        double end = at + scale * line_timing::_measure_word(alphabet, word);
+        if (word != "") {
+            words.push_back(lang::made<SpokenWord>(word, at, end));
+        }
+        at = end + scale * pause / graphemes::PACE;
+    }
+    return lang::made<LineTiming>(words, List<Ref<VisemeMark>>{}, 0.0, true);
+}
+
+/// Return how long a word takes, seconds.
+inline double _measure_word(const Ref<Alphabet>& alphabet, const std::string& word) {
+    List<double> found;
+    for (const auto& letter : alphabet->letters(word)) {
+        found.push_back(graphemes::measure_letter(alphabet->code(letter)));
+    }
+    return lang::sum(found) / graphemes::PACE;
+}
+
+/// Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter
+/// that is a syllable.
+inline List<Ref<SpokenWord>> join_letters(const Ref<Alphabet>& alphabet, const List<Ref<SpokenWord>>& letters) {
+    List<Ref<SpokenWord>> out;
+    bool parted = true;
+    for (const auto& letter : letters) {
+        if (alphabet->stripped(letter->text) == "") {
+            parted = true;
+            continue;
+        }
+        bool alone = graphemes::measure_letter(alphabet->code(lang::at(alphabet->letters(letter->text), 0))) > 1;
+        if (parted || alone) {
+            out.push_back(letter);
+        } else {
+            Ref<SpokenWord> last = lang::at(out, -1);
+            lang::at(out, lang::len(out) - 1) = lang::made<SpokenWord>(
+                last->text + letter->text,
+                last->start,
+                letter->end
+            );
+        }
+        parted = alone;
+    }
+    return out;
+}
+
 /// Return the words of a line as its text.
 inline std::string told_text(const Ref<LineTiming>& timing) {
     List<std::string> found;
@@ -513,7 +587,8 @@ inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTimi
         return lang::made<LineTiming>(
             line_timing::shifted(new_, std::max(said, end))->words,
             line_timing::shifted(new_, std::max(said, end))->marks,
-            old->later
+            old->later,
+            line_timing::shifted(new_, std::max(said, end))->paced
         );
     }
     Ref<LineTiming> told = line_timing::shifted(new_, old->later);
@@ -550,7 +625,8 @@ inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTimi
     return lang::made<LineTiming>(
         line_timing::shifted(told, by)->words,
         line_timing::shifted(told, by)->marks,
-        old->later + by
+        old->later + by,
+        line_timing::shifted(told, by)->paced
     );
 }
 

@@ -18,7 +18,7 @@ inline List<double> shown(const Voice& voice, const Speech& speech, double time)
     if (time < speech.start) return out;
     const double kept = 1 - rotation::ease((time - speech.end) / CLOSING);
     const int last = static_cast<int>(voice.weights.size()) / life::SHAPES - 1;
-    const double at = (std::min(time, speech.end) - speech.start) / std::max(voice.duration, 1e-3) * last;
+    const double at = (std::min(time, speech.end) - speech.start + speech.skip) / std::max(voice.duration, 1e-3) * last;
     const int low = std::clamp(static_cast<int>(std::floor(std::min(at, 1e9))), 0, last - 1);
     const double part = std::clamp(at - low, 0.0, 1.0);
     for (int k = 1; k < life::SHAPES; k++) {

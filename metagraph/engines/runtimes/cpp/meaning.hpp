@@ -24,12 +24,13 @@ namespace metagraph {
 struct PlainAsk;
 struct SaidLine;
 struct AskedBlock;
+struct SteeringAsk;
 struct Meaning;
 
 namespace meaning {
 
 inline constexpr double FOREVER = 1000000000.0; // seconds; a look that lasts until the next
-inline void understood(const Ref<Meaning>& whole, const Ref<PlainAsk>& ask, double now);
+inline void understood(const Ref<Meaning>& whole, const Ref<PlainAsk>& ask, double now, double soon);
 
 }  // namespace meaning
 
@@ -67,6 +68,7 @@ struct PlainAsk {
     std::string name;
     List<double> point;
     std::string what;
+    bool more;
 
     explicit PlainAsk(
         std::string do_,
@@ -99,7 +101,8 @@ struct PlainAsk {
         std::optional<std::string> mode_ = std::nullopt,
         std::string name_ = "",
         List<double> point_ = List<double>{},
-        std::string what_ = ""
+        std::string what_ = "",
+        bool more_ = false
     )
         : do_(std::move(do_)),
             id(std::move(id_)),
@@ -131,7 +134,8 @@ struct PlainAsk {
             mode(std::move(mode_)),
             name(std::move(name_)),
             point(std::move(point_)),
-            what(std::move(what_)) {}
+            what(std::move(what_)),
+            more(more_) {}
 };
 
 /// A line of dialogue. seconds: how long it is, None where nobody knows. asks: what it asks for while it is said, in
@@ -171,8 +175,22 @@ struct AskedBlock {
         : id(std::move(id_)), at(at_), priority(priority_), text(std::move(text_)) {}
 };
 
+/// What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, ""
+/// for all of it.
+struct SteeringAsk {
+    std::string do_;
+    std::string id;
+    std::string what;
+    int priority;
+
+    SteeringAsk(std::string do_, std::string id_, std::string what_, int priority_)
+        : do_(std::move(do_)), id(std::move(id_)), what(std::move(what_)), priority(priority_) {}
+};
+
 /// What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds
-/// "". unknown: what an ask names that is not there: "action", "stance" or "line". Speeches may overlap.
+/// "". steered: what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance"
+/// or "line". Speeches may overlap. fixed: seconds before which no gesture can begin that a line asks for, though the
+/// line itself may.
 struct Meaning {
     Ref<Project> project;
     List<Ref<MetaGraph>> graphs;
@@ -187,8 +205,10 @@ struct Meaning {
     List<Ref<MoodFrom>> moods;
     List<Ref<AskedBlock>> blocks;
     Set<std::string> withdrawn;
+    List<Ref<SteeringAsk>> steered;
     List<Ref<Report>> refused;
     std::string unknown;
+    double fixed;
 
     Meaning(
         Ref<Project> project_,
@@ -204,8 +224,10 @@ struct Meaning {
         List<Ref<MoodFrom>> moods_ = List<Ref<MoodFrom>>{},
         List<Ref<AskedBlock>> blocks_ = List<Ref<AskedBlock>>{},
         Set<std::string> withdrawn_ = Set<std::string>{},
+        List<Ref<SteeringAsk>> steered_ = List<Ref<SteeringAsk>>{},
         List<Ref<Report>> refused_ = List<Ref<Report>>{},
-        std::string unknown_ = ""
+        std::string unknown_ = "",
+        double fixed_ = 0.0
     )
         : project(std::move(project_)),
             graphs(std::move(graphs_)),
@@ -220,8 +242,10 @@ struct Meaning {
             moods(std::move(moods_)),
             blocks(std::move(blocks_)),
             withdrawn(std::move(withdrawn_)),
+            steered(std::move(steered_)),
             refused(std::move(refused_)),
-            unknown(std::move(unknown_)) {}
+            unknown(std::move(unknown_)),
+            fixed(fixed_) {}
 
     /// Return what lasts.
     Ref<Track> track();
@@ -268,6 +292,7 @@ inline void Meaning::take(const Ref<Meaning>& other) {
     lang::extend(this->stays, other->stays);
     lang::extend(this->moods, other->moods);
     lang::extend(this->blocks, other->blocks);
+    lang::extend(this->steered, other->steered);
     for (const auto& ident : other->withdrawn) {
         this->withdrawn.insert(ident);
     }
@@ -436,6 +461,8 @@ inline std::string Meaning::add(
         this->places.push_back(lang::made<PlaceFrom>(ident, at, ask->name, ask->point));
     } else if (ask->do_ == "withdraw") {
         this->withdrawn.insert(ask->what);
+    } else if (ask->do_ == "interrupt" || ask->do_ == "pause" || ask->do_ == "resume" || ask->do_ == "finish") {
+        this->steered.push_back(lang::made<SteeringAsk>(ask->do_, ident, ask->what, priority));
     } else if (ask->do_ == "say") {
         return this->say(ask, ident, at, priority);
     } else if (ask->do_ == "bml") {
@@ -530,9 +557,13 @@ inline std::string Meaning::say(const Ref<PlainAsk>& ask, const std::string& ide
     if (line == nullptr && text == "" && ask->timing == nullptr) {
         return "say what: a line's id, text, or words with their times";
     }
+    Ref<LineTiming> timing = ask->timing;
+    if (timing == nullptr && line == nullptr && ask->more && ask->duration.has_value()) {
+        timing = line_timing::pace_text(this->alphabet, text, *ask->duration);
+    }
     double length{};
-    if (ask->timing != nullptr) {
-        length = line_timing::timed_seconds(ask->timing, ask->duration);
+    if (timing != nullptr) {
+        length = line_timing::timed_seconds(timing, ask->duration);
     } else if (ask->duration.has_value()) {
         length = std::max(*ask->duration, 0.0);
     } else if (line != nullptr && line->seconds.has_value()) {
@@ -548,7 +579,9 @@ inline std::string Meaning::say(const Ref<PlainAsk>& ask, const std::string& ide
         text,
         priority,
         std::nullopt,
-        ask->timing
+        timing,
+        0.0,
+        ask->more
     ));
     bool told = ask->valence.has_value() || line == nullptr;
     std::optional<double> valence = (told || line == nullptr) ? ask->valence : line->valence;
@@ -568,6 +601,9 @@ inline std::string Meaning::say(const Ref<PlainAsk>& ask, const std::string& ide
             return "a line would say another line; its asks may not";
         }
         double begins = !inner->at.has_value() ? at : at + *inner->at;
+        if (!ask->at.has_value()) {
+            begins = std::max(begins, this->fixed);
+        }
         std::string why = this->add(
             inner,
             lang::text(ident, ".", n + 1),
@@ -584,10 +620,29 @@ inline std::string Meaning::say(const Ref<PlainAsk>& ask, const std::string& ide
 
 namespace meaning {
 
-/// Take what an ask means, or refuse all of it. now: when it begins where it does not say.
-inline void understood(const Ref<Meaning>& whole, const Ref<PlainAsk>& ask, double now) {
-    Ref<Meaning> one = lang::made<Meaning>(whole->project, whole->graphs, whole->alphabet);
-    double at = !ask->at.has_value() ? now : *ask->at;
+/// Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said,
+/// likewise.
+inline void understood(const Ref<Meaning>& whole, const Ref<PlainAsk>& ask, double now, double soon) {
+    Ref<Meaning> one = lang::made<Meaning>(
+        whole->project,
+        whole->graphs,
+        whole->alphabet,
+        List<Ref<MetaRequest>>{},
+        List<Ref<LookAt>>{},
+        List<Ref<Speech>>{},
+        List<Ref<ModeFrom>>{},
+        List<Ref<PlaceFrom>>{},
+        List<Ref<BlinkAt>>{},
+        List<Ref<StayFrom>>{},
+        List<Ref<MoodFrom>>{},
+        List<Ref<AskedBlock>>{},
+        Set<std::string>{},
+        List<Ref<SteeringAsk>>{},
+        List<Ref<Report>>{},
+        "",
+        now
+    );
+    double at = !ask->at.has_value() ? ask->do_ == "say" ? soon : now : *ask->at;
     std::string why = one->add(ask, ask->id, at, ask->priority, 0.0);
     if (why == "") {
         whole->take(one);

@@ -10,6 +10,7 @@
 #include "life.hpp"
 #include "words.hpp"
 #include "expressions.hpp"
+#include "items.hpp"
 #include "lane.hpp"
 #include "track.hpp"
 #include "voice.hpp"
@@ -566,8 +567,8 @@ inline List<std::tuple<double, bool>> LifeDraw::accents(double start) {
         double end = std::min(speech->end, this->drawn);
         for (int n = 0; n < lang::len(voice::stressed(this->voices, speech)); n++) {
             const auto& peak = lang::at(voice::stressed(this->voices, speech), n);
-            double at = speech->start + peak;
-            if (at < start || at >= end) {
+            double at = items::find_line_start(speech) + peak;
+            if (at < std::max(start, speech->start) || at >= end) {
                 continue;
             }
             if (n == 0

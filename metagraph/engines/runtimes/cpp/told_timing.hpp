@@ -32,7 +32,8 @@ inline bool add_word(const Json& entry, List<Ref<SpokenWord>>& out, bool named) 
             const Json end = both ? Json((start.number + length.number) / TICKS) : Json();
             word = Json::list({field(entry, "text"), seconds(start, TICKS), end});
         } else {
-            const Json text = field(entry, entry.find("word") != nullptr ? "word" : "text");
+            const char* name = entry.find("word") != nullptr ? "word" : entry.find("text") != nullptr ? "text" : "character";
+            const Json text = field(entry, name);
             word = Json::list({text, field(entry, "start"), field(entry, "end")});
         }
     } else if (named) {
@@ -87,6 +88,13 @@ inline std::pair<Ref<LineTiming>, std::string> read(const Ask& ask) {
         if (add_word(told_words[n], words, false)) continue;
         return {nullptr, lang::text("words[", n, "]: should be [word, start, end], seconds from the line's start")};
     }
+    List<Ref<SpokenWord>> letters;
+    const List<Json>& told_letters = ask.at("characters").items;
+    for (std::size_t n = 0; n < told_letters.size(); n++) {
+        if (add_word(told_letters[n], letters, false)) continue;
+        return {nullptr, lang::text("characters[", n, "]: should be [letter, start, end], seconds from the line's start")};
+    }
+    if (words.empty()) words = line_timing::join_letters(voice::alphabet(), letters);
     for (std::size_t n = 0; n < told_marks.size(); n++) {
         if (add_mark(told_marks[n], marks) || add_word(told_marks[n], words, true)) continue;
         return {nullptr, lang::text("visemes[", n, "]: should be [seconds, viseme], or with its weight from 0 to 1")};

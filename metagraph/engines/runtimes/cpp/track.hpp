@@ -315,6 +315,16 @@ inline Ref<Track> Track::since(double seconds) const {
         }
         looks.push_back(look);
     }
+    Map<std::string, Ref<Speech>> latest;
+    for (const auto& x : this->speeches) {
+        latest[x->id] = x;
+    }
+    Set<std::string> lasts;
+    for (const auto& [ident, x] : latest) {
+        if (x->more || x->end > seconds) {
+            lasts.insert(ident);
+        }
+    }
     List<double> found2;
     for (const auto& m : this->modes) {
         found2.push_back(m->start);
@@ -336,7 +346,7 @@ inline Ref<Track> Track::since(double seconds) const {
     }
     List<Ref<Speech>> found3;
     for (const auto& x : this->speeches) {
-        if (x->start > seconds || x->end > seconds) {
+        if (x->start > seconds || x->end > seconds || (x->more && lang::contains(lasts, x->id))) {
             found3.push_back(x);
         }
     }

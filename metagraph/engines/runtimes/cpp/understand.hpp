@@ -80,6 +80,7 @@ inline Plain plain(const Graph& graph, const Ask& ask) {
     out->name = ask.text("name");
     for (const Json& one : ask.at("point").items) out->point.push_back(one.number);
     out->what = ask.text("what");
+    out->more = ask.at("more").flag;
     if (out->do_ != "say") return {out, ""};
     const auto [timing, why] = told_timing::read(ask);
     if (!why.empty()) return {nullptr, why};
@@ -93,9 +94,9 @@ inline Plain plain(const Graph& graph, const Ask& ask) {
     return {out, wrong};
 }
 
-/// Return what asks mean. now: when those begin that do not say. An ask that makes several requests gives them ids of its
-/// own: `<id>`, `<id>.1`, `<id>.2`, ...
-inline Ref<Meaning> understand(const Graph& graph, const List<Json>& asks, double now) {
+/// Return what asks mean. now: when those begin that do not say; soon: when it is said, for what is said. An ask that makes
+/// several requests gives them ids of its own: `<id>`, `<id>.1`, `<id>.2`, ...
+inline Ref<Meaning> understand(const Graph& graph, const List<Json>& asks, double now, double soon) {
     List<Ref<MetaGraph>> graphs;
     for (const std::string& layer : graph::LAYERS) graphs.push_back(graph.layer(layer).graph);
     const auto out = lang::made<Meaning>(graph.project, graphs, voice::alphabet());
@@ -108,7 +109,7 @@ inline Ref<Meaning> understand(const Graph& graph, const List<Json>& asks, doubl
         }
         const Plain found = plain(graph, ask);
         if (found.wrong.empty()) {
-            meaning::understood(out, found.ask, now);
+            meaning::understood(out, found.ask, now, soon);
         } else {
             out->refuse(ask.text("id"), found.wrong, ask.maybe_text("layer"), ask.maybe_number("at").value_or(now));
         }

@@ -72,7 +72,7 @@ struct Voices {
         for (const auto& one : made) {
             if (!one.first.owner_before(speech) && !speech.owner_before(one.first)) return one.second;
         }
-        const double length = std::max(0.0, speech->length.value_or(speech->end - speech->start));
+        const double length = std::max(0.0, items::measure_line(speech));
         const auto out = speech->timing != nullptr ? voice::from_timing(speech->timing, length) : voice::from_text(speech->text, length);
         if (made.size() < MOST) made.emplace_back();
         made[next] = {speech, out};

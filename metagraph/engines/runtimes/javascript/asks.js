@@ -48,12 +48,17 @@ const FIELDS = {
   blink: {},
   say: {
     line: [null, either(name, whole(-1e15, 1e15))], text: ["", text(0, 20000)], duration: [null, seconds], gestures: [true, flag],
-    words: [[], list(4000)], visemes: [[], list(20000)], set: [null, one(SETS)], ...MOOD,
+    words: [[], list(4000)], visemes: [[], list(20000)], characters: [[], list(20000)], more: [false, flag], set: [null, one(SETS)],
+    ...MOOD,
   },
   mode: { mode: [null, one(MODES)] },
   mood: { ...MOOD, duration: [null, seconds] },
   place: { name: [undefined, name], point: [undefined, point] },
   withdraw: { what: ["", text(0, 200)] },
+  interrupt: { what: ["", text(0, 200)] },
+  pause: { what: ["", text(0, 200)] },
+  resume: { what: ["", text(0, 200)] },
+  finish: { what: ["", text(0, 200)] },
   bml: { bml: [undefined, text(0, 200000)] },
 };
 

@@ -1,17 +1,22 @@
 /** One character of a game: takes requests as they come, plans ahead, and is posed every frame. */
 
+import { ALPHABET } from "./alphabet.js";
 import { readAsk } from "./asks.js";
 import { describe } from "./describe.js";
 import { answers, hear, since } from "./hear.js";
+import { findLineStart } from "./items.js";
 import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
+import { spokenUntil } from "./spoken_so_far.js";
 import { StreamedVoice } from "./streamed_voice.js";
+import { explainEnd, findSoon } from "./utterances.js";
 import { LAYERS } from "./words.js";
 
 const SLACK = 2; // seconds the horizon may fall behind before it is moved on
 const FORGETTING = 15; // seconds between forgetting what is over
 const LEAP = 3600; // seconds an update may move on: all that lies between is planned
 const SOUNDS = 16; // lines whose sound is remembered
+const TAKING = ["withdraw", "interrupt", "pause", "resume", "finish"]; // what is done as soon as it is taken up
 const REMEMBERED = 1000; // answers kept after that, and happenings nobody asked for
 
 export class Character {
@@ -81,7 +86,7 @@ export class Character {
     const waiting = this.queue.findIndex((ask) => ask.id === id && ask.do === "say"); // of the same update
     let voice = this.sounds.get(id);
     if (voice?.rate !== rate || (begun === null && waiting < 0)) voice = new StreamedVoice(rate);
-    if (begun !== null) voice.follow(this.now + this.graph.settings.lookahead - begun.start);
+    if (begun !== null) voice.follow(findSoon(this.now, this.graph.settings.lookahead) - findLineStart(begun));
     this.sounds.delete(id);
     this.sounds.set(id, voice);
     if (this.sounds.size > SOUNDS) this.sounds.delete(this.sounds.keys().next().value);
@@ -130,7 +135,7 @@ export class Character {
     if (queue.length || !far) {
       this.plan = hear(graph, this.plan, now, queue, far ? this.plan.end : now + this.ahead, this.options);
       const done = { state: "done", at: null, until: null, what: [], why: "" };
-      for (const { id, do: what } of queue) if (what === "withdraw") this.finish({ id, ...done });
+      for (const { id, do: what } of queue) if (TAKING.includes(what)) this.finish({ id, ...done });
       this.queue = [];
     }
     if (this.seen - this.forgot < FORGETTING) return;
@@ -161,21 +166,29 @@ export class Character {
         this.note(start, end, layer, action.name, meta.split("+")[0]); // what goes on after a cut is the same request
       }
     }
-    for (const { start, end, line, text, id } of this.plan.track.speeches) this.note(start, end, "speech", line ?? text, id);
+    const { speeches } = this.plan.track;
+    for (const speech of speeches) {
+      const { start, end, line, text, id, over } = speech;
+      if (Math.max(end, over ?? end) <= seen || start > now) continue;
+      const reason = end > now ? "" : explainEnd(speeches, speech);
+      this.note(start, end, "speech", line ?? text, id, over === null ? reason : "");
+      if (over !== null && over > seen && over <= now) this.happened.push({ kind: "end", at: over, layer: "speech", action: line ?? text, meta: id, reason });
+    }
     this.seen = now;
     if (this.happened.length === from) return;
     this.happened.sort((a, b) => a.at - b.at);
     this.happened.splice(0, this.happened.length - REMEMBERED);
   }
 
-  note(start, end, layer, action, meta) {
-    if (start > this.seen && start <= this.now) this.happened.push({ kind: "begin", at: start, layer, action, meta });
-    if (end > this.seen && end <= this.now) this.happened.push({ kind: "end", at: end, layer, action, meta });
+  note(start, end, layer, action, meta, reason = "") {
+    if (start > this.seen && start <= this.now) this.happened.push({ kind: "begin", at: start, layer, action, meta, reason: "" });
+    if (end > this.seen && end <= this.now) this.happened.push({ kind: "end", at: end, layer, action, meta, reason });
   }
 
   /**
    * Return what began and ended since this was last asked for, in order of time, of more than 1000 the latest: for sounds and game logic.
-   * kind, at, layer ("speech" for what is said), action (its name; of what is said the line's id, else the text), meta (the request's id).
+   * kind, at, layer ("speech" for what is said), action (its name; of what is said the line's id, else the text), meta (the request's
+   * id), reason (where all that is said under an id is over: finished, interrupted or replaced; else "").
    */
   events() {
     const { happened } = this;
@@ -195,6 +208,15 @@ export class Character {
     if (!this.asked.has(id)) return { ...nothing, state: "refused", why: `nothing was asked for as '${id}'` };
     if (this.queue.some((ask) => ask.id === id)) return { ...nothing, state: "planned", why: "taken up at the next update" };
     return answers(this.plan, [id]).get(id);
+  }
+
+  /**
+   * Return what of something said was spoken until now, up to the word that was begun, and that word; "" where nothing was.
+   * @param {string} id @returns {{text: string, lastWord: string}}
+   */
+  spoken(id) {
+    const [text, lastWord] = spokenUntil(ALPHABET, this.plan.track.speeches, id, this.now);
+    return { text, lastWord };
   }
 
   /**

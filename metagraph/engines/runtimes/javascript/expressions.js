@@ -12,6 +12,7 @@
  * Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
  */
 
+import { findLineStart, measureLine } from "./items.js";
 import { stressed } from "./voice.js";
 import { chanceOf, keyed, uniform } from "./choice.js";
 import { faded, within } from "./mood.js";
@@ -125,17 +126,21 @@ export function emphasesOn(life, track, voices, seed, cut, drawn, before) {
     }
     let at;
     for (const [n, peak] of stressed(voices, speech).entries()) {
-      at = Math.max(speech.start, speech.start + peak - EARLY);
-      if (at >= speech.end || uniform(seed, speech.id, "brows", String(n)) >= life.accentBrows) {
+      const begin = findLineStart(speech);
+      at = Math.max(speech.start, begin + peak - EARLY);
+      if (at >= speech.end || begin + peak < speech.start) {
+        continue;
+      }
+      if (uniform(seed, speech.id, "brows", String(n)) >= life.accentBrows) {
         continue;
       }
       chance = uniform(seed, speech.id, "raise", String(n));
       found.push([at, RAISE + RAISE_CHANCE * chance, 0.5 + 0.5 * chance, RAISE_RISES]);
     }
     if (asks(speech)) {
-      const length = speech.length === null ? speech.end - speech.start : speech.length;
+      const length = measureLine(speech);
       const lead = Math.min(ASKING, 0.5 * length);
-      at = speech.start + length - lead;
+      at = Math.max(speech.start, findLineStart(speech) + length - lead);
       if (at < speech.end) {
         found.push([at, lead + ASKING_ON, ASKING_LIFTS, lead]);
       }

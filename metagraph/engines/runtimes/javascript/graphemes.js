@@ -236,7 +236,7 @@ function _unknown(alphabet, letter, before) {
  * @param {string} text
  * @returns {[string, number][]}
  */
-function _words(alphabet, text) {
+export function splitWords(alphabet, text) {
   const out = [];
   let word = "";
   let pause = 0;
@@ -335,7 +335,7 @@ export class Spelled {
  */
 export function readAloud(alphabet, text) {
   const letters = alphabet.letters(alphabet.stripped(text));
-  return Math.max(SHORTEST, sum(letters.map((letter) => _sizeOf(alphabet.code(letter)))) / PACE);
+  return Math.max(SHORTEST, sum(letters.map((letter) => measureLetter(alphabet.code(letter)))) / PACE);
 }
 
 /**
@@ -343,7 +343,7 @@ export function readAloud(alphabet, text) {
  * @param {number} code
  * @returns {number}
  */
-function _sizeOf(code) {
+export function measureLetter(code) {
   for (const script of _SYLLABARIES) {
     if (script.first <= code && code <= script.last) {
       return script.size;
@@ -362,7 +362,7 @@ function _sizeOf(code) {
 export function spelled(alphabet, text, duration) {
   const out = new Spelled();
   const plan = [];
-  for (const [word, pause] of _words(alphabet, alphabet.stripped(text))) {
+  for (const [word, pause] of splitWords(alphabet, alphabet.stripped(text))) {
     plan.push(...sounds(alphabet, word));
     if (pause > 0) {
       plan.push(new SpelledSound("", pause));

@@ -7,6 +7,7 @@ import { FOREVER } from "./meaning.js";
 import { extend } from "./planner.js";
 import { remember } from "./remembering.js";
 import { understand } from "./understand.js";
+import { findSoon, isPaused } from "./utterances.js";
 import { LAYERS } from "./words.js";
 
 // What answers call what lasts; where a layer stays is told by the way to it.
@@ -15,22 +16,20 @@ const LANES = { look: "looks", speech: "speeches", mode: "modes", place: "places
 /**
  * Return the plan with asks worked in that became known at `now`, and the horizon moved to `end`.
  *
- * What begins before now + lookahead stays as it was, but at the very beginning, when nothing has been shown. Asks need ids; of
- * two with one id the later counts. What cannot be understood is in the plan's reports; nothing is thrown.
+ * What begins before now + lookahead stays as it was, but at the very beginning, when nothing has been shown; voices begin and stop
+ * sooner. Asks need ids; of two with one id the later counts. What cannot be understood is in the plan's reports; nothing is thrown.
  * @param {import("./graph.js").Graph} graph @param {import("./plan.js").Plan} plan @param {number} now @param {object[]} asks
  * @param {number} end @param {{stances?: Record<string, string>, idle?: boolean}} [options] @returns {import("./plan.js").Plan}
  */
 export function hear(graph, plan, now, asks, end, options = {}) {
   const fixed = now > 0 ? now + graph.settings.lookahead : 0;
-  const meant = understand(graph, asks, fixed);
+  const soon = findSoon(now, graph.settings.lookahead);
+  const meant = understand(graph, asks, fixed, soon);
   const turning = LAYERS.filter((layer) => graph.layers[layer].markov.modes.length);
-  const refused = meant.refused.map((r) => r.request);
-  const { track, withdrawn, stopped, touched } = heard(
-    plan.requests, plan.track, meant.requests, meant.track(), meant.withdrawn, refused, fixed, turning,
-  );
+  const { track, fresh, withdrawn, stopped, touched } = heard(plan.requests, plan.track, meant, fixed, soon, turning);
   // Without any asks everything is planned on; with some, what they have to do with.
   const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];
-  const after = extend(graph, { ...plan, track }, fixed, meant.requests, end, options, withdrawn, leave, stopped);
+  const after = extend(graph, { ...plan, track }, fixed, fresh, end, options, withdrawn, leave, stopped);
   return meant.refused.length ? { ...after, reports: [...after.reports, ...meant.refused] } : after;
 }
 
@@ -55,7 +54,9 @@ export function answers(plan, ids) {
   }
   for (const [what, lane] of Object.entries(LANES)) {
     const items = lane === "speeches" ? new Map(plan.track[lane].map((x) => [x.id, x])).values() : plan.track[lane]; // of an id the last
-    for (const { id, start, end = what === "blink" ? start : FOREVER } of items) each(id, (x) => x.plays.push({ start, end, what }));
+    for (const { id, start, end = what === "blink" ? start : FOREVER } of items) {
+      each(id, (x) => (isPaused(start) ? x.waiting.push(start) : x.plays.push({ start, end, what })));
+    }
   }
   for (const told of plan.reports) each(told.request, (x) => x.told.push(told));
   return new Map([...found].map(([id, x]) => [id, { id, ...answer(x) }]));
@@ -80,6 +81,7 @@ function answer({ plays, told, waiting }) {
   const nothing = { at: null, until: null, what: [] };
   if (is("already-there")) return { state: "done", ...nothing, why };
   if (waiting.length && told.every((r) => r.played)) {
+    if (isPaused(waiting[0])) return { state: "planned", ...nothing, why: "it is paused" };
     return { state: told.length ? "late" : "planned", ...nothing, at: waiting[0], why: why || "chosen when its time is nearer" };
   }
   return { state: "refused", ...nothing, why: why || "nothing came of it" };

@@ -5,21 +5,38 @@
  */
 
 import { LAYERS } from "./words.js";
-import { behind, goingOn } from "./items.js";
+import { LookAt, behind, goingOn, paceSpeech } from "./items.js";
 import { isSameSpot, named } from "./spots.js";
 import { Track } from "./track.js";
+import { 
+  PAUSED,
+  breakOff,
+  findSlot,
+  findStop,
+  findUtterances,
+  finishSpeech,
+  goesOn,
+  isPaused,
+  pause,
+  resume,
+  takesMore,
+} from "./utterances.js";
 import { MoodFrom } from "./mood.js";
-import { isDigits, partedLast } from "./basics.js";
+import { but, isDigits, partedLast } from "./basics.js";
+
+export const LISTENS = 2; // seconds for which the gaze stays with the partner who interrupts
 
 /**
- * track: what lasts. withdrawn: ids of what was asked for before and is not any more; stopped: those of them that were taken
- * back and not asked for anew. touched: layers that asks have to do with.
+ * track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked for
+ * before and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers that asks
+ * have to do with.
  *
- * track: Track; withdrawn: Set<string>; stopped: Set<string>; touched: Set<string>.
+ * track: Track; fresh: MetaRequest[]; withdrawn: Set<string>; stopped: Set<string>; touched: Set<string>.
  */
 export class Heard {
-  constructor(track, withdrawn, stopped, touched) {
+  constructor(track, fresh, withdrawn, stopped, touched) {
     this.track = track;
+    this.fresh = fresh;
     this.withdrawn = withdrawn;
     this.stopped = stopped;
     this.touched = touched;
@@ -61,63 +78,41 @@ export function makers(ident) {
 }
 
 /**
- * Return what asks do. requests, track: of the plan. fresh, more: what is asked for, where speeches may overlap. withdrawn:
- * ids taken back; every one where it holds "". refused: ids of what could not be understood. now: what begins before stays.
- * turning: layers whose models perform one thing in one mode and another in another.
+ * Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what begins
+ * before stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in another.
  * @param {MetaRequest[]} requests
  * @param {Track} track
- * @param {MetaRequest[]} fresh
- * @param {Track} more
- * @param {Set<string>} withdrawn
- * @param {string[]} refused
+ * @param {Meaning} meant
  * @param {number} now
+ * @param {number} soon
  * @param {string[]} turning
  * @returns {Heard}
  */
-export function heard(requests, track, fresh, more, withdrawn, refused, now, turning) {
-  const gone = new Set(withdrawn);
-  for (const ident of refused) {
-    gone.add(ident);
+export function heard(requests, track, meant, now, soon, turning) {
+  const more = meant.track();
+  const gone = new Set(meant.withdrawn);
+  for (const report of meant.refused) {
+    gone.add(report.request);
   }
-  for (const request of fresh) {
+  for (const request of meant.requests) {
     gone.add(request.id);
   }
   for (const ident of more.idents()) {
     gone.add(ident);
   }
-  let said = [];
-  const begun = new Set([]); // of which more is said
-  const anew = new Set([]); // of which something else was said before
-  const later = new Map(); // by how much those begin that are said behind others of their id
-  for (const asked of more.speeches) {
-    const beforeIt = withdrawn.has(asked.id) ? null : track.lastSpeech(asked.id);
-    const last = [...said].reverse().find((s) => s.id === asked.id) ?? beforeIt;
-    let one = goingOn(last, asked, now);
-    if (one !== asked && last !== null && one.start === last.start) {
-      begun.add(one.id);
-      said = said.filter((s) => s.id !== one.id);
-    } else if (one === asked && !withdrawn.has(asked.id)) {
-      one = behind([...track.speeches, ...said], asked, now);
-      if (one !== asked) {
-        later.set(one.id, one.start - asked.start);
-      }
-    }
-    if (one === asked && track.lastSpeech(one.id) !== null) {
-      anew.add(one.id);
-    }
-    said.push(one);
-  }
+  const words = addSpeeches(meant, track, soon);
   const before = requests.map((r) => r.id);
   before.push(...track.idents());
   // Who takes everything back still looks at whom it talks with.
   const user = new Set(track.looks.filter((x) => x.start < now && isSameSpot(x.to, named("user"))).map((x) => x.id));
   const taken = new Set([]);
   const stopped = new Set([]);
+  const withdrawn = meant.withdrawn;
   for (const ident of before) {
     const every = withdrawn.has("") && !user.has(ident);
     if (every || (withdrawn.size > 0 && makers(ident).some((o) => withdrawn.has(o)))) {
       stopped.add(ident);
-    } else if (anew.size > 0 && !anew.has(ident) && makers(ident).some((o) => anew.has(o))) {
+    } else if (words.anew.size > 0 && !words.anew.has(ident) && makers(ident).some((o) => words.anew.has(o))) {
       stopped.add(ident); // what was made for the words before
     }
     if (stopped.has(ident) || gone.has(ident) || (ident.includes(".") && owners(ident).some((o) => gone.has(o)))) {
@@ -132,7 +127,7 @@ export function heard(requests, track, fresh, more, withdrawn, refused, now, tur
     }
   }
   const stays = more.stays.filter((s) => staying.has(s.layer));
-  const touched = new Set(fresh.map((r) => r.layer));
+  const touched = new Set(meant.requests.map((r) => r.layer));
   for (const request of requests) {
     if (taken.has(request.id)) {
       touched.add(request.layer);
@@ -145,6 +140,7 @@ export function heard(requests, track, fresh, more, withdrawn, refused, now, tur
   }
   const turns = more.modes.length > 0
     || more.speeches.length > 0
+    || meant.steered.length > 0
     || track.modes.some((m) => taken.has(m.id))
     || track.speeches.some((s) => taken.has(s.id));
   if (turns) { // who talks moves otherwise than who listens
@@ -157,17 +153,268 @@ export function heard(requests, track, fresh, more, withdrawn, refused, now, tur
       touched.add(layer);
     }
   }
+  let left = track;
+  for (const ident of findUtterances(track, "", soon)) {
+    if (stopped.has(ident)) {
+      left = breakOff(left, ident, now);
+    }
+  }
   const over = new Set([]);
   for (const ident of taken) {
-    if (!begun.has(ident) && !later.has(ident)) {
+    if (!words.on.has(ident)) {
       over.add(ident);
     }
   }
-  const moods = more.moods.map((m) =>
-    later.has(m.id)
-      ? new MoodFrom(m.id, m.start + later.get(m.id), m.valence, m.arousal, m.intensity, m.end + later.get(m.id))
-      : m);
-  const left = track.without(over, now).without(begun);
-  const lasting = new Track(more.looks, [...said], more.modes, more.places, more.blinks, [...stays], [...moods]);
-  return new Heard(left.joined(lasting), taken, stopped, touched);
+  left = words.leave(left.without(over, now));
+  const lasting = new Track(more.looks, [...words.said], more.modes, more.places, more.blinks, [...stays], [...words.moods]);
+  const said = new Heard(left.joined(lasting), meant.requests, taken, stopped, touched);
+  return _steer(requests, said, meant, now, soon);
+}
+
+/**
+ * What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of which
+ * an earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which something else
+ * was said before. moods: what is asked for with them.
+ *
+ * said: Speech[]; begun: Set<string>; on: Set<string>; anew: Set<string>; moods: MoodFrom[].
+ */
+export class AddedSpeeches {
+  constructor(said, begun, on, anew, moods) {
+    this.said = said;
+    this.begun = begun;
+    this.on = on;
+    this.anew = anew;
+    this.moods = moods;
+  }
+
+  /** Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked for. */
+  leave(track) {
+    if (this.on.size === 0) {
+      return track;
+    }
+    const other = new Set(this.moods.map((m) => m.id));
+    const ends = new Map();
+    for (const speech of this.said) {
+      if (this.on.has(speech.id)) {
+        ends.set(speech.id, speech.more ? PAUSED : speech.end);
+      }
+    }
+    const speeches = track.speeches.filter((s) => !this.begun.has(s.id));
+    const moods = [];
+    for (const m of track.moods) {
+      if (!ends.has(m.id) || other.has(m.id)) {
+        moods.push(m);
+      } else {
+        moods.push(but(m, { end: ends.get(m.id) }));
+      }
+    }
+    return new Track(track.looks, [...speeches], track.modes, track.places, track.blinks, track.stays, [...moods]);
+  }
+}
+
+/**
+ * Return what asks to say something make of a track: a line, something behind a line, or more of one.
+ * @param {Meaning} meant
+ * @param {Track} track
+ * @param {number} soon
+ * @returns {AddedSpeeches}
+ */
+export function addSpeeches(meant, track, soon) {
+  let said = [];
+  const begun = new Set([]);
+  const on = new Set([]);
+  const anew = new Set([]);
+  const later = new Map(); // by how much those begin that are said behind others of their id
+  for (const told of meant.speeches) {
+    const taken = meant.withdrawn.has(told.id) || meant.withdrawn.has("");
+    const before = taken ? null : track.lastSpeech(told.id);
+    const last = [...said].reverse().find((s) => s.id === told.id) ?? before;
+    let asked = told;
+    let now = soon;
+    if (last !== null && isPaused(last.start) && told.start <= soon && told.line === null) {
+      now = last.start; // it is said when that is
+      asked = but(told, { start: now, end: told.end + now - told.start });
+    }
+    const paces = told.more || (last !== null && last.more);
+    if (paces && asked.timing === null && asked.line === null) {
+      asked = paceSpeech(meant.alphabet, asked);
+    }
+    let one = goingOn(last, asked, now);
+    if (one !== asked && last !== null && one.start === last.start) {
+      begun.add(one.id);
+      on.add(one.id);
+      said = said.filter((s) => s.id !== one.id || s.start < one.start);
+      if (last === before) {
+        said.push(...track.speeches.filter((s) => s.id === one.id && s !== last));
+      }
+    } else if (one === asked && !taken) {
+      one = behind([...track.speeches, ...said], asked, now);
+      const opens = last !== null && takesMore(last) && told.line === null && one.start <= now;
+      if (one !== asked || opens) {
+        on.add(one.id);
+      }
+    }
+    if (one.start !== told.start) {
+      later.set(one.id, one.start - told.start);
+    }
+    if (one === asked && !on.has(one.id) && track.lastSpeech(one.id) !== null) {
+      anew.add(one.id);
+    }
+    said.push(one);
+  }
+  const opened = new Set(said.filter((s) => s.more).map((s) => s.id));
+  const moods = [];
+  for (const m of meant.moods) {
+    const by = (later.has(m.id) && !begun.has(m.id)) ? later.get(m.id) : 0;
+    const end = opened.has(m.id) ? PAUSED : m.end + by;
+    moods.push(new MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end));
+  }
+  return new AddedSpeeches(said, begun, on, anew, moods);
+}
+
+/**
+ * Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the plan
+ * before.
+ * @param {MetaRequest[]} requests
+ * @param {Heard} heard
+ * @param {Meaning} meant
+ * @param {number} now
+ * @param {number} soon
+ * @returns {Heard}
+ */
+function _steer(requests, heard, meant, now, soon) {
+  if (meant.steered.length === 0) {
+    return heard;
+  }
+  const steered = new SteeredSpeech(heard.track, new Set(heard.withdrawn), new Set(heard.stopped), new Set(heard.touched));
+  steered.requests = requests.filter((r) => !heard.withdrawn.has(r.id));
+  for (const request of heard.fresh) {
+    steered.requests.push(request);
+    steered.anew.add(request.id);
+  }
+  for (const ask of meant.steered) {
+    const ids = findUtterances(steered.track, ask.what, soon);
+    if (ask.do === "interrupt") {
+      if (ids.length > 0) {
+        const look = new LookAt(ask.id, now, now + LISTENS, named("user"), 1, true, ask.priority);
+        steered.track = steered.track.joined(new Track([look]));
+      }
+      if (ask.what !== "" && !ids.includes(ask.what)) { // it may have been said, and its gestures go on
+        ids.push(ask.what);
+      }
+    }
+    for (const ident of ids) {
+      const made = new Set(steered.idents().filter((x) => makers(x).includes(ident)));
+      if (ask.do === "interrupt") {
+        const stop = findStop(meant.alphabet, steered.track, ident, soon, now);
+        steered.interrupt(ident, made, Math.min(stop, now), now, soon);
+      } else if (ask.do === "pause") {
+        steered.pause(ident, made, findStop(meant.alphabet, steered.track, ident, soon, now), now);
+      } else if (ask.do === "resume") {
+        steered.resume(ident, made, now, soon);
+      } else {
+        steered.track = finishSpeech(steered.track, ident, soon);
+      }
+    }
+  }
+  const fresh = steered.requests.filter((r) => steered.anew.has(r.id));
+  return new Heard(steered.track, fresh, steered.withdrawn, steered.stopped, steered.touched);
+}
+
+/**
+ * A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is as in
+ * `Heard`.
+ *
+ * track: Track; withdrawn: Set<string>; stopped: Set<string>; touched: Set<string>; requests: MetaRequest[]; anew:
+ * Set<string>.
+ */
+export class SteeredSpeech {
+  constructor(track, withdrawn, stopped, touched, requests = [], anew = new Set([])) {
+    this.track = track;
+    this.withdrawn = withdrawn;
+    this.stopped = stopped;
+    this.touched = touched;
+    this.requests = requests;
+    this.anew = anew;
+  }
+
+  /** Return the ids of all of it. */
+  idents() {
+    return [...this.requests.map((r) => r.id), ...this.track.idents()];
+  }
+
+  /** Break off an utterance at `stop`, and what was made for it at `now`. */
+  interrupt(ident, made, stop, now, soon) {
+    if (goesOn(this.track.speeches, ident, soon)) {
+      this.track = breakOff(this.track, ident, stop);
+    }
+    if (this.track.moods.some((m) => made.has(m.id))) {
+      for (const layer of LAYERS) {
+        this.touched.add(layer);
+      }
+    }
+    this.track = this.track.without(made, now);
+    for (const request of this.requests) {
+      if (made.has(request.id)) {
+        this.withdrawn.add(request.id);
+        this.stopped.add(request.id);
+        this.touched.add(request.layer);
+      }
+    }
+    this.requests = this.requests.filter((r) => !made.has(r.id));
+  }
+
+  /** Hold an utterance, and what was made for it and has not had its moment; what has begun goes back. */
+  pause(ident, made, stop, now) {
+    if (isPaused(stop)) {
+      return;
+    }
+    const slot = findSlot(this.track);
+    this.track = pause(this.track, ident, made, stop, slot);
+    const kept = [];
+    for (const request of this.requests) {
+      if (!made.has(request.id) || isPaused(request.start)) {
+        kept.push(request);
+        continue;
+      }
+      this.withdrawn.add(request.id);
+      this.touched.add(request.layer);
+      if (request.start < now) {
+        this.stopped.add(request.id);
+      }
+      const wanted = request.stroke === null ? request.start : request.stroke;
+      if (wanted >= stop) {
+        kept.push(this.moveRequest(request, slot - stop, 0));
+        this.anew.add(request.id);
+      }
+    }
+    this.requests = kept;
+  }
+
+  /** Go on with an utterance that is paused, and with what waits for it. */
+  resume(ident, made, now, soon) {
+    const held = this.track.speeches.find((s) => s.id === ident && isPaused(s.start)) ?? null;
+    if (held === null) {
+      return;
+    }
+    this.track = resume(this.track, ident, made, soon);
+    const kept = [];
+    for (const request of this.requests) {
+      if (made.has(request.id) && isPaused(request.start)) {
+        this.withdrawn.add(request.id);
+        this.touched.add(request.layer);
+        this.anew.add(request.id);
+        kept.push(this.moveRequest(request, soon - held.start, now));
+      } else {
+        kept.push(request);
+      }
+    }
+    this.requests = kept;
+  }
+
+  /** Return a request moved by so many seconds, to no earlier than `least`. */
+  moveRequest(request, by, least) {
+    const stroke = request.stroke === null ? null : request.stroke + by;
+    return but(request, { start: Math.max(least, request.start + by), stroke: stroke });
+  }
 }

@@ -5,7 +5,17 @@
  * Translated from metagraph/playback/life/items.py; change that, and translate anew.
  */
 
-import { alikeTimings, extended, placeTold, shifted, tellsOn, timedSeconds, toldText } from "./line_timing.js";
+import { 
+  alikeTimings,
+  extended,
+  measureText,
+  paceText,
+  placeTold,
+  shifted,
+  tellsOn,
+  timedSeconds,
+  toldText,
+} from "./line_timing.js";
 import { isSameSpot } from "./spots.js";
 import { but, zip } from "./basics.js";
 
@@ -28,14 +38,27 @@ export class LookAt {
 
 /**
  * Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
- * seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was
- * told.
+ * seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that
+ * was told. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over
+ * when it falls silent. over: when it was said that none does, where it had fallen silent.
  *
  * id: string; start: number; end: number; line: ?string; text: string; priority: number; length: ?number; timing:
- * ?LineTiming.
+ * ?LineTiming; skip: number; more: boolean; over: ?number.
  */
 export class Speech {
-  constructor(id, start, end, line = null, text = "", priority = 1, length = null, timing = null) {
+  constructor(
+    id,
+    start,
+    end,
+    line = null,
+    text = "",
+    priority = 1,
+    length = null,
+    timing = null,
+    skip = 0,
+    more = false,
+    over = null,
+  ) {
     this.id = id;
     this.start = start;
     this.end = end;
@@ -44,6 +67,9 @@ export class Speech {
     this.priority = priority;
     this.length = length;
     this.timing = timing;
+    this.skip = skip;
+    this.more = more;
+    this.over = over;
   }
 }
 
@@ -102,35 +128,58 @@ export class StayFrom {
 }
 
 /**
+ * Return the second that what is said counts from: before its start if it goes on after a pause.
+ * @param {Speech} speech
+ * @returns {number}
+ */
+export function findLineStart(speech) {
+  return speech.start - speech.skip;
+}
+
+/**
+ * Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+ * @param {Speech} speech
+ * @returns {number}
+ */
+export function measureLine(speech) {
+  return speech.length === null ? speech.end - findLineStart(speech) : speech.length;
+}
+
+/**
  * Return the speech, ending no later than `at`; how long it would have been is remembered.
  * @param {Speech} speech
  * @param {number} at
  * @returns {Speech}
  */
 export function cut(speech, at) {
-  if (speech.end <= at) {
-    return speech;
-  }
-  return but(speech, { end: at, length: speech.length === null ? speech.end - speech.start : speech.length });
+  return speech.end <= at ? speech : but(speech, { end: at, length: measureLine(speech) });
 }
 
 /**
- * Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a lesser
- * one is not said.
+ * Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with what
+ * is said behind it under its id; a lesser one is not said.
  * @param {Speech[]} speeches
  * @returns {Speech[]}
  */
 export function apart(speeches) {
   const out = [];
+  const ends = new Map(); // when what was cut would have ended
   for (const speech of speeches) {
+    if (ends.has(speech.id) && speech.start === ends.get(speech.id)) {
+      ends.set(speech.id, speech.end);
+      continue;
+    }
     if (out.length > 0 && out[out.length - 1].end > speech.start) {
       const last = out[out.length - 1];
       if (speech.priority < last.priority) {
         continue;
       }
       out.pop();
+      if (last.id !== speech.id) {
+        ends.set(last.id, last.end);
+      }
       if (last.start < speech.start) {
-        out.push(cut(last, speech.start));
+        out.push(but(cut(last, speech.start), { more: false }));
       }
     }
     out.push(speech);
@@ -171,18 +220,50 @@ export function goingOn(old, new_, now) {
   if (old === null || old.timing === null || new_.timing === null || old.length !== null) {
     return new_;
   }
+  if (new_.timing.paced) {
+    return old.end <= now ? new_ : _behindWords(old, old.timing, new_, new_.timing, now);
+  }
   if (Math.max(old.start, new_.start) > now && old.start !== new_.start) {
     return new_;
   }
-  const said = Math.max(now - old.start, 0);
+  const said = Math.max(now - findLineStart(old), old.skip);
   if (old.end <= now && !tellsOn(old.timing, shifted(new_.timing, old.timing.later))) {
     return new_;
   }
-  const told = old.start > now ? new_.timing : placeTold(old.timing, new_.timing, said);
+  const told = (old.start > now && old.skip === 0) ? new_.timing : placeTold(old.timing, new_.timing, said);
   const timing = extended(old.timing, told, said);
   const length = Math.max(timedSeconds(timing, null), new_.end - new_.start);
   const more = new_.text === "" || new_.text === toldText(new_.timing);
-  return but(new_, { start: old.start, end: old.start + length, text: more ? toldText(timing) : new_.text, timing: timing });
+  return but(new_, { start: old.start, end: findLineStart(old) + length, text: more ? toldText(timing) : new_.text, timing: timing, skip: old.skip });
+}
+
+/**
+ * Return a text with the times its letters tell, so that what comes of it later can be added.
+ * @param {Alphabet} alphabet
+ * @param {Speech} new_
+ * @returns {Speech}
+ */
+export function paceSpeech(alphabet, new_) {
+  const timing = paceText(alphabet, new_.text, null);
+  const length = timedSeconds(timing, measureText(alphabet, new_.text));
+  return but(new_, { end: new_.start + length, timing: timing });
+}
+
+/**
+ * Return a line with a text behind what was told of it. told, more: their words.
+ * @param {Speech} old
+ * @param {LineTiming} told
+ * @param {Speech} new_
+ * @param {LineTiming} more
+ * @param {number} now
+ * @returns {Speech}
+ */
+function _behindWords(old, told, new_, more, now) {
+  const begin = findLineStart(old);
+  const at = Math.max(now - begin, old.skip, old.end - begin);
+  const timing = but(told, { words: [...told.words, ...shifted(more, at).words], paced: true });
+  const length = timedSeconds(timing, at + new_.end - new_.start);
+  return but(new_, { start: old.start, end: begin + length, text: old.text + new_.text, timing: timing, skip: old.skip });
 }
 
 /**
@@ -223,6 +304,9 @@ export function alikeSpeeches(one, other) {
  */
 function _sameSpeech(a, b) {
   if (a.line !== b.line || a.text !== b.text || a.length !== b.length || a.priority !== b.priority) {
+    return false;
+  }
+  if (a.skip !== b.skip || a.more !== b.more || a.over !== b.over) {
     return false;
   }
   return a.id === b.id && a.start === b.start && a.end === b.end && alikeTimings(a.timing, b.timing);

@@ -5,9 +5,9 @@
  * Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
  */
 
-import { Spelled, sounds } from "./graphemes.js";
+import { PACE, Spelled, measureLetter, sounds, splitWords } from "./graphemes.js";
 import { LATE, MouthPiece, STEP, VOWELS } from "./mouth.js";
-import { but, maxOf, thousandths, zip } from "./basics.js";
+import { but, maxOf, sum, thousandths, zip } from "./basics.js";
 
 export const WORD = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
 export const LETTER = 0.07; // and for each of its letters
@@ -130,15 +130,16 @@ export class VisemeMark {
 
 /**
  * A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something
- * came after its time.
+ * came after its time. paced: whether nobody told the times, and they follow from the letters.
  *
- * words: SpokenWord[]; marks: VisemeMark[]; later: number.
+ * words: SpokenWord[]; marks: VisemeMark[]; later: number; paced: boolean.
  */
 export class LineTiming {
-  constructor(words = [], marks = [], later = 0) {
+  constructor(words = [], marks = [], later = 0, paced = false) {
     this.words = words;
     this.marks = marks;
     this.later = later;
+    this.paced = paced;
   }
 }
 
@@ -287,6 +288,78 @@ export function timingOf(alphabet, words, marks, name) {
     said.push(new SpokenWord(word.text, word.start, Math.max(end, word.start)));
   }
   return new LineTiming([...said], [...shown]);
+}
+
+/**
+ * Return how long a text takes where more of it may come before or after, seconds.
+ * @param {Alphabet} alphabet
+ * @param {string} text
+ * @returns {number}
+ */
+export function measureText(alphabet, text) {
+  let out = 0;
+  for (const [word, pause] of splitWords(alphabet, text)) {
+    out += _measureWord(alphabet, word) + pause / PACE;
+  }
+  return out;
+}
+
+/**
+ * Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters tell.
+ * @param {Alphabet} alphabet
+ * @param {string} text
+ * @param {?number} seconds
+ * @returns {LineTiming}
+ */
+export function paceText(alphabet, text, seconds) {
+  const scale = seconds === null ? 1 : seconds / Math.max(measureText(alphabet, text), 0.001);
+  let at = 0;
+  const words = [];
+  for (const [word, pause] of splitWords(alphabet, text)) {
+    const end = at + scale * _measureWord(alphabet, word);
+    if (word !== "") {
+      words.push(new SpokenWord(word, at, end));
+    }
+    at = end + scale * pause / PACE;
+  }
+  return new LineTiming([...words], [], 0, true);
+}
+
+/**
+ * Return how long a word takes, seconds.
+ * @param {Alphabet} alphabet
+ * @param {string} word
+ * @returns {number}
+ */
+function _measureWord(alphabet, word) {
+  return sum(alphabet.letters(word).map((letter) => measureLetter(alphabet.code(letter)))) / PACE;
+}
+
+/**
+ * Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter that is a
+ * syllable.
+ * @param {Alphabet} alphabet
+ * @param {SpokenWord[]} letters
+ * @returns {SpokenWord[]}
+ */
+export function joinLetters(alphabet, letters) {
+  const out = [];
+  let parted = true;
+  for (const letter of letters) {
+    if (alphabet.stripped(letter.text) === "") {
+      parted = true;
+      continue;
+    }
+    const alone = measureLetter(alphabet.code(alphabet.letters(letter.text)[0])) > 1;
+    if (parted || alone) {
+      out.push(letter);
+    } else {
+      const last = out[out.length - 1];
+      out[out.length - 1] = new SpokenWord(last.text + letter.text, last.start, letter.end);
+    }
+    parted = alone;
+  }
+  return out;
 }
 
 /**

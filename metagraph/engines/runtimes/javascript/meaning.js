@@ -7,7 +7,7 @@
 import { cycleOf } from "./repeating.js";
 import { readAloud } from "./graphemes.js";
 import { BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom } from "./items.js";
-import { timedSeconds, toldText } from "./line_timing.js";
+import { paceText, timedSeconds, toldText } from "./line_timing.js";
 import { named } from "./spots.js";
 import { Track } from "./track.js";
 import { ASKED, MetaRequest, Report } from "./meta_plan.js";
@@ -25,7 +25,7 @@ export const FOREVER = 1000000000; // seconds; a look that lasts until the next
  * stroke: ?number; hold: ?number; late: ?number; valence: ?number; arousal: ?number; intensity: ?number; prepare: boolean;
  * resume: boolean; stay: boolean; action: string; stance: string; to: ?Spot; amount: number; strict: boolean; line: ?string;
  * said: ?SaidLine; text: string; gestures: boolean; timing: ?LineTiming; mode: ?string; name: string; point: number[]; what:
- * string.
+ * string; more: boolean.
  */
 export class PlainAsk {
   constructor(
@@ -60,6 +60,7 @@ export class PlainAsk {
     name = "",
     point = [],
     what = "",
+    more = false,
   ) {
     this.do = do_;
     this.id = id;
@@ -92,6 +93,7 @@ export class PlainAsk {
     this.name = name;
     this.point = point;
     this.what = what;
+    this.more = more;
   }
 }
 
@@ -127,12 +129,29 @@ export class AskedBlock {
 }
 
 /**
+ * What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, "" for all
+ * of it.
+ *
+ * do: string; id: string; what: string; priority: number.
+ */
+export class SteeringAsk {
+  constructor(do_, id, what, priority) {
+    this.do = do_;
+    this.id = id;
+    this.what = what;
+    this.priority = priority;
+  }
+}
+
+/**
  * What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds "".
- * unknown: what an ask names that is not there: "action", "stance" or "line". Speeches may overlap.
+ * steered: what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance" or
+ * "line". Speeches may overlap. fixed: seconds before which no gesture can begin that a line asks for, though the line
+ * itself may.
  *
  * project: Project; graphs: MetaGraph[]; alphabet: Alphabet; requests: MetaRequest[]; looks: LookAt[]; speeches: Speech[];
  * modes: ModeFrom[]; places: PlaceFrom[]; blinks: BlinkAt[]; stays: StayFrom[]; moods: MoodFrom[]; blocks: AskedBlock[];
- * withdrawn: Set<string>; refused: Report[]; unknown: string.
+ * withdrawn: Set<string>; steered: SteeringAsk[]; refused: Report[]; unknown: string; fixed: number.
  */
 export class Meaning {
   constructor(
@@ -149,8 +168,10 @@ export class Meaning {
     moods = [],
     blocks = [],
     withdrawn = new Set([]),
+    steered = [],
     refused = [],
     unknown = "",
+    fixed = 0,
   ) {
     this.project = project;
     this.graphs = graphs;
@@ -165,8 +186,10 @@ export class Meaning {
     this.moods = moods;
     this.blocks = blocks;
     this.withdrawn = withdrawn;
+    this.steered = steered;
     this.refused = refused;
     this.unknown = unknown;
+    this.fixed = fixed;
   }
 
   /** Return what lasts. */
@@ -193,6 +216,7 @@ export class Meaning {
     this.stays.push(...other.stays);
     this.moods.push(...other.moods);
     this.blocks.push(...other.blocks);
+    this.steered.push(...other.steered);
     for (const ident of other.withdrawn) {
       this.withdrawn.add(ident);
     }
@@ -341,6 +365,8 @@ export class Meaning {
       this.places.push(new PlaceFrom(ident, at, ask.name, ask.point));
     } else if (ask.do === "withdraw") {
       this.withdrawn.add(ask.what);
+    } else if (ask.do === "interrupt" || ask.do === "pause" || ask.do === "resume" || ask.do === "finish") {
+      this.steered.push(new SteeringAsk(ask.do, ident, ask.what, priority));
     } else if (ask.do === "say") {
       return this.say(ask, ident, at, priority);
     } else if (ask.do === "bml") {
@@ -407,9 +433,13 @@ export class Meaning {
     if (line === null && text === "" && ask.timing === null) {
       return "say what: a line's id, text, or words with their times";
     }
+    let timing = ask.timing;
+    if (timing === null && line === null && ask.more && ask.duration !== null) {
+      timing = paceText(this.alphabet, text, ask.duration);
+    }
     let length;
-    if (ask.timing !== null) {
-      length = timedSeconds(ask.timing, ask.duration);
+    if (timing !== null) {
+      length = timedSeconds(timing, ask.duration);
     } else if (ask.duration !== null) {
       length = Math.max(ask.duration, 0);
     } else if (line !== null && line.seconds !== null) {
@@ -417,7 +447,7 @@ export class Meaning {
     } else {
       length = readAloud(this.alphabet, text);
     }
-    this.speeches.push(new Speech(ident, at, at + length, ask.line, text, priority, null, ask.timing));
+    this.speeches.push(new Speech(ident, at, at + length, ask.line, text, priority, null, timing, 0, ask.more));
     const told = ask.valence !== null || line === null;
     const valence = (told || line === null) ? ask.valence : line.valence;
     const arousal = (told || line === null) ? ask.arousal : line.arousal;
@@ -432,7 +462,10 @@ export class Meaning {
       if (inner.do === "say") {
         return "a line would say another line; its asks may not";
       }
-      const begins = inner.at === null ? at : at + inner.at;
+      let begins = inner.at === null ? at : at + inner.at;
+      if (ask.at === null) {
+        begins = Math.max(begins, this.fixed);
+      }
       const why = this.add(inner, `${ident}.${n + 1}`, begins, Math.max(inner.priority, priority), at);
       if (why !== "") {
         return why;
@@ -443,14 +476,33 @@ export class Meaning {
 }
 
 /**
- * Take what an ask means, or refuse all of it. now: when it begins where it does not say.
+ * Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said, likewise.
  * @param {Meaning} whole
  * @param {PlainAsk} ask
  * @param {number} now
+ * @param {number} soon
  */
-export function understood(whole, ask, now) {
-  const one = new Meaning(whole.project, whole.graphs, whole.alphabet);
-  const at = ask.at === null ? now : ask.at;
+export function understood(whole, ask, now, soon) {
+  const one = new Meaning(
+    whole.project,
+    whole.graphs,
+    whole.alphabet,
+    [],
+    [],
+    [],
+    [],
+    [],
+    [],
+    [],
+    [],
+    [],
+    new Set([]),
+    [],
+    [],
+    "",
+    now,
+  );
+  const at = ask.at === null ? (ask.do === "say" ? soon : now) : ask.at;
   const why = one.add(ask, ask.id, at, ask.priority, 0);
   if (why === "") {
     whole.take(one);

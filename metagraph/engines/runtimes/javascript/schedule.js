@@ -10,6 +10,7 @@
 import { getManner, isSameLife } from "./life.js";
 import { MODES } from "./words.js";
 import { emphasesOn, swellsOn } from "./expressions.js";
+import { findLineStart } from "./items.js";
 import { Lane } from "./lane.js";
 import { areSameVoices, stressed } from "./voice.js";
 import { modesBetween, moodsBetween, moodsOf, targetsBetween, waysIn } from "./wanted.js";
@@ -481,8 +482,8 @@ export class LifeDraw {
       }
       const end = Math.min(speech.end, this.drawn);
       for (const [n, peak] of stressed(this.voices, speech).entries()) {
-        const at = speech.start + peak;
-        if (at < start || at >= end) {
+        const at = findLineStart(speech) + peak;
+        if (at < Math.max(start, speech.start) || at >= end) {
           continue;
         }
         if (n === 0 || uniform(this.seed, speech.id, "accent", String(n)) < this.life.accentBlinks) {

@@ -1,5 +1,7 @@
 /** What is said, heard in step with the lips: lines with their own sounds, and sounds given for one thing that is said. */
 
+import { findLineStart } from "./items.js";
+
 export class Sounds {
   /** @param {Record<string, {audio?: string}>} lines @param {URL} base what their paths are relative to */
   constructor(lines, base) {
@@ -25,7 +27,7 @@ export class Sounds {
     this.silence();
     if (!speech) return;
     const sound = new Audio(this.of(speech));
-    sound.currentTime = Math.max(0, now - speech.start);
+    sound.currentTime = Math.max(0, now - findLineStart(speech));
     sound.play().catch(() => {}); // a browser keeps still until somebody has clicked
     this.playing = { key, sound };
   }

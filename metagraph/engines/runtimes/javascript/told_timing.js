@@ -1,13 +1,13 @@
 /** The words and visemes of a line as synthesisers tell them: pairs and triples, Amazon Polly's speech marks, Azure's events. */
 
 import { ALPHABET } from "./alphabet.js";
-import { SpokenWord, VisemeMark, timingOf, wrongIn } from "./line_timing.js";
+import { SpokenWord, VisemeMark, joinLetters, timingOf, wrongIn } from "./line_timing.js";
 
 const [THOUSAND, TICKS] = [1e3, 1e7]; // of a second, in which Polly and Azure count
 
 /**
  * Return when a line's words and shapes come, null where that is not told, or why that cannot be read.
- * @param {{words: unknown[], visemes: unknown[], set: ?string, duration: ?number}} ask
+ * @param {{words: unknown[], visemes: unknown[], characters: unknown[], set: ?string, duration: ?number}} ask
  * @returns {{timing: ?import("./line_timing.js").LineTiming, why: string}}
  */
 export function toldTiming(ask) {
@@ -17,6 +17,11 @@ export function toldTiming(ask) {
   for (const [n, entry] of ask.words.entries()) {
     if (!addWord(entry, words, false)) return refuse(`words[${n}]: should be [word, start, end], seconds from the line's start`);
   }
+  const letters = [];
+  for (const [n, entry] of ask.characters.entries()) {
+    if (!addWord(entry, letters, false)) return refuse(`characters[${n}]: should be [letter, start, end], seconds from the line's start`);
+  }
+  if (!words.length) words.push(...joinLetters(ALPHABET, letters));
   for (const [n, entry] of ask.visemes.entries()) {
     const told = addMark(entry, marks) || addWord(entry, words, true);
     if (!told) return refuse(`visemes[${n}]: should be [seconds, viseme], or with its weight from 0 to 1`);
@@ -43,7 +48,7 @@ function addWord(entry, out, named) {
       const { audioOffset: start, duration: length } = entry;
       told = [entry.text, seconds(start, TICKS), isNumber(start) && isNumber(length) ? (start + length) / TICKS : null];
     } else {
-      told = [entry.word ?? entry.text, entry.start, entry.end];
+      told = [entry.word ?? entry.text ?? entry.character, entry.start, entry.end];
     }
   } else if (named) {
     return false;

@@ -129,12 +129,14 @@ export class Track {
       }
       looks.push(look);
     }
+    const latest = new Map(this.speeches.map((x) => [x.id, x]));
+    const lasts = new Set([...latest].filter(([ident, x]) => x.more || x.end > seconds).map(([ident, x]) => ident));
     const mode = Math.max(0, bisectRight(this.modes.map((m) => m.start), seconds) - 1);
     const places = new Map([...this.places.entries()].filter(([n, x]) => x.start <= seconds).map(([n, x]) => [x.name, n]));
     const stays = new Map([...this.stays.entries()].filter(([n, x]) => x.start <= seconds).map(([n, x]) => [x.layer, n]));
     return new Track(
       [...looks],
-      this.speeches.filter((x) => x.start > seconds || x.end > seconds),
+      this.speeches.filter((x) => x.start > seconds || x.end > seconds || (x.more && lasts.has(x.id))),
       this.modes.slice(mode),
       [...this.places.entries()].filter(([n, x]) => x.start > seconds || places.get(x.name) === n).map(([n, x]) => x),
       this.blinks.filter((x) => x.start > seconds),

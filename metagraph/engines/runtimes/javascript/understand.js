@@ -10,14 +10,15 @@ import { LAYERS } from "./words.js";
 /**
  * Return what asks mean. An ask that makes several requests gives them ids of its own: `<id>`, `<id>.1`, `<id>.2`, ...
  * @param {import("./graph.js").Graph} graph @param {unknown[]} asks as JSON @param {number} now when those begin that do not say
+ * @param {number} soon when it is said, for what is said
  * @returns {Meaning}
  */
-export function understand(graph, asks, now) {
+export function understand(graph, asks, now, soon) {
   const out = new Meaning(graph, LAYERS.map((layer) => graph.layers[layer]), ALPHABET);
   for (const data of asks) {
     const { ask, why } = readAsk(data);
     const { plain, wrong } = ask ? plainAsk(graph, ask) : { plain: null, wrong: why };
-    if (plain) understood(out, plain, now);
+    if (plain) understood(out, plain, now, soon);
     else out.refuse(ask?.id ?? (typeof data?.id === "string" ? data.id : ""), wrong, ask?.layer ?? null, ask?.at ?? now);
   }
   for (const block of out.blocks) {

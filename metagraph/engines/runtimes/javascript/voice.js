@@ -2,6 +2,7 @@
 
 import { ALPHABET } from "./alphabet.js";
 import { readAloud, spelled } from "./graphemes.js";
+import { measureLine } from "./items.js";
 import { timedSounds } from "./line_timing.js";
 import { accentsOf, mouthTrack } from "./mouth.js";
 import { inRange } from "./words.js";
@@ -46,10 +47,10 @@ export class Voices {
 
   /** @returns {Voice} */
   of(speech) {
-    if (speech.timing) return this.guess(speech, () => voiceFromTiming(speech.timing, speech.length ?? speech.end - speech.start));
+    if (speech.timing) return this.guess(speech, () => voiceFromTiming(speech.timing, measureLine(speech)));
     const known = speech.line === null ? undefined : this.known.get(speech.line);
     if (known) return known;
-    return this.guess(speech, () => voiceFromText(speech.text, Math.max(0, speech.length ?? speech.end - speech.start)));
+    return this.guess(speech, () => voiceFromText(speech.text, Math.max(0, measureLine(speech))));
   }
 
   guess(speech, made) {

@@ -1,6 +1,7 @@
 /** Which shape the mouth has: the voices of what is said, at any time. */
 
 import { begunBy } from "../basics.js";
+import { findLineStart } from "../items.js";
 import { soften } from "../mouth.js";
 import { VISEMES } from "../words.js";
 import { ease } from "./gaze.js";
@@ -38,7 +39,7 @@ function shownOf(voice, speech, time) {
   const kept = 1 - ease((time - speech.end) / CLOSING);
   const { weights } = voice;
   const last = weights.length / COUNT - 1;
-  const at = ((Math.min(time, speech.end) - speech.start) / Math.max(voice.duration, 1e-3)) * last;
+  const at = ((Math.min(time, speech.end) - findLineStart(speech)) / Math.max(voice.duration, 1e-3)) * last;
   const low = Math.min(Math.max(Math.floor(at), 0), last - 1);
   const part = Math.min(Math.max(at - low, 0), 1);
   for (let k = 1, a = low * COUNT + 1; k < COUNT; k++, a++) out[k - 1] = kept * (weights[a] * (1 - part) + weights[a + COUNT] * part);

@@ -32,7 +32,10 @@ namespace Metagraph
         /// When the words and mouth shapes of a "say" come, as JSON has them: lists [word, start, end] and [seconds, viseme], or
         /// JsonObjects. Set: of the visemes' names, null for what they tell.
         /// </summary>
-        public List<object> Words = new List<object>(), Visemes = new List<object>();
+        public List<object> Words = new List<object>(), Visemes = new List<object>(), Characters = new List<object>();
+
+        /// <summary>Whether more of a "say" comes under its id, so that it is not over when it falls silent.</summary>
+        public bool More;
         public string Set;
 
         internal const double Longest = 1e6;
@@ -48,11 +51,15 @@ namespace Metagraph
             { "shake", "tags late mood intensity" },
             { "look", "to duration amount strict" },
             { "blink", "" },
-            { "say", "line text duration gestures words visemes set mood intensity" },
+            { "say", "line text duration gestures words visemes characters more set mood intensity" },
             { "mode", "mode" },
             { "mood", "mood intensity duration" },
             { "place", "name point" },
             { "withdraw", "what" },
+            { "interrupt", "what" },
+            { "pause", "what" },
+            { "resume", "what" },
+            { "finish", "what" },
             { "bml", "bml" },
         };
 
@@ -133,6 +140,8 @@ namespace Metagraph
                 case "gestures": Gestures = Flag(name, value); break;
                 case "words": Words = Entries(name, value, 4000); break;
                 case "visemes": Visemes = Entries(name, value, 20000); break;
+                case "characters": Characters = Entries(name, value, 20000); break;
+                case "more": More = Flag(name, value); break;
                 case "set": Set = value == null ? null : OneOf(name, value, LineTimingRules.Sets.ToArray()); break;
                 case "mode": Mode = value == null ? null : OneOf(name, value, Basics.Modes); break;
                 case "mood": Feel(name, value); break;

@@ -18,11 +18,12 @@ namespace Metagraph
 
     /// <summary>
     /// What began or ended. Kind: begin or end. Layer: body, arms, head, or speech. Action: name of the action; of a speech the id of
-    /// its line, else its text. Meta: the ask's id, or the model's. At: seconds.
+    /// its line, else its text. Meta: the ask's id, or the model's. At: seconds. Reason: where all that is said under an id is over,
+    /// finished, interrupted or replaced; else "".
     /// </summary>
     public struct CharacterEvent
     {
-        public string Kind, Layer, Action, Meta;
+        public string Kind, Layer, Action, Meta, Reason;
         public double At;
     }
 
@@ -37,6 +38,7 @@ namespace Metagraph
         private const double Leap = 3600.0; // seconds an update may move on: all that lies between is planned
         private const int Sounds = 16; // lines whose sound is remembered
         private const int Remembered = 1000; // answers kept after that, and events nobody asked for
+        private static readonly string[] Taking = { "withdraw", "interrupt", "pause", "resume", "finish" }; // done once taken up
         private static readonly CharacterEvent[] Nothing = new CharacterEvent[0];
 
         public readonly Graph Graph;
@@ -122,7 +124,7 @@ namespace Metagraph
             StreamedVoice voice = goesOn ? sounds[place].Value : new StreamedVoice(rate);
             if (begun != null)
             {
-                voice.Follow(Now + Graph.Settings.Lookahead - begun.Start);
+                voice.Follow(UtterancesRules.FindSoon(Now, Graph.Settings.Lookahead) - ItemsRules.FindLineStart(begun));
             }
             sounds.RemoveAll(one => one.Key == id);
             sounds.Add(new KeyValuePair<string, StreamedVoice>(id, voice));
@@ -212,7 +214,7 @@ namespace Metagraph
             {
                 double end = far ? Plan.End : Now + options.Ahead;
                 Plan = Hearing.Hear(Graph, Plan, Now, queue, end, options.Stances, options.Idle);
-                queue.FindAll(ask => ask.Do == "withdraw").ForEach(ask => Settle(new Answer { Id = ask.Id, State = "done" }));
+                queue.FindAll(ask => Taking.Contains(ask.Do)).ForEach(ask => Settle(new Answer { Id = ask.Id, State = "done" }));
                 queue.Clear();
                 streaming.Clear();
             }
@@ -255,7 +257,21 @@ namespace Metagraph
             for (int n = 0; n < Plan.Track.Speeches.Count; n++)
             {
                 Speech speech = Plan.Track.Speeches[n];
-                Note(speech.Start, speech.End, "speech", speech.Line ?? speech.Text, speech.Id);
+                double last = Math.Max(speech.End, speech.Over ?? speech.End);
+                if (last <= seen || speech.Start > Now)
+                {
+                    continue;
+                }
+                string reason = speech.End > Now ? "" : UtterancesRules.ExplainEnd(Plan.Track.Speeches, speech);
+                string said = speech.Line ?? speech.Text;
+                Note(speech.Start, speech.End, "speech", said, speech.Id, speech.Over == null ? reason : "");
+                if (speech.Over > seen && speech.Over <= Now)
+                {
+                    Insert(new CharacterEvent
+                    {
+                        Kind = "end", Layer = "speech", Action = said, Meta = speech.Id, At = speech.Over.Value, Reason = reason,
+                    });
+                }
             }
             seen = Now;
             if (events.Count > Remembered)
@@ -264,7 +280,7 @@ namespace Metagraph
             }
         }
 
-        private void Note(double start, double end, string layer, string action, string key)
+        private void Note(double start, double end, string layer, string action, string key, string reason = "")
         {
             bool begins = start > seen && start <= Now, ends = end > seen && end <= Now;
             if (begins || ends)
@@ -272,11 +288,11 @@ namespace Metagraph
                 string meta = layer == "speech" ? key : key.Split('+')[0]; // what goes on after a cut is the same
                 if (begins)
                 {
-                    Insert(new CharacterEvent { Kind = "begin", Layer = layer, Action = action, Meta = meta, At = start });
+                    Insert(new CharacterEvent { Kind = "begin", Layer = layer, Action = action, Meta = meta, At = start, Reason = "" });
                 }
                 if (ends)
                 {
-                    Insert(new CharacterEvent { Kind = "end", Layer = layer, Action = action, Meta = meta, At = end });
+                    Insert(new CharacterEvent { Kind = "end", Layer = layer, Action = action, Meta = meta, At = end, Reason = reason });
                 }
             }
         }
@@ -321,6 +337,14 @@ namespace Metagraph
                 return new Answer { Id = id, State = "planned", Why = "taken up at the next update" };
             }
             return Hearing.AnswerTo(Plan, id);
+        }
+
+        /// <summary>
+        /// What of something said was spoken until now, up to the word that was begun, and that word; "" where nothing was.
+        /// </summary>
+        public void Spoken(string id, out string text, out string lastWord)
+        {
+            (text, lastWord) = SpokenSoFarRules.SpokenUntil(Alphabet.Common, Plan.Track.Speeches, id, Now);
         }
 
         /// <summary>The pose at the updated time; the same arrays each time. alive: with the life layers.</summary>

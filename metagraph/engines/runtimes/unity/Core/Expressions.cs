@@ -133,8 +133,13 @@ namespace Metagraph
                 {
                     var n = one.Item1;
                     var peak = one.Item2;
-                    at = Math.Max(speech.Start, speech.Start + peak - Early);
-                    if (at >= speech.End || ChoiceRules.Uniform(seed, speech.Id, "brows", PlainText.Of(n)) >= life.AccentBrows)
+                    var begin = ItemsRules.FindLineStart(speech);
+                    at = Math.Max(speech.Start, begin + peak - Early);
+                    if (at >= speech.End || begin + peak < speech.Start)
+                    {
+                        continue;
+                    }
+                    if (ChoiceRules.Uniform(seed, speech.Id, "brows", PlainText.Of(n)) >= life.AccentBrows)
                     {
                         continue;
                     }
@@ -143,9 +148,9 @@ namespace Metagraph
                 }
                 if (Asks(speech))
                 {
-                    var length = speech.Length == null ? speech.End - speech.Start : speech.Length.Value;
+                    var length = ItemsRules.MeasureLine(speech);
                     var lead = Math.Min(Asking, 0.5 * length);
-                    at = speech.Start + length - lead;
+                    at = Math.Max(speech.Start, ItemsRules.FindLineStart(speech) + length - lead);
                     if (at < speech.End)
                     {
                         found.Add(new List<double> { at, lead + AskingOn, AskingLifts, lead });

@@ -289,7 +289,7 @@ namespace Metagraph
         }
 
         /// <summary>Return each word and how many characters' time of pause follows it.</summary>
-        private static List<(string, double)> Words(Alphabet alphabet, string text)
+        public static List<(string, double)> SplitWords(Alphabet alphabet, string text)
         {
             var out_ = new List<(string, double)>();
             var word = "";
@@ -346,13 +346,13 @@ namespace Metagraph
         public static double ReadAloud(Alphabet alphabet, string text)
         {
             var letters = alphabet.Letters(alphabet.Stripped(text));
-            return Math.Max(Shortest, letters.Select(letter => SizeOf(alphabet.Code(letter))).ToList().Sum() / Pace);
+            return Math.Max(Shortest, letters.Select(letter => MeasureLetter(alphabet.Code(letter))).ToList().Sum() / Pace);
         }
 
         /// <summary>
         /// Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
         /// </summary>
-        private static double SizeOf(int code)
+        public static double MeasureLetter(int code)
         {
             foreach (Syllabary script in Syllabaries)
             {
@@ -369,7 +369,7 @@ namespace Metagraph
         {
             var out_ = new Spelled();
             var plan = new List<SpelledSound>();
-            foreach (var one in Words(alphabet, alphabet.Stripped(text)))
+            foreach (var one in SplitWords(alphabet, alphabet.Stripped(text)))
             {
                 var word = one.Item1;
                 var pause = one.Item2;

@@ -17,21 +17,20 @@ namespace Metagraph
     {
         /// <summary>
         /// The plan with asks worked in that became known at `now`, and the horizon moved to `end`. What begins before now + lookahead
-        /// stays, but at the very beginning. Asks need ids; of two with one id the later counts. stances: layer -> where it begins.
+        /// stays, but at the very beginning; voices begin and stop sooner. Asks need ids; of two with one id the later counts. stances: layer -> where it begins.
         /// </summary>
         public static Plan Hear(
             Graph graph, Plan plan, double now, IList<Ask> asks, double end, IDictionary<string, string> stances = null, bool idle = true)
         {
             double begins = now > 0 ? now + graph.Settings.Lookahead : 0.0;
-            Meaning meant = Understood.From(graph, asks, begins);
+            double soon = UtterancesRules.FindSoon(now, graph.Settings.Lookahead);
+            Meaning meant = Understood.From(graph, asks, begins, soon);
             List<string> turning = Basics.Layers.Where(layer => graph.Layers[layer].Markov.Modes.Count > 0).ToList();
-            Heard heard = HearingRules.Heard(
-                plan.Requests, plan.Track, meant.Requests, meant.Track(), meant.Withdrawn, meant.Refused.ConvertAll(r => r.Request), begins,
-                turning);
+            Heard heard = HearingRules.Heard(plan.Requests, plan.Track, meant, begins, soon, turning);
             bool partly = asks.Count > 0 && now > 0 && end == plan.End;
             string[] leave = partly ? Basics.Layers.Where(layer => !heard.Touched.Contains(layer)).ToArray() : Basics.None;
             plan = plan.With(heard.Track);
-            Plan after = Planner.Extend(graph, plan, begins, meant.Requests, end, stances, idle, heard.Withdrawn, leave, heard.Stopped);
+            Plan after = Planner.Extend(graph, plan, begins, heard.Fresh, end, stances, idle, heard.Withdrawn, leave, heard.Stopped);
             after.Reports.AddRange(meant.Refused);
             return after;
         }
@@ -56,7 +55,11 @@ namespace Metagraph
                 }
                 layer.Metas.FindAll(m => m.Start >= plan.End).ForEach(m => Each(of(m.Request.Id), one => one.Waiting.Add(m.Start)));
             }
-            Each(Lasting(plan.Track), item => Each(of(item.Item1), one => one.Items.Add(item)));
+            foreach ((string, double, double, string) item in Lasting(plan.Track))
+            {
+                bool paused = UtterancesRules.IsPaused(item.Item2);
+                Each(of(item.Item1), one => { if (paused) { one.Waiting.Add(item.Item2); } else { one.Items.Add(item); } });
+            }
             plan.Reports.ForEach(report => Each(of(report.Request), one => one.Told.Add(report)));
             return ids.Select(id => AnswerOf(id, found[id])).ToList();
         }
@@ -104,6 +107,11 @@ namespace Metagraph
             else if (told.Exists(r => r.Outcome == "already-there"))
             {
                 answer.State = "done";
+            }
+            else if (found.Waiting.Count > 0 && UtterancesRules.IsPaused(found.Waiting[0]))
+            {
+                answer.State = "planned";
+                answer.Why = "it is paused";
             }
             else if (found.Waiting.Count > 0 && told.All(r => r.Played))
             {

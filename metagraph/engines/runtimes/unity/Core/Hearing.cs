@@ -6,27 +6,262 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// track: what lasts. withdrawn: ids of what was asked for before and is not any more; stopped: those of them that were taken
-    /// back and not asked for anew. touched: layers that asks have to do with.
+    /// track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked for
+    /// before and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers that asks
+    /// have to do with.
     /// </summary>
     public sealed class Heard
     {
         public readonly Track Track;
+        public readonly List<MetaRequest> Fresh;
         public readonly HashSet<string> Withdrawn;
         public readonly HashSet<string> Stopped;
         public readonly HashSet<string> Touched;
 
-        public Heard(Track track, HashSet<string> withdrawn, HashSet<string> stopped, HashSet<string> touched)
+        public Heard(
+            Track track,
+            List<MetaRequest> fresh,
+            HashSet<string> withdrawn,
+            HashSet<string> stopped,
+            HashSet<string> touched
+        )
         {
             Track = track;
+            Fresh = fresh;
             Withdrawn = withdrawn;
             Stopped = stopped;
             Touched = touched;
         }
     }
 
+    /// <summary>
+    /// What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of which
+    /// an earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which something else
+    /// was said before. moods: what is asked for with them.
+    /// </summary>
+    public sealed class AddedSpeeches
+    {
+        public readonly List<Speech> Said;
+        public readonly HashSet<string> Begun;
+        public readonly HashSet<string> On;
+        public readonly HashSet<string> Anew;
+        public readonly List<MoodFrom> Moods;
+
+        public AddedSpeeches(
+            List<Speech> said,
+            HashSet<string> begun,
+            HashSet<string> on,
+            HashSet<string> anew,
+            List<MoodFrom> moods
+        )
+        {
+            Said = said;
+            Begun = begun;
+            On = on;
+            Anew = anew;
+            Moods = moods;
+        }
+
+        /// <summary>
+        /// Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked for.
+        /// </summary>
+        public Track Leave(Track track)
+        {
+            if (On.Count == 0)
+            {
+                return track;
+            }
+            var other = new HashSet<string>(Moods.Select(m => m.Id));
+            var ends = new Dictionary<string, double>();
+            foreach (Speech speech in Said)
+            {
+                if (On.Contains(speech.Id))
+                {
+                    ends[speech.Id] = speech.More ? UtterancesRules.Paused : speech.End;
+                }
+            }
+            var speeches = track.Speeches.Where(s => !Begun.Contains(s.Id)).ToList();
+            var moods = new List<MoodFrom>();
+            foreach (MoodFrom m in track.Moods)
+            {
+                if (!ends.ContainsKey(m.Id) || other.Contains(m.Id))
+                {
+                    moods.Add(m);
+                }
+                else
+                {
+                    moods.Add(new MoodFrom(m.Id, m.Start, m.Valence, m.Arousal, m.Intensity, ends[m.Id]));
+                }
+            }
+            return new Track(
+                track.Looks,
+                speeches.ToList(),
+                track.Modes,
+                track.Places,
+                track.Blinks,
+                track.Stays,
+                moods.ToList()
+            );
+        }
+    }
+
+    /// <summary>
+    /// A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is as in
+    /// `Heard`.
+    /// </summary>
+    public sealed class SteeredSpeech
+    {
+        public Track Track;
+        public HashSet<string> Withdrawn;
+        public HashSet<string> Stopped;
+        public HashSet<string> Touched;
+        public List<MetaRequest> Requests;
+        public HashSet<string> Anew;
+
+        public SteeredSpeech(
+            Track track,
+            HashSet<string> withdrawn,
+            HashSet<string> stopped,
+            HashSet<string> touched,
+            List<MetaRequest> requests = null,
+            HashSet<string> anew = null
+        )
+        {
+            Track = track;
+            Withdrawn = withdrawn;
+            Stopped = stopped;
+            Touched = touched;
+            Requests = requests ?? new List<MetaRequest>();
+            Anew = anew ?? new HashSet<string>();
+        }
+
+        /// <summary>Return the ids of all of it.</summary>
+        public List<string> Idents()
+        {
+            return Requests.Select(r => r.Id).ToList().Concat(Track.Idents()).ToList();
+        }
+
+        /// <summary>Break off an utterance at `stop`, and what was made for it at `now`.</summary>
+        public void Interrupt(string ident, HashSet<string> made, double stop, double now, double soon)
+        {
+            if (UtterancesRules.GoesOn(Track.Speeches, ident, soon))
+            {
+                Track = UtterancesRules.BreakOff(Track, ident, stop);
+            }
+            if (Track.Moods.Any(m => made.Contains(m.Id)))
+            {
+                foreach (string layer in WordsRules.Layers)
+                {
+                    Touched.Add(layer);
+                }
+            }
+            Track = Track.Without(made, now);
+            foreach (MetaRequest request in Requests)
+            {
+                if (made.Contains(request.Id))
+                {
+                    Withdrawn.Add(request.Id);
+                    Stopped.Add(request.Id);
+                    Touched.Add(request.Layer);
+                }
+            }
+            Requests = Requests.Where(r => !made.Contains(r.Id)).ToList();
+        }
+
+        /// <summary>
+        /// Hold an utterance, and what was made for it and has not had its moment; what has begun goes back.
+        /// </summary>
+        public void Pause(string ident, HashSet<string> made, double stop, double now)
+        {
+            if (UtterancesRules.IsPaused(stop))
+            {
+                return;
+            }
+            var slot = UtterancesRules.FindSlot(Track);
+            Track = UtterancesRules.Pause(Track, ident, made, stop, slot);
+            var kept = new List<MetaRequest>();
+            foreach (MetaRequest request in Requests)
+            {
+                if (!made.Contains(request.Id) || UtterancesRules.IsPaused(request.Start))
+                {
+                    kept.Add(request);
+                    continue;
+                }
+                Withdrawn.Add(request.Id);
+                Touched.Add(request.Layer);
+                if (request.Start < now)
+                {
+                    Stopped.Add(request.Id);
+                }
+                var wanted = request.Stroke == null ? request.Start : request.Stroke.Value;
+                if (wanted >= stop)
+                {
+                    kept.Add(MoveRequest(request, slot - stop, 0.0));
+                    Anew.Add(request.Id);
+                }
+            }
+            Requests = kept;
+        }
+
+        /// <summary>Go on with an utterance that is paused, and with what waits for it.</summary>
+        public void Resume(string ident, HashSet<string> made, double now, double soon)
+        {
+            var held = Track.Speeches.Where(s => s.Id == ident && UtterancesRules.IsPaused(s.Start)).FirstOrDefault();
+            if (held == null)
+            {
+                return;
+            }
+            Track = UtterancesRules.Resume(Track, ident, made, soon);
+            var kept = new List<MetaRequest>();
+            foreach (MetaRequest request in Requests)
+            {
+                if (made.Contains(request.Id) && UtterancesRules.IsPaused(request.Start))
+                {
+                    Withdrawn.Add(request.Id);
+                    Touched.Add(request.Layer);
+                    Anew.Add(request.Id);
+                    kept.Add(MoveRequest(request, soon - held.Start, now));
+                }
+                else
+                {
+                    kept.Add(request);
+                }
+            }
+            Requests = kept;
+        }
+
+        /// <summary>Return a request moved by so many seconds, to no earlier than `least`.</summary>
+        public MetaRequest MoveRequest(MetaRequest request, double by, double least)
+        {
+            var stroke = request.Stroke == null ? (double?)null : request.Stroke.Value + by;
+            return new MetaRequest(
+                request.Id,
+                request.Layer,
+                request.Kind,
+                Math.Max(least, request.Start + by),
+                request.Duration,
+                request.Action,
+                request.Tags,
+                request.Limb,
+                request.Stance,
+                request.Priority,
+                request.Resume,
+                stroke,
+                request.Hold,
+                request.Prepare,
+                request.Among,
+                request.Late,
+                request.Valence,
+                request.Arousal,
+                request.Intensity
+            );
+        }
+    }
+
     public static class HearingRules
     {
+        public const double Listens = 2.0; // seconds for which the gaze stays with the partner who interrupts
+
         /// <summary>
         /// Return the asks a request may have been made by: that of its own id, and those of which it would be a part.
         /// </summary>
@@ -69,27 +304,26 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what asks do. requests, track: of the plan. fresh, more: what is asked for, where speeches may overlap.
-        /// withdrawn: ids taken back; every one where it holds "". refused: ids of what could not be understood. now: what begins
-        /// before stays. turning: layers whose models perform one thing in one mode and another in another.
+        /// Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what
+        /// begins before stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in
+        /// another.
         /// </summary>
         public static Heard Heard(
             List<MetaRequest> requests,
             Track track,
-            List<MetaRequest> fresh,
-            Track more,
-            HashSet<string> withdrawn,
-            List<string> refused,
+            Meaning meant,
             double now,
+            double soon,
             List<string> turning
         )
         {
-            var gone = new HashSet<string>(withdrawn);
-            foreach (string ident in refused)
+            var more = meant.Track();
+            var gone = new HashSet<string>(meant.Withdrawn);
+            foreach (Report report in meant.Refused)
             {
-                gone.Add(ident);
+                gone.Add(report.Request);
             }
-            foreach (MetaRequest request in fresh)
+            foreach (MetaRequest request in meant.Requests)
             {
                 gone.Add(request.Id);
             }
@@ -97,34 +331,7 @@ namespace Metagraph
             {
                 gone.Add(ident);
             }
-            var said = new List<Speech>();
-            var begun = new HashSet<string>(); // of which more is said
-            var anew = new HashSet<string>(); // of which something else was said before
-            var later = new Dictionary<string, double>(); // by how much those begin that are said behind others of their id
-            foreach (Speech asked in more.Speeches)
-            {
-                var beforeIt = withdrawn.Contains(asked.Id) ? null : track.LastSpeech(asked.Id);
-                var last = said.AsEnumerable().Reverse().ToList().Where(s => s.Id == asked.Id).DefaultIfEmpty(beforeIt).First();
-                var one = ItemsRules.GoingOn(last, asked, now);
-                if (one != asked && last != null && one.Start == last.Start)
-                {
-                    begun.Add(one.Id);
-                    said = said.Where(s => s.Id != one.Id).ToList();
-                }
-                else if (one == asked && !withdrawn.Contains(asked.Id))
-                {
-                    one = ItemsRules.Behind(track.Speeches.Concat(said).ToList(), asked, now);
-                    if (one != asked)
-                    {
-                        later[one.Id] = one.Start - asked.Start;
-                    }
-                }
-                if (one == asked && track.LastSpeech(one.Id) != null)
-                {
-                    anew.Add(one.Id);
-                }
-                said.Add(one);
-            }
+            var words = AddSpeeches(meant, track, soon);
             var before = requests.Select(r => r.Id).ToList();
             before.AddRange(track.Idents());
             // Who takes everything back still looks at whom it talks with.
@@ -132,6 +339,7 @@ namespace Metagraph
                 && SpotsRules.IsSameSpot(x.To, SpotsRules.Named("user"))).Select(x => x.Id));
             var taken = new HashSet<string>();
             var stopped = new HashSet<string>();
+            var withdrawn = meant.Withdrawn;
             foreach (string ident in before)
             {
                 var every = withdrawn.Contains("") && !user.Contains(ident);
@@ -139,7 +347,7 @@ namespace Metagraph
                 {
                     stopped.Add(ident);
                 }
-                else if (anew.Count > 0 && !anew.Contains(ident) && Makers(ident).Any(o => anew.Contains(o)))
+                else if (words.Anew.Count > 0 && !words.Anew.Contains(ident) && Makers(ident).Any(o => words.Anew.Contains(o)))
                 {
                     stopped.Add(ident); // what was made for the words before
                 }
@@ -160,7 +368,7 @@ namespace Metagraph
                 }
             }
             var stays = more.Stays.Where(s => staying.Contains(s.Layer)).ToList();
-            var touched = new HashSet<string>(fresh.Select(r => r.Layer));
+            var touched = new HashSet<string>(meant.Requests.Select(r => r.Layer));
             foreach (MetaRequest request in requests)
             {
                 if (taken.Contains(request.Id))
@@ -177,6 +385,7 @@ namespace Metagraph
             }
             var turns = more.Modes.Count > 0
                 || more.Speeches.Count > 0
+                || meant.Steered.Count > 0
                 || track.Modes.Any(m => taken.Contains(m.Id))
                 || track.Speeches.Any(s => taken.Contains(s.Id));
             if (turns) // who talks moves otherwise than who listens
@@ -193,28 +402,182 @@ namespace Metagraph
                     touched.Add(layer);
                 }
             }
+            var left = track;
+            foreach (string ident in UtterancesRules.FindUtterances(track, "", soon))
+            {
+                if (stopped.Contains(ident))
+                {
+                    left = UtterancesRules.BreakOff(left, ident, now);
+                }
+            }
             var over = new HashSet<string>();
             foreach (string ident in taken)
             {
-                if (!begun.Contains(ident) && !later.ContainsKey(ident))
+                if (!words.On.Contains(ident))
                 {
                     over.Add(ident);
                 }
             }
-            var moods = more.Moods.Select(m => later.ContainsKey(m.Id)
-                ? new MoodFrom(m.Id, m.Start + later[m.Id], m.Valence, m.Arousal, m.Intensity, m.End + later[m.Id])
-                : m).ToList();
-            var left = track.Without(over, now).Without(begun);
+            left = words.Leave(left.Without(over, now));
             var lasting = new Track(
                 more.Looks,
-                said.ToList(),
+                words.Said.ToList(),
                 more.Modes,
                 more.Places,
                 more.Blinks,
                 stays.ToList(),
-                moods.ToList()
+                words.Moods.ToList()
             );
-            return new Heard(left.Joined(lasting), taken, stopped, touched);
+            var said = new Heard(left.Joined(lasting), meant.Requests, taken, stopped, touched);
+            return Steer(requests, said, meant, now, soon);
+        }
+
+        /// <summary>
+        /// Return what asks to say something make of a track: a line, something behind a line, or more of one.
+        /// </summary>
+        public static AddedSpeeches AddSpeeches(Meaning meant, Track track, double soon)
+        {
+            var said = new List<Speech>();
+            var begun = new HashSet<string>();
+            var on = new HashSet<string>();
+            var anew = new HashSet<string>();
+            var later = new Dictionary<string, double>(); // by how much those begin that are said behind others of their id
+            foreach (Speech told in meant.Speeches)
+            {
+                var taken = meant.Withdrawn.Contains(told.Id) || meant.Withdrawn.Contains("");
+                var before = taken ? null : track.LastSpeech(told.Id);
+                var last = said.AsEnumerable().Reverse().ToList().Where(s => s.Id == told.Id).DefaultIfEmpty(before).First();
+                var asked = told;
+                var now = soon;
+                if (last != null && UtterancesRules.IsPaused(last.Start) && told.Start <= soon && told.Line == null)
+                {
+                    now = last.Start; // it is said when that is
+                    asked = new Speech(
+                        told.Id,
+                        now,
+                        told.End + now - told.Start,
+                        told.Line,
+                        told.Text,
+                        told.Priority,
+                        told.Length,
+                        told.Timing,
+                        told.Skip,
+                        told.More,
+                        told.Over
+                    );
+                }
+                var paces = told.More || (last != null && last.More);
+                if (paces && asked.Timing == null && asked.Line == null)
+                {
+                    asked = ItemsRules.PaceSpeech(meant.Alphabet, asked);
+                }
+                var one = ItemsRules.GoingOn(last, asked, now);
+                if (one != asked && last != null && one.Start == last.Start)
+                {
+                    begun.Add(one.Id);
+                    on.Add(one.Id);
+                    said = said.Where(s => s.Id != one.Id || s.Start < one.Start).ToList();
+                    if (last == before)
+                    {
+                        said.AddRange(track.Speeches.Where(s => s.Id == one.Id && s != last).ToList());
+                    }
+                }
+                else if (one == asked && !taken)
+                {
+                    one = ItemsRules.Behind(track.Speeches.Concat(said).ToList(), asked, now);
+                    var opens = last != null && UtterancesRules.TakesMore(last) && told.Line == null && one.Start <= now;
+                    if (one != asked || opens)
+                    {
+                        on.Add(one.Id);
+                    }
+                }
+                if (one.Start != told.Start)
+                {
+                    later[one.Id] = one.Start - told.Start;
+                }
+                if (one == asked && !on.Contains(one.Id) && track.LastSpeech(one.Id) != null)
+                {
+                    anew.Add(one.Id);
+                }
+                said.Add(one);
+            }
+            var opened = new HashSet<string>(said.Where(s => s.More).Select(s => s.Id));
+            var moods = new List<MoodFrom>();
+            foreach (MoodFrom m in meant.Moods)
+            {
+                var by = (later.ContainsKey(m.Id) && !begun.Contains(m.Id)) ? later[m.Id] : 0.0;
+                var end = opened.Contains(m.Id) ? UtterancesRules.Paused : m.End + by;
+                moods.Add(new MoodFrom(m.Id, m.Start + by, m.Valence, m.Arousal, m.Intensity, end));
+            }
+            return new AddedSpeeches(said, begun, on, anew, moods);
+        }
+
+        /// <summary>
+        /// Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the
+        /// plan before.
+        /// </summary>
+        private static Heard Steer(List<MetaRequest> requests, Heard heard, Meaning meant, double now, double soon)
+        {
+            if (meant.Steered.Count == 0)
+            {
+                return heard;
+            }
+            var steered = new SteeredSpeech(
+                heard.Track,
+                new HashSet<string>(heard.Withdrawn),
+                new HashSet<string>(heard.Stopped),
+                new HashSet<string>(heard.Touched)
+            );
+            steered.Requests = requests.Where(r => !heard.Withdrawn.Contains(r.Id)).ToList();
+            foreach (MetaRequest request in heard.Fresh)
+            {
+                steered.Requests.Add(request);
+                steered.Anew.Add(request.Id);
+            }
+            foreach (SteeringAsk ask in meant.Steered)
+            {
+                var ids = UtterancesRules.FindUtterances(steered.Track, ask.What, soon);
+                if (ask.Do == "interrupt")
+                {
+                    if (ids.Count > 0)
+                    {
+                        var look = new LookAt(ask.Id, now, now + Listens, SpotsRules.Named("user"), 1.0, true, ask.Priority);
+                        steered.Track = steered.Track.Joined(new Track(new List<LookAt> { look }));
+                    }
+                    if (ask.What != "" && !ids.Contains(ask.What)) // it may have been said, and its gestures go on
+                    {
+                        ids.Add(ask.What);
+                    }
+                }
+                foreach (string ident in ids)
+                {
+                    var made = new HashSet<string>(steered.Idents().Where(x => Makers(x).Contains(ident)));
+                    if (ask.Do == "interrupt")
+                    {
+                        var stop = UtterancesRules.FindStop(meant.Alphabet, steered.Track, ident, soon, now);
+                        steered.Interrupt(ident, made, Math.Min(stop, now), now, soon);
+                    }
+                    else if (ask.Do == "pause")
+                    {
+                        steered.Pause(
+                            ident,
+                            made,
+                            UtterancesRules.FindStop(meant.Alphabet, steered.Track, ident, soon, now),
+                            now
+                        );
+                    }
+                    else if (ask.Do == "resume")
+                    {
+                        steered.Resume(ident, made, now, soon);
+                    }
+                    else
+                    {
+                        steered.Track = UtterancesRules.FinishSpeech(steered.Track, ident, soon);
+                    }
+                }
+            }
+            var fresh = steered.Requests.Where(r => steered.Anew.Contains(r.Id)).ToList();
+            return new Heard(steered.Track, fresh, steered.Withdrawn, steered.Stopped, steered.Touched);
         }
     }
 }

@@ -32,8 +32,9 @@ namespace Metagraph
 
     /// <summary>
     /// Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
-    /// seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was
-    /// told.
+    /// seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that
+    /// was told. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over
+    /// when it falls silent. over: when it was said that none does, where it had fallen silent.
     /// </summary>
     public sealed class Speech
     {
@@ -45,6 +46,9 @@ namespace Metagraph
         public readonly int Priority;
         public readonly double? Length;
         public readonly LineTiming Timing;
+        public readonly double Skip;
+        public readonly bool More;
+        public readonly double? Over;
 
         public Speech(
             string id,
@@ -54,7 +58,10 @@ namespace Metagraph
             string text = "",
             int priority = 1,
             double? length = null,
-            LineTiming timing = null
+            LineTiming timing = null,
+            double skip = 0.0,
+            bool more = false,
+            double? over = null
         )
         {
             Id = id;
@@ -65,6 +72,9 @@ namespace Metagraph
             Priority = priority;
             Length = length;
             Timing = timing;
+            Skip = skip;
+            More = more;
+            Over = over;
         }
     }
 
@@ -136,34 +146,55 @@ namespace Metagraph
 
     public static class ItemsRules
     {
-        /// <summary>Return the speech, ending no later than `at`; how long it would have been is remembered.</summary>
-        public static Speech Cut(Speech speech, double at)
+        /// <summary>Return the second that what is said counts from: before its start if it goes on after a pause.</summary>
+        public static double FindLineStart(Speech speech)
         {
-            if (speech.End <= at)
-            {
-                return speech;
-            }
-            return new Speech(
-                speech.Id,
-                speech.Start,
-                at,
-                speech.Line,
-                speech.Text,
-                speech.Priority,
-                speech.Length == null ? speech.End - speech.Start : speech.Length.Value,
-                speech.Timing
-            );
+            return speech.Start - speech.Skip;
         }
 
         /// <summary>
-        /// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a
-        /// lesser one is not said.
+        /// Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+        /// </summary>
+        public static double MeasureLine(Speech speech)
+        {
+            return speech.Length == null ? speech.End - FindLineStart(speech) : speech.Length.Value;
+        }
+
+        /// <summary>Return the speech, ending no later than `at`; how long it would have been is remembered.</summary>
+        public static Speech Cut(Speech speech, double at)
+        {
+            return speech.End <= at
+                ? speech
+                : new Speech(
+                    speech.Id,
+                    speech.Start,
+                    at,
+                    speech.Line,
+                    speech.Text,
+                    speech.Priority,
+                    MeasureLine(speech),
+                    speech.Timing,
+                    speech.Skip,
+                    speech.More,
+                    speech.Over
+                );
+        }
+
+        /// <summary>
+        /// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with
+        /// what is said behind it under its id; a lesser one is not said.
         /// </summary>
         public static List<Speech> Apart(List<Speech> speeches)
         {
             var out_ = new List<Speech>();
+            var ends = new Dictionary<string, double>(); // when what was cut would have ended
             foreach (Speech speech in speeches)
             {
+                if (ends.ContainsKey(speech.Id) && speech.Start == ends[speech.Id])
+                {
+                    ends[speech.Id] = speech.End;
+                    continue;
+                }
                 if (out_.Count > 0 && out_[out_.Count - 1].End > speech.Start)
                 {
                     var last = out_[out_.Count - 1];
@@ -172,9 +203,25 @@ namespace Metagraph
                         continue;
                     }
                     out_.RemoveAt(out_.Count - 1);
+                    if (last.Id != speech.Id)
+                    {
+                        ends[last.Id] = last.End;
+                    }
                     if (last.Start < speech.Start)
                     {
-                        out_.Add(Cut(last, speech.Start));
+                        out_.Add(new Speech(
+                            Cut(last, speech.Start).Id,
+                            Cut(last, speech.Start).Start,
+                            Cut(last, speech.Start).End,
+                            Cut(last, speech.Start).Line,
+                            Cut(last, speech.Start).Text,
+                            Cut(last, speech.Start).Priority,
+                            Cut(last, speech.Start).Length,
+                            Cut(last, speech.Start).Timing,
+                            Cut(last, speech.Start).Skip,
+                            false,
+                            Cut(last, speech.Start).Over
+                        ));
                     }
                 }
                 out_.Add(speech);
@@ -210,7 +257,10 @@ namespace Metagraph
                     new_.Text,
                     new_.Priority,
                     new_.Length,
-                    new_.Timing
+                    new_.Timing,
+                    new_.Skip,
+                    new_.More,
+                    new_.Over
                 );
         }
 
@@ -224,28 +274,84 @@ namespace Metagraph
             {
                 return new_;
             }
+            if (new_.Timing.Paced)
+            {
+                return old.End <= now ? new_ : BehindWords(old, old.Timing, new_, new_.Timing, now);
+            }
             if (Math.Max(old.Start, new_.Start) > now && old.Start != new_.Start)
             {
                 return new_;
             }
-            var said = Math.Max(now - old.Start, 0.0);
+            var said = Math.Max(now - FindLineStart(old), old.Skip);
             if (old.End <= now && !LineTimingRules.TellsOn(old.Timing, LineTimingRules.Shifted(new_.Timing, old.Timing.Later)))
             {
                 return new_;
             }
-            var told = old.Start > now ? new_.Timing : LineTimingRules.PlaceTold(old.Timing, new_.Timing, said);
+            var told = (old.Start > now && old.Skip == 0)
+                ? new_.Timing
+                : LineTimingRules.PlaceTold(old.Timing, new_.Timing, said);
             var timing = LineTimingRules.Extended(old.Timing, told, said);
             var length = Math.Max(LineTimingRules.TimedSeconds(timing, null), new_.End - new_.Start);
             var more = new_.Text == "" || new_.Text == LineTimingRules.ToldText(new_.Timing);
             return new Speech(
                 new_.Id,
                 old.Start,
-                old.Start + length,
+                FindLineStart(old) + length,
                 new_.Line,
                 more ? LineTimingRules.ToldText(timing) : new_.Text,
                 new_.Priority,
                 new_.Length,
-                timing
+                timing,
+                old.Skip,
+                new_.More,
+                new_.Over
+            );
+        }
+
+        /// <summary>Return a text with the times its letters tell, so that what comes of it later can be added.</summary>
+        public static Speech PaceSpeech(Alphabet alphabet, Speech new_)
+        {
+            var timing = LineTimingRules.PaceText(alphabet, new_.Text, null);
+            var length = LineTimingRules.TimedSeconds(timing, LineTimingRules.MeasureText(alphabet, new_.Text));
+            return new Speech(
+                new_.Id,
+                new_.Start,
+                new_.Start + length,
+                new_.Line,
+                new_.Text,
+                new_.Priority,
+                new_.Length,
+                timing,
+                new_.Skip,
+                new_.More,
+                new_.Over
+            );
+        }
+
+        /// <summary>Return a line with a text behind what was told of it. told, more: their words.</summary>
+        private static Speech BehindWords(Speech old, LineTiming told, Speech new_, LineTiming more, double now)
+        {
+            var begin = FindLineStart(old);
+            var at = Math.Max(now - begin, Math.Max(old.Skip, old.End - begin));
+            var timing = new LineTiming(
+                told.Words.Concat(LineTimingRules.Shifted(more, at).Words).ToList(),
+                told.Marks,
+                told.Later,
+                true
+            );
+            var length = LineTimingRules.TimedSeconds(timing, at + new_.End - new_.Start);
+            return new Speech(
+                new_.Id,
+                old.Start,
+                begin + length,
+                new_.Line,
+                old.Text + new_.Text,
+                new_.Priority,
+                new_.Length,
+                timing,
+                old.Skip,
+                new_.More,
+                new_.Over
             );
         }
 
@@ -274,6 +380,10 @@ namespace Metagraph
         private static bool SameSpeech(Speech a, Speech b)
         {
             if (a.Line != b.Line || a.Text != b.Text || a.Length != b.Length || a.Priority != b.Priority)
+            {
+                return false;
+            }
+            if (a.Skip != b.Skip || a.More != b.More || a.Over != b.Over)
             {
                 return false;
             }

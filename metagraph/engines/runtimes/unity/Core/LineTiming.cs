@@ -40,19 +40,21 @@ namespace Metagraph
 
     /// <summary>
     /// A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something
-    /// came after its time.
+    /// came after its time. paced: whether nobody told the times, and they follow from the letters.
     /// </summary>
     public sealed class LineTiming
     {
         public readonly List<SpokenWord> Words;
         public readonly List<VisemeMark> Marks;
         public readonly double Later;
+        public readonly bool Paced;
 
-        public LineTiming(List<SpokenWord> words = null, List<VisemeMark> marks = null, double later = 0.0)
+        public LineTiming(List<SpokenWord> words = null, List<VisemeMark> marks = null, double later = 0.0, bool paced = false)
         {
             Words = words ?? new List<SpokenWord>();
             Marks = marks ?? new List<VisemeMark>();
             Later = later;
+            Paced = paced;
         }
     }
 
@@ -339,6 +341,79 @@ namespace Metagraph
             return new LineTiming(said.ToList(), shown.ToList());
         }
 
+        /// <summary>Return how long a text takes where more of it may come before or after, seconds.</summary>
+        public static double MeasureText(Alphabet alphabet, string text)
+        {
+            var out_ = 0.0;
+            foreach (var one in GraphemesRules.SplitWords(alphabet, text))
+            {
+                var word = one.Item1;
+                var pause = one.Item2;
+                out_ += MeasureWord(alphabet, word) + pause / GraphemesRules.Pace;
+            }
+            return out_;
+        }
+
+        /// <summary>
+        /// Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters
+        /// tell.
+        /// </summary>
+        public static LineTiming PaceText(Alphabet alphabet, string text, double? seconds)
+        {
+            var scale = seconds == null ? 1.0 : seconds.Value / Math.Max(MeasureText(alphabet, text), 0.001);
+            var at = 0.0;
+            var words = new List<SpokenWord>();
+            foreach (var one in GraphemesRules.SplitWords(alphabet, text))
+            {
+                var word = one.Item1;
+                var pause = one.Item2;
+                var end = at + scale * MeasureWord(alphabet, word);
+                if (word != "")
+                {
+                    words.Add(new SpokenWord(word, at, end));
+                }
+                at = end + scale * pause / GraphemesRules.Pace;
+            }
+            return new LineTiming(words.ToList(), new List<VisemeMark>(), 0.0, true);
+        }
+
+        /// <summary>Return how long a word takes, seconds.</summary>
+        private static double MeasureWord(Alphabet alphabet, string word)
+        {
+            return alphabet.Letters(word).Select(letter => GraphemesRules.MeasureLetter(alphabet.Code(letter))).ToList().Sum()
+                / GraphemesRules.Pace;
+        }
+
+        /// <summary>
+        /// Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter that
+        /// is a syllable.
+        /// </summary>
+        public static List<SpokenWord> JoinLetters(Alphabet alphabet, List<SpokenWord> letters)
+        {
+            var out_ = new List<SpokenWord>();
+            var parted = true;
+            foreach (SpokenWord letter in letters)
+            {
+                if (alphabet.Stripped(letter.Text) == "")
+                {
+                    parted = true;
+                    continue;
+                }
+                var alone = GraphemesRules.MeasureLetter(alphabet.Code(alphabet.Letters(letter.Text)[0])) > 1;
+                if (parted || alone)
+                {
+                    out_.Add(letter);
+                }
+                else
+                {
+                    var last = out_[out_.Count - 1];
+                    out_[out_.Count - 1] = new SpokenWord(last.Text + letter.Text, last.Start, letter.End);
+                }
+                parted = alone;
+            }
+            return out_;
+        }
+
         /// <summary>Return the words of a line as its text.</summary>
         public static string ToldText(LineTiming timing)
         {
@@ -479,7 +554,8 @@ namespace Metagraph
                 return new LineTiming(
                     Shifted(new_, Math.Max(said, end)).Words,
                     Shifted(new_, Math.Max(said, end)).Marks,
-                    old.Later
+                    old.Later,
+                    Shifted(new_, Math.Max(said, end)).Paced
                 );
             }
             var told = Shifted(new_, old.Later);
@@ -500,7 +576,7 @@ namespace Metagraph
                     by = Math.Max(said, end) - marks[0].At;
                 }
             }
-            return new LineTiming(Shifted(told, by).Words, Shifted(told, by).Marks, old.Later + by);
+            return new LineTiming(Shifted(told, by).Words, Shifted(told, by).Marks, old.Later + by, Shifted(told, by).Paced);
         }
 
         /// <summary>

@@ -42,6 +42,7 @@ namespace Metagraph
         public readonly string Name;
         public readonly List<double> Point;
         public readonly string What;
+        public readonly bool More;
 
         public PlainAsk(
             string do_,
@@ -74,7 +75,8 @@ namespace Metagraph
             string mode = null,
             string name = "",
             List<double> point = null,
-            string what = ""
+            string what = "",
+            bool more = false
         )
         {
             Do = do_;
@@ -108,6 +110,7 @@ namespace Metagraph
             Name = name;
             Point = point ?? new List<double>();
             What = what;
+            More = more;
         }
     }
 
@@ -160,8 +163,30 @@ namespace Metagraph
     }
 
     /// <summary>
+    /// What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, "" for all
+    /// of it.
+    /// </summary>
+    public sealed class SteeringAsk
+    {
+        public readonly string Do;
+        public readonly string Id;
+        public readonly string What;
+        public readonly int Priority;
+
+        public SteeringAsk(string do_, string id, string what, int priority)
+        {
+            Do = do_;
+            Id = id;
+            What = what;
+            Priority = priority;
+        }
+    }
+
+    /// <summary>
     /// What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds "".
-    /// unknown: what an ask names that is not there: "action", "stance" or "line". Speeches may overlap.
+    /// steered: what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance" or
+    /// "line". Speeches may overlap. fixed: seconds before which no gesture can begin that a line asks for, though the line
+    /// itself may.
     /// </summary>
     public sealed class Meaning
     {
@@ -178,8 +203,10 @@ namespace Metagraph
         public List<MoodFrom> Moods;
         public List<AskedBlock> Blocks;
         public HashSet<string> Withdrawn;
+        public List<SteeringAsk> Steered;
         public List<Report> Refused;
         public string Unknown;
+        public double Fixed;
 
         public Meaning(
             Graph project,
@@ -195,8 +222,10 @@ namespace Metagraph
             List<MoodFrom> moods = null,
             List<AskedBlock> blocks = null,
             HashSet<string> withdrawn = null,
+            List<SteeringAsk> steered = null,
             List<Report> refused = null,
-            string unknown = ""
+            string unknown = "",
+            double fixed_ = 0.0
         )
         {
             Project = project;
@@ -212,8 +241,10 @@ namespace Metagraph
             Moods = moods ?? new List<MoodFrom>();
             Blocks = blocks ?? new List<AskedBlock>();
             Withdrawn = withdrawn ?? new HashSet<string>();
+            Steered = steered ?? new List<SteeringAsk>();
             Refused = refused ?? new List<Report>();
             Unknown = unknown;
+            Fixed = fixed_;
         }
 
         /// <summary>Return what lasts.</summary>
@@ -242,6 +273,7 @@ namespace Metagraph
             Stays.AddRange(other.Stays);
             Moods.AddRange(other.Moods);
             Blocks.AddRange(other.Blocks);
+            Steered.AddRange(other.Steered);
             foreach (string ident in other.Withdrawn)
             {
                 Withdrawn.Add(ident);
@@ -422,6 +454,10 @@ namespace Metagraph
             {
                 Withdrawn.Add(ask.What);
             }
+            else if (ask.Do == "interrupt" || ask.Do == "pause" || ask.Do == "resume" || ask.Do == "finish")
+            {
+                Steered.Add(new SteeringAsk(ask.Do, ident, ask.What, priority));
+            }
             else if (ask.Do == "say")
             {
                 return Say(ask, ident, at, priority);
@@ -505,10 +541,15 @@ namespace Metagraph
             {
                 return "say what: a line's id, text, or words with their times";
             }
-            double length = default(double);
-            if (ask.Timing != null)
+            var timing = ask.Timing;
+            if (timing == null && line == null && ask.More && ask.Duration != null)
             {
-                length = LineTimingRules.TimedSeconds(ask.Timing, ask.Duration);
+                timing = LineTimingRules.PaceText(Alphabet, text, ask.Duration.Value);
+            }
+            double length = default(double);
+            if (timing != null)
+            {
+                length = LineTimingRules.TimedSeconds(timing, ask.Duration);
             }
             else if (ask.Duration != null)
             {
@@ -522,7 +563,7 @@ namespace Metagraph
             {
                 length = GraphemesRules.ReadAloud(Alphabet, text);
             }
-            Speeches.Add(new Speech(ident, at, at + length, ask.Line, text, priority, null, ask.Timing));
+            Speeches.Add(new Speech(ident, at, at + length, ask.Line, text, priority, null, timing, 0.0, ask.More));
             var told = ask.Valence != null || line == null;
             var valence = (told || line == null) ? ask.Valence : line.Valence;
             var arousal = (told || line == null) ? ask.Arousal : line.Arousal;
@@ -544,6 +585,10 @@ namespace Metagraph
                     return "a line would say another line; its asks may not";
                 }
                 var begins = inner.At == null ? at : at + inner.At.Value;
+                if (ask.At == null)
+                {
+                    begins = Math.Max(begins, Fixed);
+                }
                 var why = Add(inner, ident + "." + PlainText.Of(n + 1), begins, Math.Max(inner.Priority, priority), at);
                 if (why != "")
                 {
@@ -558,11 +603,32 @@ namespace Metagraph
     {
         public const double Forever = 1000000000.0; // seconds; a look that lasts until the next
 
-        /// <summary>Take what an ask means, or refuse all of it. now: when it begins where it does not say.</summary>
-        public static void Understood(Meaning whole, PlainAsk ask, double now)
+        /// <summary>
+        /// Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said,
+        /// likewise.
+        /// </summary>
+        public static void Understood(Meaning whole, PlainAsk ask, double now, double soon)
         {
-            var one = new Meaning(whole.Project, whole.Graphs, whole.Alphabet);
-            var at = ask.At == null ? now : ask.At.Value;
+            var one = new Meaning(
+                whole.Project,
+                whole.Graphs,
+                whole.Alphabet,
+                new List<MetaRequest>(),
+                new List<LookAt>(),
+                new List<Speech>(),
+                new List<ModeFrom>(),
+                new List<PlaceFrom>(),
+                new List<BlinkAt>(),
+                new List<StayFrom>(),
+                new List<MoodFrom>(),
+                new List<AskedBlock>(),
+                new HashSet<string>(),
+                new List<SteeringAsk>(),
+                new List<Report>(),
+                "",
+                now
+            );
+            var at = ask.At == null ? ask.Do == "say" ? soon : now : ask.At.Value;
             var why = one.Add(ask, ask.Id, at, ask.Priority, 0.0);
             if (why == "")
             {

@@ -481,8 +481,8 @@ namespace Metagraph
                 {
                     var n = one.Item1;
                     var peak = one.Item2;
-                    var at = speech.Start + peak;
-                    if (at < start || at >= end)
+                    var at = ItemsRules.FindLineStart(speech) + peak;
+                    if (at < Math.Max(start, speech.Start) || at >= end)
                     {
                         continue;
                     }

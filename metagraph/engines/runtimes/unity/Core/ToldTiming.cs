@@ -14,7 +14,8 @@ namespace Metagraph
         private const double Thousand = 1e3, Ticks = 1e7; // of a second, in which Polly and Azure count
 
         /// <summary>When a line's words and shapes come; null where that is not told. Raises AskException naming the entry.</summary>
-        public static LineTiming Of(List<object> words, List<object> visemes, string set, double? duration)
+        public static LineTiming Of(
+            List<object> words, List<object> visemes, List<object> characters, string set, double? duration)
         {
             var said = new List<SpokenWord>();
             var marks = new List<VisemeMark>();
@@ -24,6 +25,18 @@ namespace Metagraph
                 {
                     throw new AskException("words[" + n + "]: should be [word, start, end], seconds from the line's start");
                 }
+            }
+            var letters = new List<SpokenWord>();
+            for (int n = 0; n < characters.Count; n++)
+            {
+                if (!AddWord(characters[n], letters, false))
+                {
+                    throw new AskException("characters[" + n + "]: should be [letter, start, end], seconds from the line's start");
+                }
+            }
+            if (said.Count == 0)
+            {
+                said = LineTimingRules.JoinLetters(Alphabet.Common, letters);
             }
             for (int n = 0; n < visemes.Count; n++)
             {
@@ -86,7 +99,7 @@ namespace Metagraph
                 }
                 else
                 {
-                    text = Field(fields, "word", "text");
+                    text = Field(fields, "word", "text", "character");
                     start = Number(Field(fields, "start"));
                     end = Number(Field(fields, "end"));
                     if (end == null && Field(fields, "end") != null)

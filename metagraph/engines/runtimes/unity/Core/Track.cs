@@ -165,6 +165,9 @@ namespace Metagraph
                 }
                 looks.Add(look);
             }
+            var latest = Speeches.Select(x => (x.Id, x)).ToMap();
+            var lasts = new HashSet<string>(latest.Select(entry => (entry.Key, entry.Value)).Where(pair => pair.Item2.More
+                || pair.Item2.End > seconds).Select(pair => pair.Item1));
             var mode = Math.Max(0, PlainLists.Right(Modes.Select(m => m.Start).ToList(), seconds) - 1);
             var places = Places.Select((item, n) => (n, item)).Where(pair => pair.Item2.Start <= seconds).Select(pair => (
                 pair.Item2.Name,
@@ -176,7 +179,7 @@ namespace Metagraph
             )).ToMap();
             return new Track(
                 looks.ToList(),
-                Speeches.Where(x => x.Start > seconds || x.End > seconds).ToList(),
+                Speeches.Where(x => x.Start > seconds || x.End > seconds || (x.More && lasts.Contains(x.Id))).ToList(),
                 PlainLists.Part(Modes, mode),
                 Places.Select((item, n) => (n, item)).Where(pair => pair.Item2.Start > seconds
                     || places[pair.Item2.Name] == pair.Item1).Select(pair => pair.Item2).ToList(),

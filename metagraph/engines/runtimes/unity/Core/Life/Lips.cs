@@ -65,7 +65,7 @@ namespace Metagraph
                 }
                 return;
             }
-            double said = Math.Min(time, speech.End) - speech.Start;
+            double said = Math.Min(time, speech.End) - ItemsRules.FindLineStart(speech);
             int low = Math.Min(Math.Max(Basics.BisectRight(voice.Times, said) - 1, 0), voice.Times.Length - 2);
             double gap = Math.Max(voice.Times[low + 1] - voice.Times[low], 1e-9);
             double part = Basics.Clamp((said - voice.Times[low]) / gap, 0.0, 1.0);

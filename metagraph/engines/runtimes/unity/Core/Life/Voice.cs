@@ -57,7 +57,7 @@ namespace Metagraph
         private readonly ConditionalWeakTable<Speech, Voice> made = new ConditionalWeakTable<Speech, Voice>();
         private static readonly ConditionalWeakTable<Speech, Voice>.CreateValueCallback Made = speech =>
         {
-            double length = Math.Max(0.0, speech.Length ?? speech.End - speech.Start);
+            double length = Math.Max(0.0, ItemsRules.MeasureLine(speech));
             return speech.Timing != null ? Voice.FromTiming(speech.Timing, length) : Voice.FromText(speech.Text, length);
         };
 

@@ -2,6 +2,7 @@
 
 const Hearing = preload("hearing.gd")
 const Meaning = preload("meaning.gd")
+const Utterances = preload("utterances.gd")
 const WORDS = {looks = "look", speeches = "speech", modes = "mode", places = "place", blinks = "blink", moods = "mood"}
 
 
@@ -33,7 +34,10 @@ static func answers(plan, idents):
 			if lane == "speeches" and plan.track.last_speech(item.id) != item:
 				continue  # an earlier one of the id is over
 			for each in _of(found, item.id):
-				_plays(each, item.start, _end_of(item, lane), WORDS[lane])
+				if Utterances.is_paused(item.start):
+					each.waiting.append(item.start)
+				else:
+					_plays(each, item.start, _end_of(item, lane), WORDS[lane])
 	for report in plan.reports:
 		for each in _of(found, report.request):
 			if not each.why.has(report.message):
@@ -81,6 +85,9 @@ static func _answer(ident, found):
 		out.until = found.ends.max()
 	elif found.there:
 		out.state = "done"
+	elif found.waiting.size() > 0 and Utterances.is_paused(found.waiting[0]):
+		out.state = "planned"
+		out.why = "it is paused"
 	elif found.waiting.size() > 0 and found.all_played:
 		out.state = "late" if told else "planned"
 		out.at = found.waiting[0]

@@ -26,18 +26,22 @@ const FIELDS = {
 	blink = {},
 	say = {
 		"line": "line?", "text": "text20000", "duration": "seconds?", "gestures": "switch", "words": "entries4000",
-		"visemes": "entries20000", "set": "set?", "mood": "mood?", "intensity": "intensity?"
+		"visemes": "entries20000", "characters": "entries20000", "more": "switch", "set": "set?", "mood": "mood?", "intensity": "intensity?"
 	},
 	mode = {mode = "mode?"},
 	mood = {mood = "mood?", intensity = "intensity?", duration = "seconds?"},
 	place = {name = "name", point = "point"},
 	withdraw = {what = "text200"},
+	interrupt = {what = "text200"},
+	pause = {what = "text200"},
+	resume = {what = "text200"},
+	finish = {what = "text200"},
 	bml = {bml = "text200000"}
 }
 # What fields are where nothing is said; those that are not here are null, or must be said.
 const USUAL = {
 	id = "", priority = 1, layer = "arms", tags = [], prepare = true, resume = false, stay = false, to = "user", amount = 1.0,
-	strict = false, text = "", gestures = true, what = "", words = [], visemes = []
+	strict = false, text = "", gestures = true, what = "", words = [], visemes = [], characters = [], more = false
 }
 const WORDS = {
 	"set": ["oculus", "azure", "sapi", "polly", "arkit"], "layer": ["body", "arms", "head"], "limb": ["left", "right", "both"],

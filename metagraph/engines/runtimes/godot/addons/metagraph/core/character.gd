@@ -6,13 +6,17 @@ const Asks = preload("asks.gd")
 const Describe = preload("describe.gd")
 const Answers = preload("answers.gd")
 const Hear = preload("hear.gd")
+const Items = preload("items.gd")
 const Planner = preload("planner.gd")
 const Pose = preload("pose.gd")
+const SpokenSoFar = preload("spoken_so_far.gd")
 const StreamedVoice = preload("streamed_voice.gd")
+const Utterances = preload("utterances.gd")
 const SLACK = 2.0  # seconds by which the horizon may fall behind before it is moved
 const FORGET_EVERY = 15.0  # seconds
 const LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
 const SOUNDS = 16  # lines whose sound is remembered
+const TAKING = ["withdraw", "interrupt", "pause", "resume", "finish"]  # what is done as soon as it is taken up
 const REMEMBERED = 1000  # answers kept of what is over or was never understood, and happenings nobody asked for
 
 var graph
@@ -94,7 +98,7 @@ func say_sound(ident, samples, rate):
 	if voice == null or voice.rate != float(rate) or (begun == null and before == null):
 		voice = StreamedVoice.StreamedVoice.new(float(rate))
 	if begun != null:
-		voice.follow(now + graph.settings.lookahead - begun.start)
+		voice.follow(Utterances.find_soon(now, graph.settings.lookahead) - Items.find_line_start(begun))
 	_sounds.erase(ident)
 	_sounds[ident] = voice
 	if _sounds.size() > SOUNDS:
@@ -153,7 +157,7 @@ func _plan_on():
 		for request in asks:
 			if heard == null:  # a fault of the runtime's own must not stop the game: the character goes on with the plan it has
 				_refuse(request.id, "the runtime failed")
-			elif request["do"] == "withdraw":
+			elif TAKING.has(request["do"]):
 				_settle(_told(request.id, "done", ""))
 	if _seen - _forgot_at >= FORGET_EVERY:
 		_forgot_at = _seen  # what has begun and ended since then is still to be told
@@ -185,18 +189,25 @@ func _listen():
 			if cue.end > _seen and (cue.start > _seen or cue.end <= now):
 				_note(new, cue.start, cue.end, layer, cue.action.name, cue.meta.split("+")[0])  # what goes on after a cut is the same
 	for speech in plan.track.speeches:
-		_note(new, speech.start, speech.end, "speech", speech.text if speech.line == null else speech.line, speech.id)
+		var over = speech.end if speech.over == null else speech.over
+		if Util.most(speech.end, over) <= _seen or speech.start > now:
+			continue
+		var said = speech.text if speech.line == null else speech.line
+		var reason = "" if speech.end > now else Utterances.explain_end(plan.track.speeches, speech)
+		_note(new, speech.start, speech.end, "speech", said, speech.id, reason if speech.over == null else "")
+		if speech.over != null and over > _seen and over <= now:
+			new.append({kind = "end", at = over, layer = "speech", action = said, meta = speech.id, reason = reason})
 	_seen = now
 	if new.size() > 0:
 		_events += Util.by(new, "at")
 		_events = Util.part(_events, Util.most(0, _events.size() - REMEMBERED), _events.size())
 
 
-func _note(into, start, end, layer, action, meta):
+func _note(into, start, end, layer, action, meta, reason = ""):
 	if start > _seen and start <= now:
-		into.append({kind = "begin", at = start, layer = layer, action = action, meta = meta})
+		into.append({kind = "begin", at = start, layer = layer, action = action, meta = meta, reason = ""})
 	if end > _seen and end <= now:
-		into.append({kind = "end", at = end, layer = layer, action = action, meta = meta})
+		into.append({kind = "end", at = end, layer = layer, action = action, meta = meta, reason = reason})
 
 
 # Returns what became of a request: {id, state: planned, late, done or refused, at, until: seconds or null, what: names of what plays, why}.
@@ -212,11 +223,17 @@ func answer(ident):
 
 
 # Returns what began and ended since this was last asked for, by time, of more than 1000 the latest: [{kind: "begin" or "end", at, layer:
-# "speech" for what is said, action: its name, of what is said the line's id, else the text, meta: the request's id}].
+# "speech" for what is said, action: its name, of what is said the line's id, else the text, meta: the request's id, reason: where all
+# that is said under an id is over, finished, interrupted or replaced, else ""}].
 func events():
 	var happened = _events
 	_events = []
 	return happened
+
+
+# Returns [what of something said was spoken until now, up to the word that was begun, that word]; "" where nothing was.
+func spoken(ident):
+	return SpokenSoFar.spoken_until(graph.alphabet, plan.track.speeches, ident, now)
 
 
 # Returns the pose of now: {rotations [J] local quaternions, translations [J] local metres, morphs {name: weight}}, of `graph.names`.

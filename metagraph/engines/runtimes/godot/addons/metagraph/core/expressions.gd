@@ -10,6 +10,7 @@
 #
 # Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
 
+const Items = preload("items.gd")
 const Voice = preload("voice.gd")
 const Choice = preload("choice.gd")
 const Mood = preload("mood.gd")
@@ -105,15 +106,18 @@ static func emphases_on(life, track, voices, seed_, cut, drawn, before):
 		var at
 		for n in range(Voice.stressed(voices, speech).size()):
 			var peak = Voice.stressed(voices, speech)[n]
-			at = Util.most(speech.start, speech.start + peak - EARLY)
-			if at >= speech.end or Choice.uniform(seed_, [speech.id, "brows", str(n)]) >= life.accent_brows:
+			var begin = Items.find_line_start(speech)
+			at = Util.most(speech.start, begin + peak - EARLY)
+			if at >= speech.end or begin + peak < speech.start:
+				continue
+			if Choice.uniform(seed_, [speech.id, "brows", str(n)]) >= life.accent_brows:
 				continue
 			chance = Choice.uniform(seed_, [speech.id, "raise", str(n)])
 			found.append([at, RAISE + RAISE_CHANCE * chance, 0.5 + 0.5 * chance, RAISE_RISES])
 		if asks(speech):
-			var length = speech.end - speech.start if speech.length == null else speech.length
+			var length = Items.measure_line(speech)
 			var lead = Util.least(ASKING, 0.5 * length)
-			at = speech.start + length - lead
+			at = Util.most(speech.start, Items.find_line_start(speech) + length - lead)
 			if at < speech.end:
 				found.append([at, lead + ASKING_ON, ASKING_LIFTS, lead])
 	for change in track.modes:

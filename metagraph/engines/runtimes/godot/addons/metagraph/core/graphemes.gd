@@ -225,7 +225,7 @@ static func _unknown(alphabet, letter, before):
 
 
 # Return each word and how many characters' time of pause follows it.
-static func _words(alphabet, text):
+static func split_words(alphabet, text):
 	var out = []
 	var word = ""
 	var pause = 0.0
@@ -308,12 +308,12 @@ static func read_aloud(alphabet, text):
 	var letters = alphabet.letters(alphabet.stripped(text))
 	var found = []
 	for letter in letters:
-		found.append(_size_of(alphabet.code(letter)))
+		found.append(measure_letter(alphabet.code(letter)))
 	return Util.most(SHORTEST, Util.sum(found) / PACE)
 
 
 # Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
-static func _size_of(code):
+static func measure_letter(code):
 	for script in _SYLLABARIES():
 		if script.first <= code and code <= script.last:
 			return script.size
@@ -324,7 +324,7 @@ static func _size_of(code):
 static func spelled(alphabet, text, duration):
 	var out = Spelled.new()
 	var plan = []
-	for pair in _words(alphabet, alphabet.stripped(text)):
+	for pair in split_words(alphabet, alphabet.stripped(text)):
 		var word = pair[0]
 		var pause = pair[1]
 		Util.extend(plan, sounds(alphabet, word))

@@ -6,20 +6,26 @@ const Words = preload("words.gd")
 const Items = preload("items.gd")
 const Spots = preload("spots.gd")
 const Track = preload("track.gd")
+const Utterances = preload("utterances.gd")
+const MetaPlan = preload("meta_plan.gd")
 const Mood = preload("mood.gd")
 const Util = preload("util.gd")
+const LISTENS = 2.0  # seconds for which the gaze stays with the partner who interrupts
 
 
-# track: what lasts. withdrawn: ids of what was asked for before and is not any more; stopped: those of them that were taken back
-# and not asked for anew. touched: layers that asks have to do with.
+# track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked for before
+# and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers that asks have to do
+# with.
 class Heard:
 	var track
+	var fresh
 	var withdrawn
 	var stopped
 	var touched
 
-	func _init(track_, withdrawn_, stopped_, touched_):
+	func _init(track_, fresh_, withdrawn_, stopped_, touched_):
 		self.track = track_
+		self.fresh = fresh_
 		self.withdrawn = withdrawn_
 		self.stopped = stopped_
 		self.touched = touched_
@@ -54,44 +60,18 @@ static func makers(ident):
 	return out
 
 
-# Return what asks do. requests, track: of the plan. fresh, more: what is asked for, where speeches may overlap. withdrawn: ids
-# taken back; every one where it holds "". refused: ids of what could not be understood. now: what begins before stays. turning:
-# layers whose models perform one thing in one mode and another in another.
-static func heard(requests, track, fresh, more, withdrawn, refused, now, turning):
-	var gone = Util.set_of(withdrawn)
-	for ident in refused:
-		Util.add_to(gone, ident)
-	for request in fresh:
+# Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what begins before
+# stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in another.
+static func heard(requests, track, meant, now, soon, turning):
+	var more = meant.track()
+	var gone = Util.set_of(meant.withdrawn)
+	for report in meant.refused:
+		Util.add_to(gone, report.request)
+	for request in meant.requests:
 		Util.add_to(gone, request.id)
 	for ident in more.idents():
 		Util.add_to(gone, ident)
-	var said = []
-	var begun = {}  # of which more is said
-	var anew = {}  # of which something else was said before
-	var later = {}  # by how much those begin that are said behind others of their id
-	for asked in more.speeches:
-		var before_it = null if withdrawn.has(asked.id) else track.last_speech(asked.id)
-		var first = before_it
-		for s in Util.backwards(said):
-			if s.id == asked.id:
-				first = s
-				break
-		var last = first
-		var one = Items.going_on(last, asked, now)
-		if one != asked and last != null and one.start == last.start:
-			Util.add_to(begun, one.id)
-			var found = []
-			for s in said:
-				if s.id != one.id:
-					found.append(s)
-			said = found
-		elif one == asked and not withdrawn.has(asked.id):
-			one = Items.behind(track.speeches + said, asked, now)
-			if one != asked:
-				later[one.id] = one.start - asked.start
-		if one == asked and track.last_speech(one.id) != null:
-			Util.add_to(anew, one.id)
-		said.append(one)
+	var words = add_speeches(meant, track, soon)
 	var before = []
 	for r in requests:
 		before.append(r.id)
@@ -103,6 +83,7 @@ static func heard(requests, track, fresh, more, withdrawn, refused, now, turning
 			Util.add_to(user, x.id)
 	var taken = {}
 	var stopped = {}
+	var withdrawn = meant.withdrawn
 	for ident in before:
 		var every = withdrawn.has("") and not user.has(ident)
 		var holds2 = every
@@ -119,11 +100,11 @@ static func heard(requests, track, fresh, more, withdrawn, refused, now, turning
 		if holds2:
 			Util.add_to(stopped, ident)
 		else:
-			var holds3 = anew.size() > 0 and not anew.has(ident)
+			var holds3 = words.anew.size() > 0 and not words.anew.has(ident)
 			if holds3:
 				var is_any2 = false
 				for o in makers(ident):
-					if anew.has(o):
+					if words.anew.has(o):
 						is_any2 = true
 						break
 				holds3 = is_any2
@@ -155,7 +136,7 @@ static func heard(requests, track, fresh, more, withdrawn, refused, now, turning
 		if staying.has(s.layer):
 			stays.append(s)
 	var touched = {}
-	for r in fresh:
+	for r in meant.requests:
 		Util.add_to(touched, r.layer)
 	for request in requests:
 		if taken.has(request.id):
@@ -163,7 +144,7 @@ static func heard(requests, track, fresh, more, withdrawn, refused, now, turning
 	for stay in track.stays + stays:
 		if gone.has(stay.id) or taken.has(stay.id):
 			Util.add_to(touched, stay.layer)
-	var holds6 = more.modes.size() > 0 or more.speeches.size() > 0
+	var holds6 = more.modes.size() > 0 or more.speeches.size() > 0 or meant.steered.size() > 0
 	if not holds6:
 		var is_any4 = false
 		for m in track.modes:
@@ -193,28 +174,311 @@ static func heard(requests, track, fresh, more, withdrawn, refused, now, turning
 	if holds7:
 		for layer in Words.LAYERS:
 			Util.add_to(touched, layer)
+	var left = track
+	for ident in Utterances.find_utterances(track, "", soon):
+		if stopped.has(ident):
+			left = Utterances.break_off(left, ident, now)
 	var over = {}
 	for ident in taken:
-		if not begun.has(ident) and not later.has(ident):
+		if not words.on.has(ident):
 			Util.add_to(over, ident)
-	var moods = []
-	for m in more.moods:
-		moods.append(Mood.MoodFrom.new(
-			m.id,
-			m.start + later[m.id],
-			m.valence,
-			m.arousal,
-			m.intensity,
-			m.end + later[m.id]
-		) if later.has(m.id) else m)
-	var left = track.without(over, now).without(begun)
+	left = words.leave(left.without(over, now))
 	var lasting = Track.Track.new(
 		more.looks,
-		Util.list(said),
+		Util.list(words.said),
 		more.modes,
 		more.places,
 		more.blinks,
 		Util.list(stays),
-		Util.list(moods)
+		Util.list(words.moods)
 	)
-	return Heard.new(left.joined(lasting), taken, stopped, touched)
+	var said = Heard.new(left.joined(lasting), meant.requests, taken, stopped, touched)
+	return _steer(requests, said, meant, now, soon)
+
+
+# What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of which an
+# earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which something else was said
+# before. moods: what is asked for with them.
+class AddedSpeeches:
+	var said
+	var begun
+	var on
+	var anew
+	var moods
+
+	func _init(said_, begun_, on_, anew_, moods_):
+		self.said = said_
+		self.begun = begun_
+		self.on = on_
+		self.anew = anew_
+		self.moods = moods_
+
+	# Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked for.
+	func leave(track):
+		if self.on.size() == 0:
+			return track
+		var other = {}
+		for m2 in self.moods:
+			Util.add_to(other, m2.id)
+		var ends = {}
+		for speech in self.said:
+			if self.on.has(speech.id):
+				ends[speech.id] = Utterances.PAUSED if speech.more else speech.end
+		var speeches = []
+		for s in track.speeches:
+			if not self.begun.has(s.id):
+				speeches.append(s)
+		var moods = []
+		for m in track.moods:
+			if not ends.has(m.id) or other.has(m.id):
+				moods.append(m)
+			else:
+				moods.append(Mood.MoodFrom.new(m.id, m.start, m.valence, m.arousal, m.intensity, ends[m.id]))
+		return Track.Track.new(
+			track.looks,
+			Util.list(speeches),
+			track.modes,
+			track.places,
+			track.blinks,
+			track.stays,
+			Util.list(moods)
+		)
+
+
+# Return what asks to say something make of a track: a line, something behind a line, or more of one.
+static func add_speeches(meant, track, soon):
+	var said = []
+	var begun = {}
+	var on = {}
+	var anew = {}
+	var later = {}  # by how much those begin that are said behind others of their id
+	for told in meant.speeches:
+		var taken = meant.withdrawn.has(told.id) or meant.withdrawn.has("")
+		var before = null if taken else track.last_speech(told.id)
+		var first = before
+		for s in Util.backwards(said):
+			if s.id == told.id:
+				first = s
+				break
+		var last = first
+		var asked = told
+		var now = soon
+		if last != null and Utterances.is_paused(last.start) and told.start <= soon and told.line == null:
+			now = last.start  # it is said when that is
+			asked = Items.Speech.new(
+				told.id,
+				now,
+				told.end + now - told.start,
+				told.line,
+				told.text,
+				told.priority,
+				told.length,
+				told.timing,
+				told.skip,
+				told.more,
+				told.over
+			)
+		var paces = told.more or (last != null and last.more)
+		if paces and asked.timing == null and asked.line == null:
+			asked = Items.pace_speech(meant.alphabet, asked)
+		var one = Items.going_on(last, asked, now)
+		if one != asked and last != null and one.start == last.start:
+			Util.add_to(begun, one.id)
+			Util.add_to(on, one.id)
+			var found = []
+			for s in said:
+				if s.id != one.id or s.start < one.start:
+					found.append(s)
+			said = found
+			if last == before:
+				var found2 = []
+				for s in track.speeches:
+					if s.id == one.id and s != last:
+						found2.append(s)
+				Util.extend(said, found2)
+		elif one == asked and not taken:
+			one = Items.behind(track.speeches + said, asked, now)
+			var opens = last != null and Utterances.takes_more(last) and told.line == null and one.start <= now
+			if one != asked or opens:
+				Util.add_to(on, one.id)
+		if one.start != told.start:
+			later[one.id] = one.start - told.start
+		if one == asked and not on.has(one.id) and track.last_speech(one.id) != null:
+			Util.add_to(anew, one.id)
+		said.append(one)
+	var opened = {}
+	for s in said:
+		if s.more:
+			Util.add_to(opened, s.id)
+	var moods = []
+	for m in meant.moods:
+		var by = later[m.id] if (later.has(m.id) and not begun.has(m.id)) else 0.0
+		var end = Utterances.PAUSED if opened.has(m.id) else m.end + by
+		moods.append(Mood.MoodFrom.new(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
+	return AddedSpeeches.new(said, begun, on, anew, moods)
+
+
+# Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the plan
+# before.
+static func _steer(requests, heard, meant, now, soon):
+	if meant.steered.size() == 0:
+		return heard
+	var steered = SteeredSpeech.new(
+		heard.track,
+		Util.set_of(heard.withdrawn),
+		Util.set_of(heard.stopped),
+		Util.set_of(heard.touched)
+	)
+	var found = []
+	for r in requests:
+		if not heard.withdrawn.has(r.id):
+			found.append(r)
+	steered.requests = found
+	for request in heard.fresh:
+		steered.requests.append(request)
+		Util.add_to(steered.anew, request.id)
+	for ask in meant.steered:
+		var ids = Utterances.find_utterances(steered.track, ask.what, soon)
+		if ask.do == "interrupt":
+			if ids.size() > 0:
+				var look = Items.LookAt.new(ask.id, now, now + LISTENS, Spots.named("user"), 1.0, true, ask.priority)
+				steered.track = steered.track.joined(Track.Track.new([look]))
+			if ask.what != "" and not ids.has(ask.what):  # it may have been said, and its gestures go on
+				ids.append(ask.what)
+		for ident in ids:
+			var made = {}
+			for x in steered.idents():
+				if makers(x).has(ident):
+					Util.add_to(made, x)
+			if ask.do == "interrupt":
+				var stop = Utterances.find_stop(meant.alphabet, steered.track, ident, soon, now)
+				steered.interrupt(ident, made, Util.least(stop, now), now, soon)
+			elif ask.do == "pause":
+				steered.pause(ident, made, Utterances.find_stop(meant.alphabet, steered.track, ident, soon, now), now)
+			elif ask.do == "resume":
+				steered.resume(ident, made, now, soon)
+			else:
+				steered.track = Utterances.finish_speech(steered.track, ident, soon)
+	var fresh = []
+	for r in steered.requests:
+		if steered.anew.has(r.id):
+			fresh.append(r)
+	return Heard.new(steered.track, fresh, steered.withdrawn, steered.stopped, steered.touched)
+
+
+# A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is as in
+# `Heard`.
+class SteeredSpeech:
+	var track
+	var withdrawn
+	var stopped
+	var touched
+	var requests
+	var anew
+
+	func _init(track_, withdrawn_, stopped_, touched_, requests_ = null, anew_ = null):
+		self.track = track_
+		self.withdrawn = withdrawn_
+		self.stopped = stopped_
+		self.touched = touched_
+		self.requests = requests_ if requests_ != null else []
+		self.anew = anew_ if anew_ != null else {}
+
+	# Return the ids of all of it.
+	func idents():
+		var found = []
+		for r in self.requests:
+			found.append(r.id)
+		return found + self.track.idents()
+
+	# Break off an utterance at `stop`, and what was made for it at `now`.
+	func interrupt(ident, made, stop, now, soon):
+		if Utterances.goes_on(self.track.speeches, ident, soon):
+			self.track = Utterances.break_off(self.track, ident, stop)
+		var is_any = false
+		for m in self.track.moods:
+			if made.has(m.id):
+				is_any = true
+				break
+		if is_any:
+			for layer in Words.LAYERS:
+				Util.add_to(self.touched, layer)
+		self.track = self.track.without(made, now)
+		for request in self.requests:
+			if made.has(request.id):
+				Util.add_to(self.withdrawn, request.id)
+				Util.add_to(self.stopped, request.id)
+				Util.add_to(self.touched, request.layer)
+		var found = []
+		for r in self.requests:
+			if not made.has(r.id):
+				found.append(r)
+		self.requests = found
+
+	# Hold an utterance, and what was made for it and has not had its moment; what has begun goes back.
+	func pause(ident, made, stop, now):
+		if Utterances.is_paused(stop):
+			return
+		var slot = Utterances.find_slot(self.track)
+		self.track = Utterances.pause(self.track, ident, made, stop, slot)
+		var kept = []
+		for request in self.requests:
+			if not made.has(request.id) or Utterances.is_paused(request.start):
+				kept.append(request)
+				continue
+			Util.add_to(self.withdrawn, request.id)
+			Util.add_to(self.touched, request.layer)
+			if request.start < now:
+				Util.add_to(self.stopped, request.id)
+			var wanted = request.start if request.stroke == null else request.stroke
+			if wanted >= stop:
+				kept.append(self.move_request(request, slot - stop, 0.0))
+				Util.add_to(self.anew, request.id)
+		self.requests = kept
+
+	# Go on with an utterance that is paused, and with what waits for it.
+	func resume(ident, made, now, soon):
+		var first = null
+		for s in self.track.speeches:
+			if s.id == ident and Utterances.is_paused(s.start):
+				first = s
+				break
+		var held = first
+		if held == null:
+			return
+		self.track = Utterances.resume(self.track, ident, made, soon)
+		var kept = []
+		for request in self.requests:
+			if made.has(request.id) and Utterances.is_paused(request.start):
+				Util.add_to(self.withdrawn, request.id)
+				Util.add_to(self.touched, request.layer)
+				Util.add_to(self.anew, request.id)
+				kept.append(self.move_request(request, soon - held.start, now))
+			else:
+				kept.append(request)
+		self.requests = kept
+
+	# Return a request moved by so many seconds, to no earlier than `least`.
+	func move_request(request, by, least):
+		var stroke = null if request.stroke == null else request.stroke + by
+		return MetaPlan.MetaRequest.new(
+			request.id,
+			request.layer,
+			request.kind,
+			Util.most(least, request.start + by),
+			request.duration,
+			request.action,
+			request.tags,
+			request.limb,
+			request.stance,
+			request.priority,
+			request.resume,
+			stroke,
+			request.hold,
+			request.prepare,
+			request.among,
+			request.late,
+			request.valence,
+			request.arousal,
+			request.intensity
+		)

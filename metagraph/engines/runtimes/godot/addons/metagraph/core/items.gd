@@ -29,7 +29,9 @@ class LookAt:
 
 
 # Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
-# seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was told.
+# seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was
+# told. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when it falls
+# silent. over: when it was said that none does, where it had fallen silent.
 class Speech:
 	var id
 	var start
@@ -39,8 +41,23 @@ class Speech:
 	var priority
 	var length
 	var timing
+	var skip
+	var more
+	var over
 
-	func _init(id_, start_, end_, line_ = null, text_ = "", priority_ = 1, length_ = null, timing_ = null):
+	func _init(
+		id_,
+		start_,
+		end_,
+		line_ = null,
+		text_ = "",
+		priority_ = 1,
+		length_ = null,
+		timing_ = null,
+		skip_ = 0.0,
+		more_ = false,
+		over_ = null
+	):
 		self.id = id_
 		self.start = start_
 		self.end = end_
@@ -49,6 +66,9 @@ class Speech:
 		self.priority = priority_
 		self.length = length_
 		self.timing = timing_
+		self.skip = skip_
+		self.more = more_
+		self.over = over_
 
 
 # The mode from `start` on; None for talking while something is said and idling otherwise.
@@ -103,34 +123,63 @@ class StayFrom:
 		self.end = end_
 
 
+# Return the second that what is said counts from: before its start if it goes on after a pause.
+static func find_line_start(speech):
+	return speech.start - speech.skip
+
+
+# Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+static func measure_line(speech):
+	return speech.end - find_line_start(speech) if speech.length == null else speech.length
+
+
 # Return the speech, ending no later than `at`; how long it would have been is remembered.
 static func cut(speech, at):
-	if speech.end <= at:
-		return speech
-	return Speech.new(
+	return speech if speech.end <= at else Speech.new(
 		speech.id,
 		speech.start,
 		at,
 		speech.line,
 		speech.text,
 		speech.priority,
-		speech.end - speech.start if speech.length == null else speech.length,
-		speech.timing
+		measure_line(speech),
+		speech.timing,
+		speech.skip,
+		speech.more,
+		speech.over
 	)
 
 
-# Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a lesser one is
-# not said.
+# Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with what is
+# said behind it under its id; a lesser one is not said.
 static func apart(speeches):
 	var out = []
+	var ends = {}  # when what was cut would have ended
 	for speech in speeches:
+		if ends.has(speech.id) and speech.start == ends[speech.id]:
+			ends[speech.id] = speech.end
+			continue
 		if out.size() > 0 and out[-1].end > speech.start:
 			var last = out[-1]
 			if speech.priority < last.priority:
 				continue
 			out.pop_back()
+			if last.id != speech.id:
+				ends[last.id] = last.end
 			if last.start < speech.start:
-				out.append(cut(last, speech.start))
+				out.append(Speech.new(
+					cut(last, speech.start).id,
+					cut(last, speech.start).start,
+					cut(last, speech.start).end,
+					cut(last, speech.start).line,
+					cut(last, speech.start).text,
+					cut(last, speech.start).priority,
+					cut(last, speech.start).length,
+					cut(last, speech.start).timing,
+					cut(last, speech.start).skip,
+					false,
+					cut(last, speech.start).over
+				))
 		out.append(speech)
 	return out
 
@@ -152,7 +201,10 @@ static func behind(said, new, now):
 		new.text,
 		new.priority,
 		new.length,
-		new.timing
+		new.timing,
+		new.skip,
+		new.more,
+		new.over
 	)
 
 
@@ -161,24 +213,69 @@ static func behind(said, new, now):
 static func going_on(old, new, now):
 	if old == null or old.timing == null or new.timing == null or old.length != null:
 		return new
+	if new.timing.paced:
+		return new if old.end <= now else _behind_words(old, old.timing, new, new.timing, now)
 	if Util.most(old.start, new.start) > now and old.start != new.start:
 		return new
-	var said = Util.most(now - old.start, 0.0)
+	var said = Util.most(now - find_line_start(old), old.skip)
 	if old.end <= now and not LineTiming.tells_on(old.timing, LineTiming.shifted(new.timing, old.timing.later)):
 		return new
-	var told = new.timing if old.start > now else LineTiming.place_told(old.timing, new.timing, said)
+	var told = new.timing if (old.start > now and old.skip == 0) else LineTiming.place_told(old.timing, new.timing, said)
 	var timing = LineTiming.extended(old.timing, told, said)
 	var length = Util.most(LineTiming.timed_seconds(timing, null), new.end - new.start)
 	var more = new.text == "" or new.text == LineTiming.told_text(new.timing)
 	return Speech.new(
 		new.id,
 		old.start,
-		old.start + length,
+		find_line_start(old) + length,
 		new.line,
 		LineTiming.told_text(timing) if more else new.text,
 		new.priority,
 		new.length,
-		timing
+		timing,
+		old.skip,
+		new.more,
+		new.over
+	)
+
+
+# Return a text with the times its letters tell, so that what comes of it later can be added.
+static func pace_speech(alphabet, new):
+	var timing = LineTiming.pace_text(alphabet, new.text, null)
+	var length = LineTiming.timed_seconds(timing, LineTiming.measure_text(alphabet, new.text))
+	return Speech.new(
+		new.id,
+		new.start,
+		new.start + length,
+		new.line,
+		new.text,
+		new.priority,
+		new.length,
+		timing,
+		new.skip,
+		new.more,
+		new.over
+	)
+
+
+# Return a line with a text behind what was told of it. told, more: their words.
+static func _behind_words(old, told, new, more, now):
+	var begin = find_line_start(old)
+	var at = Util.most(now - begin, Util.most(old.skip, old.end - begin))
+	var timing = LineTiming.LineTiming.new(told.words + LineTiming.shifted(more, at).words, told.marks, told.later, true)
+	var length = LineTiming.timed_seconds(timing, at + new.end - new.start)
+	return Speech.new(
+		new.id,
+		old.start,
+		begin + length,
+		new.line,
+		old.text + new.text,
+		new.priority,
+		new.length,
+		timing,
+		old.skip,
+		new.more,
+		new.over
 	)
 
 
@@ -219,6 +316,8 @@ static func alike_speeches(one, other):
 
 static func _same_speech(a, b):
 	if a.line != b.line or a.text != b.text or a.length != b.length or a.priority != b.priority:
+		return false
+	if a.skip != b.skip or a.more != b.more or a.over != b.over:
 		return false
 	return a.id == b.id and a.start == b.start and a.end == b.end and LineTiming.alike_timings(a.timing, b.timing)
 

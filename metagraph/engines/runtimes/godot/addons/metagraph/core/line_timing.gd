@@ -125,16 +125,18 @@ class VisemeMark:
 
 
 # A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something came
-# after its time.
+# after its time. paced: whether nobody told the times, and they follow from the letters.
 class LineTiming:
 	var words
 	var marks
 	var later
+	var paced
 
-	func _init(words_ = null, marks_ = null, later_ = 0.0):
+	func _init(words_ = null, marks_ = null, later_ = 0.0, paced_ = false):
 		self.words = words_ if words_ != null else []
 		self.marks = marks_ if marks_ != null else []
 		self.later = later_
+		self.paced = paced_
 
 
 # Whether two lines' words and shapes come alike.
@@ -265,6 +267,58 @@ static func timing_of(alphabet, words, marks, name):
 	return LineTiming.new(Util.list(said), Util.list(shown))
 
 
+# Return how long a text takes where more of it may come before or after, seconds.
+static func measure_text(alphabet, text):
+	var out = 0.0
+	for pair in Graphemes.split_words(alphabet, text):
+		var word = pair[0]
+		var pause = pair[1]
+		out += _measure_word(alphabet, word) + pause / Graphemes.PACE
+	return out
+
+
+# Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters tell.
+static func pace_text(alphabet, text, seconds):
+	var scale = 1.0 if seconds == null else seconds / Util.most(measure_text(alphabet, text), 0.001)
+	var at = 0.0
+	var words = []
+	for pair in Graphemes.split_words(alphabet, text):
+		var word = pair[0]
+		var pause = pair[1]
+		var end = at + scale * _measure_word(alphabet, word)
+		if word != "":
+			words.append(SpokenWord.new(word, at, end))
+		at = end + scale * pause / Graphemes.PACE
+	return LineTiming.new(Util.list(words), [], 0.0, true)
+
+
+# Return how long a word takes, seconds.
+static func _measure_word(alphabet, word):
+	var found = []
+	for letter in alphabet.letters(word):
+		found.append(Graphemes.measure_letter(alphabet.code(letter)))
+	return Util.sum(found) / Graphemes.PACE
+
+
+# Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter that is a
+# syllable.
+static func join_letters(alphabet, letters):
+	var out = []
+	var parted = true
+	for letter in letters:
+		if alphabet.stripped(letter.text) == "":
+			parted = true
+			continue
+		var alone = Graphemes.measure_letter(alphabet.code(alphabet.letters(letter.text)[0])) > 1
+		if parted or alone:
+			out.append(letter)
+		else:
+			var last = out[-1]
+			out[out.size() - 1] = SpokenWord.new(last.text + letter.text, last.start, letter.end)
+		parted = alone
+	return out
+
+
 # Return the words of a line as its text.
 static func told_text(timing):
 	var found = []
@@ -355,7 +409,12 @@ static func shifted(timing, by):
 static func place_told(old, new, said):
 	var end = _end_of(old)
 	if restarts(old, new, said):
-		return LineTiming.new(shifted(new, Util.most(said, end)).words, shifted(new, Util.most(said, end)).marks, old.later)
+		return LineTiming.new(
+			shifted(new, Util.most(said, end)).words,
+			shifted(new, Util.most(said, end)).marks,
+			old.later,
+			shifted(new, Util.most(said, end)).paced
+		)
 	var told = shifted(new, old.later)
 	var by = 0.0
 	if old.words.size() > 0 and told.words.size() > 0:
@@ -378,7 +437,7 @@ static func place_told(old, new, said):
 				marks.append(mark)
 		if marks.size() > 0 and marks[-1].at + SHAPE <= said:
 			by = Util.most(said, end) - marks[0].at
-	return LineTiming.new(shifted(told, by).words, shifted(told, by).marks, old.later + by)
+	return LineTiming.new(shifted(told, by).words, shifted(told, by).marks, old.later + by, shifted(told, by).paced)
 
 
 # Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and does not tell

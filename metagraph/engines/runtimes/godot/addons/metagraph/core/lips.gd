@@ -1,5 +1,6 @@
 # Which shape the mouth has: the voices of what is said, at any time.
 
+const Items = preload("items.gd")
 const Mouth = preload("mouth.gd")
 const Util = preload("util.gd")
 const Voice = preload("voice.gd")
@@ -43,7 +44,7 @@ static func _shown(speech, voice, time):
 		return out
 	var rows = voice.weights
 	var step = Util.most(voice.duration, 1e-3) / (rows.size() - 1)
-	var at = (Util.least(time, speech.end) - speech.start) / step
+	var at = (Util.least(time, speech.end) - Items.find_line_start(speech)) / step
 	var low = int(Util.within(floor(at), 0.0, rows.size() - 2.0))
 	var part = Util.within(at - low, 0.0, 1.0)
 	var kept = 1.0 - Util.smooth((time - speech.end) / CLOSING)

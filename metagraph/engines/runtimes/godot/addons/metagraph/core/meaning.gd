@@ -50,6 +50,7 @@ class PlainAsk:
 	var name
 	var point
 	var what
+	var more
 
 	func _init(
 		do_,
@@ -82,7 +83,8 @@ class PlainAsk:
 		mode_ = null,
 		name_ = "",
 		point_ = null,
-		what_ = ""
+		what_ = "",
+		more_ = false
 	):
 		self.do = do_
 		self.id = id_
@@ -115,6 +117,7 @@ class PlainAsk:
 		self.name = name_
 		self.point = point_ if point_ != null else []
 		self.what = what_
+		self.more = more_
 
 
 # A line of dialogue. seconds: how long it is, None where nobody knows. asks: what it asks for while it is said, in seconds from
@@ -150,8 +153,24 @@ class AskedBlock:
 		self.text = text_
 
 
-# What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds "". unknown:
-# what an ask names that is not there: "action", "stance" or "line". Speeches may overlap.
+# What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, "" for all of
+# it.
+class SteeringAsk:
+	var do
+	var id
+	var what
+	var priority
+
+	func _init(do_, id_, what_, priority_):
+		self.do = do_
+		self.id = id_
+		self.what = what_
+		self.priority = priority_
+
+
+# What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds "". steered:
+# what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance" or "line". Speeches may
+# overlap. fixed: seconds before which no gesture can begin that a line asks for, though the line itself may.
 class Meaning:
 	var project
 	var graphs
@@ -166,8 +185,10 @@ class Meaning:
 	var moods
 	var blocks
 	var withdrawn
+	var steered
 	var refused
 	var unknown
+	var fixed
 
 	func _init(
 		project_,
@@ -183,8 +204,10 @@ class Meaning:
 		moods_ = null,
 		blocks_ = null,
 		withdrawn_ = null,
+		steered_ = null,
 		refused_ = null,
-		unknown_ = ""
+		unknown_ = "",
+		fixed_ = 0.0
 	):
 		self.project = project_
 		self.graphs = graphs_
@@ -199,8 +222,10 @@ class Meaning:
 		self.moods = moods_ if moods_ != null else []
 		self.blocks = blocks_ if blocks_ != null else []
 		self.withdrawn = withdrawn_ if withdrawn_ != null else {}
+		self.steered = steered_ if steered_ != null else []
 		self.refused = refused_ if refused_ != null else []
 		self.unknown = unknown_
+		self.fixed = fixed_
 
 	# Return what lasts.
 	func track():
@@ -225,6 +250,7 @@ class Meaning:
 		Util.extend(self.stays, other.stays)
 		Util.extend(self.moods, other.moods)
 		Util.extend(self.blocks, other.blocks)
+		Util.extend(self.steered, other.steered)
 		for ident in other.withdrawn:
 			Util.add_to(self.withdrawn, ident)
 
@@ -370,6 +396,8 @@ class Meaning:
 			self.places.append(Items.PlaceFrom.new(ident, at, ask.name, ask.point))
 		elif ask.do == "withdraw":
 			Util.add_to(self.withdrawn, ask.what)
+		elif ask.do == "interrupt" or ask.do == "pause" or ask.do == "resume" or ask.do == "finish":
+			self.steered.append(SteeringAsk.new(ask.do, ident, ask.what, priority))
 		elif ask.do == "say":
 			return self.say(ask, ident, at, priority)
 		elif ask.do == "bml":
@@ -446,16 +474,19 @@ class Meaning:
 			text = LineTiming.told_text(ask.timing)
 		if line == null and text == "" and ask.timing == null:
 			return "say what: a line's id, text, or words with their times"
+		var timing = ask.timing
+		if timing == null and line == null and ask.more and ask.duration != null:
+			timing = LineTiming.pace_text(self.alphabet, text, ask.duration)
 		var length
-		if ask.timing != null:
-			length = LineTiming.timed_seconds(ask.timing, ask.duration)
+		if timing != null:
+			length = LineTiming.timed_seconds(timing, ask.duration)
 		elif ask.duration != null:
 			length = Util.most(ask.duration, 0.0)
 		elif line != null and line.seconds != null:
 			length = line.seconds
 		else:
 			length = Graphemes.read_aloud(self.alphabet, text)
-		self.speeches.append(Items.Speech.new(ident, at, at + length, ask.line, text, priority, null, ask.timing))
+		self.speeches.append(Items.Speech.new(ident, at, at + length, ask.line, text, priority, null, timing, 0.0, ask.more))
 		var told = ask.valence != null or line == null
 		var valence = ask.valence if (told or line == null) else line.valence
 		var arousal = ask.arousal if (told or line == null) else line.arousal
@@ -469,16 +500,18 @@ class Meaning:
 			if inner.do == "say":
 				return "a line would say another line; its asks may not"
 			var begins = at if inner.at == null else at + inner.at
+			if ask.at == null:
+				begins = Util.most(begins, self.fixed)
 			var why = self.add(inner, "%s.%d" % [ident, n + 1], begins, Util.most(inner.priority, priority), at)
 			if why != "":
 				return why
 		return ""
 
 
-# Take what an ask means, or refuse all of it. now: when it begins where it does not say.
-static func understood(whole, ask, now):
-	var one = Meaning.new(whole.project, whole.graphs, whole.alphabet)
-	var at = now if ask.at == null else ask.at
+# Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said, likewise.
+static func understood(whole, ask, now, soon):
+	var one = Meaning.new(whole.project, whole.graphs, whole.alphabet, [], [], [], [], [], [], [], [], [], {}, [], [], "", now)
+	var at = (soon if ask.do == "say" else now) if ask.at == null else ask.at
 	var why = one.add(ask, ask.id, at, ask.priority, 0.0)
 	if why == "":
 		whole.take(one)

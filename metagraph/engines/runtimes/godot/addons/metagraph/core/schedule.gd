@@ -8,6 +8,7 @@
 const Life = preload("life.gd")
 const Words = preload("words.gd")
 const Expressions = preload("expressions.gd")
+const Items = preload("items.gd")
 const Lane = preload("lane.gd")
 const Voice = preload("voice.gd")
 const Wanted = preload("wanted.gd")
@@ -511,8 +512,8 @@ class LifeDraw:
 			var end = Util.least(speech.end, self.drawn)
 			for n in range(Voice.stressed(self.voices, speech).size()):
 				var peak = Voice.stressed(self.voices, speech)[n]
-				var at = speech.start + peak
-				if at < start or at >= end:
+				var at = Items.find_line_start(speech) + peak
+				if at < Util.most(start, speech.start) or at >= end:
 					continue
 				if n == 0 or Choice.uniform(self.seed_, [speech.id, "accent", str(n)]) < self.life.accent_blinks:
 					out.append([at, n == 0])

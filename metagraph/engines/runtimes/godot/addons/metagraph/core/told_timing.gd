@@ -13,6 +13,12 @@ static func told_timing(alphabet, ask):
 	for n in range(ask.words.size()):
 		if not _add_spoken(ask.words[n], words, false):
 			return [null, "words[%d]: should be [word, start, end], seconds from the line's start" % n]
+	var letters = []
+	for n in range(ask.characters.size()):
+		if not _add_spoken(ask.characters[n], letters, false):
+			return [null, "characters[%d]: should be [letter, start, end], seconds from the line's start" % n]
+	if words.size() == 0:
+		words = LineTiming.join_letters(alphabet, letters)
 	for n in range(ask.visemes.size()):
 		if not _add_mark(ask.visemes[n], marks) and not _add_spoken(ask.visemes[n], words, true):
 			return [null, "visemes[%d]: should be [seconds, viseme], or with its weight from 0 to 1" % n]
@@ -48,7 +54,7 @@ static func _add_spoken(entry, out, named):
 			var end = (start + length) / TICKS if Util.is_number(start) and Util.is_number(length) else null
 			told = [entry.get("text"), _seconds(start, TICKS), end]
 		else:
-			told = [entry.get("word", entry.get("text")), entry.get("start"), entry.get("end")]
+			told = [entry.get("word", entry.get("text", entry.get("character"))), entry.get("start"), entry.get("end")]
 	elif named:
 		return false
 	if typeof(told) != TYPE_ARRAY or told.size() < 2 or told.size() > 3 or typeof(told[0]) != TYPE_STRING:

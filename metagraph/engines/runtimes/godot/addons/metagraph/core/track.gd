@@ -214,6 +214,14 @@ class Track:
 						found.append(x)
 				looks = found
 			looks.append(look)
+		var latest = {}
+		for x in self.speeches:
+			latest[x.id] = x
+		var lasts = {}
+		for ident in latest:
+			var x = latest[ident]
+			if x.more or x.end > seconds:
+				Util.add_to(lasts, ident)
 		var found2 = []
 		for m in self.modes:
 			found2.append(m.start)
@@ -230,7 +238,7 @@ class Track:
 				stays[x.layer] = n
 		var found3 = []
 		for x in self.speeches:
-			if x.start > seconds or x.end > seconds:
+			if x.start > seconds or x.end > seconds or (x.more and lasts.has(x.id)):
 				found3.append(x)
 		var found4 = []
 		for n in range(self.places.size()):

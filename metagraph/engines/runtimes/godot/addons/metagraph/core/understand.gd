@@ -7,9 +7,9 @@ const Mood = preload("mood.gd")
 const ToldTiming = preload("told_timing.gd")
 
 
-# Returns what asks mean, see meaning.gd. now: when those begin that do not say. An ask that makes several requests gives them ids of its
-# own: <id>, then <id>.1, <id>.2, ...
-static func understand(graph, asks, now):
+# Returns what asks mean, see meaning.gd. now: when those begin that do not say; soon: when it is said, for what is said. An ask that
+# makes several requests gives them ids of its own: <id>, then <id>.1, <id>.2, ...
+static func understand(graph, asks, now, soon):
 	var graphs = []
 	for layer in Util.LAYERS:
 		graphs.append(graph.layers[layer])
@@ -17,7 +17,7 @@ static func understand(graph, asks, now):
 	for ask in asks:
 		var found = _plain(graph, ask)
 		if found[1] == "":
-			Meaning.understood(out, found[0], now)
+			Meaning.understood(out, found[0], now, soon)
 		else:
 			out.refuse(ask.id, found[1], ask.get("layer"), now if ask.at == null else ask.at)
 	for block in out.blocks:

@@ -3,6 +3,7 @@
 
 const Util = preload("util.gd")
 const Graphemes = preload("graphemes.gd")
+const Items = preload("items.gd")
 const LineTiming = preload("line_timing.gd")
 const Mouth = preload("mouth.gd")
 const MOST = 256  # texts remembered
@@ -13,7 +14,7 @@ static func of(graph, speech):
 	var timing = speech.get("timing")
 	if timing == null and speech.line != null and graph.voices.has(speech.line):
 		return graph.voices[speech.line]
-	var duration = Util.most(0.0, speech.end - speech.start if speech.length == null else speech.length)
+	var duration = Util.most(0.0, Items.measure_line(speech))
 	var key = timing  # which is never changed once made
 	if timing == null:
 		key = "%s/%s" % [str(duration), speech.text]

@@ -1,0 +1,314 @@
+# What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that is said under one id,
+# piece by piece, until it is over. Times are seconds.
+#
+# What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+#
+# Translated from metagraph/playback/life/utterances.py; change that, and translate anew.
+
+const Graphemes = preload("graphemes.gd")
+const Items = preload("items.gd")
+const LineTiming = preload("line_timing.gd")
+const Track = preload("track.gd")
+const Mood = preload("mood.gd")
+const Util = preload("util.gd")
+const PAUSED = 1000000000.0  # seconds from which on lies what is paused
+const VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
+const EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
+const TOGETHER = 0.001  # seconds between two pieces of one utterance, at most
+
+
+# Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+static func find_soon(now, lookahead):
+	return now + Util.least(lookahead, VOICE) if now > 0 else 0.0
+
+
+# Return whether what begins then is paused.
+static func is_paused(start):
+	return start >= PAUSED
+
+
+# Return whether a piece can be added to though it does not run: more was promised, or it is paused.
+static func takes_more(speech):
+	return speech.more or speech.start >= PAUSED
+
+
+# Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come.
+static func goes_on(speeches, ident, now):
+	var first = null
+	for s in Util.backwards(speeches):
+		if s.id == ident:
+			first = s
+			break
+	var last = first
+	return last != null and (last.end > now or last.more)
+
+
+# Return the ids of the utterances that are not over at `now`; what: of one, "" for all.
+static func find_utterances(track, what, now):
+	var out = []
+	for speech in track.speeches:
+		var fits = what == "" or speech.id == what
+		if fits and not out.has(speech.id) and goes_on(track.speeches, speech.id, now):
+			out.append(speech.id)
+	return out
+
+
+# Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its sounds are
+# not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+static func find_stop(alphabet, track, ident, soon, now):
+	var first = soon - EARLIER if now > soon else soon
+	var first2 = null
+	for s in track.speeches:
+		if s.id == ident and s.start < first and first < s.end:
+			first2 = s
+			break
+	var running = first2
+	if running == null:
+		var coming = []
+		for s in track.speeches:
+			if s.id == ident and s.start >= first:
+				coming.append(s.start)
+		return Util.least_of(coming + [PAUSED]) if coming.size() > 0 else soon
+	if running.line != null and running.timing == null:
+		return first
+	var begin = Items.find_line_start(running)
+	var said = Graphemes.spelled(alphabet, running.text, Items.measure_line(running)) if running.timing == null else LineTiming.timed_sounds(
+		alphabet,
+		running.timing
+	)
+	var ends = []
+	for p in said.pieces:
+		if begin + p.start < first and first < begin + p.end:
+			ends.append(begin + p.end)
+	return Util.least_of([soon] + [running.end] + ends) if ends.size() > 0 else first
+
+
+# Return a time among those that never come in which nothing lies.
+static func find_slot(track):
+	var found = []
+	for s in track.speeches:
+		if s.start >= PAUSED:
+			found.append(s.end + 1.0)
+	return Util.most_of([PAUSED] + found)
+
+
+# Return the track with an utterance over at `stop`: what comes of it is not said.
+static func break_off(track, ident, stop):
+	var speeches = []
+	for speech in track.speeches:
+		if speech.id != ident or speech.end <= stop:
+			speeches.append(speech)
+		elif speech.start < stop:
+			speeches.append(Items.cut(speech, stop))
+	return _closed(track, speeches, ident, stop, true)
+
+
+# Return the track with an utterance that is over when all that is known of it was said.
+static func finish_speech(track, ident, soon):
+	return _closed(track, Util.list(track.speeches), ident, soon, false)
+
+
+# Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was broken off.
+static func _closed(track, speeches, ident, now, cuts):
+	var out = Util.list(speeches)
+	var end = now
+	for n in Util.backwards(range(out.size())):
+		var last = out[n]
+		if last.id != ident:
+			continue
+		var held = cuts and last.length != null  # it was paused
+		var silent = last.end < now and (last.more or held)
+		var length = Items.measure_line(last) if (cuts and last.more) else last.length
+		out[n] = Items.Speech.new(
+			last.id,
+			last.start,
+			last.end,
+			last.line,
+			last.text,
+			last.priority,
+			length,
+			last.timing,
+			last.skip,
+			false,
+			now if silent else last.over
+		)
+		end = Util.most(last.end, now)
+		break
+	var moods = []
+	for m in track.moods:
+		moods.append(_until(m, end) if (m.id == ident and m.end == PAUSED) else m)
+	return Track.Track.new(track.looks, Util.list(out), track.modes, track.places, track.blinks, track.stays, Util.list(moods))
+
+
+static func _until(mood, end):
+	return Mood.MoodFrom.new(mood.id, mood.start, mood.valence, mood.arousal, mood.intensity, end)
+
+
+# Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of what was asked for it; it
+# waits as long, if it has not begun.
+static func pause(track, ident, made, stop, slot):
+	var by = slot - stop
+	var kept = []
+	var held = []
+	for speech in track.speeches:
+		if speech.id != ident or speech.start >= PAUSED or speech.end <= stop:
+			kept.append(speech)
+		elif speech.start < stop:
+			kept.append(Items.Speech.new(
+				Items.cut(speech, stop).id,
+				Items.cut(speech, stop).start,
+				Items.cut(speech, stop).end,
+				Items.cut(speech, stop).line,
+				Items.cut(speech, stop).text,
+				Items.cut(speech, stop).priority,
+				Items.cut(speech, stop).length,
+				Items.cut(speech, stop).timing,
+				Items.cut(speech, stop).skip,
+				false,
+				Items.cut(speech, stop).over
+			))
+			var skip = stop - Items.find_line_start(speech)
+			held.append(Items.Speech.new(
+				speech.id,
+				slot,
+				speech.end + by,
+				speech.line,
+				speech.text,
+				speech.priority,
+				speech.length,
+				speech.timing,
+				skip,
+				speech.more,
+				speech.over
+			))
+		else:
+			held.append(Items.Speech.new(
+				speech.id,
+				speech.start + by,
+				speech.end + by,
+				speech.line,
+				speech.text,
+				speech.priority,
+				speech.length,
+				speech.timing,
+				speech.skip,
+				speech.more,
+				speech.over
+			))
+	var last = track.last_speech(ident)
+	if held.size() == 0 and last != null and last.more and last.start < PAUSED:
+		held.append(Items.Speech.new(ident, slot, slot, null, "", last.priority, null, null, 0.0, true))
+	if held.size() == 0:
+		return track
+	var moods = []
+	for m in track.moods:
+		moods.append(_until(m, PAUSED) if (m.id == ident and m.start < stop and m.end > stop) else m)
+	var left = Track.Track.new(
+		track.looks,
+		Util.list(kept),
+		track.modes,
+		track.places,
+		track.blinks,
+		track.stays,
+		Util.list(moods)
+	)
+	return _moved(left, held, made, stop, PAUSED, by)
+
+
+# Return the track with an utterance that goes on at `soon`. made: as for `pause`.
+static func resume(track, ident, made, soon):
+	var held = []
+	for s in track.speeches:
+		if s.id == ident and s.start >= PAUSED:
+			held.append(s)
+	if held.size() == 0:
+		return track
+	var by = soon - held[0].start
+	var kept = []
+	for s in track.speeches:
+		if s.id != ident or s.start < PAUSED:
+			kept.append(s)
+	var on = []
+	for s in held:
+		if s.end > s.start:
+			on.append(Items.Speech.new(
+				s.id,
+				s.start + by,
+				s.end + by,
+				s.line,
+				s.text,
+				s.priority,
+				s.length,
+				s.timing,
+				s.skip,
+				s.more,
+				s.over
+			))
+	var end = PAUSED if held[-1].more else held[-1].end + by
+	var moods = []
+	for m in track.moods:
+		moods.append(_until(m, end) if (m.id == ident and m.end == PAUSED) else m)
+	var left = Track.Track.new(
+		track.looks,
+		Util.list(kept),
+		track.modes,
+		track.places,
+		track.blinks,
+		track.stays,
+		Util.list(moods)
+	)
+	if on.size() == 0:  # it had fallen silent when it was paused
+		left = left if held[-1].more else finish_speech(left, ident, soon)
+	return _moved(left, on, made, PAUSED, INF, by)
+
+
+# Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to before `high` moved by so
+# many seconds.
+static func _moved(track, speeches, made, low, high, by):
+	var looks = []
+	for x in track.looks:
+		if made.has(x.id) and low <= x.start and x.start < high:
+			looks.append(Items.LookAt.new(x.id, x.start + by, x.end + by, x.to, x.amount, x.strict, x.priority))
+	var moods = []
+	for m in track.moods:
+		if made.has(m.id) and low <= m.start and m.start < high:
+			moods.append(Mood.MoodFrom.new(m.id, m.start + by, m.valence, m.arousal, m.intensity, m.end + by))
+	var gone = {}
+	for x2 in looks:
+		Util.add_to(gone, x2.id)
+	var over = {}
+	for m2 in moods:
+		Util.add_to(over, m2.id)
+	var found = []
+	for x3 in track.looks:
+		if not gone.has(x3.id) or x3.start < low or x3.start >= high:
+			found.append(x3)
+	var found2 = []
+	for m3 in track.moods:
+		if not over.has(m3.id) or m3.start < low or m3.start >= high:
+			found2.append(m3)
+	var left = Track.Track.new(found, track.speeches, track.modes, track.places, track.blinks, track.stays, found2)
+	return left.joined(Track.Track.new(Util.list(looks), Util.list(speeches), [], [], [], [], Util.list(moods)))
+
+
+# Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced"; "" where it is not over
+# there.
+static func explain_end(speeches, speech):
+	var first = null
+	for s in speeches:
+		if s.id == speech.id and s.start > speech.start:
+			first = s
+			break
+	var coming = first
+	if speech.more or (coming != null and is_same_utterance(speech, coming)):
+		return ""
+	if speech.length == null:
+		return "finished"
+	return "interrupted" if (coming == null or coming.start > speech.end + TOGETHER) else "replaced"
+
+
+# Return whether a later piece of the same id goes on with what an earlier one says.
+static func is_same_utterance(one, other):
+	if one.more or (other.skip > 0 and one.length != null and one.over == null):
+		return true
+	return one.length == null and (other.start >= PAUSED or other.start - one.end < TOGETHER)

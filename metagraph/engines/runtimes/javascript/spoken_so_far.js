@@ -1,0 +1,128 @@
+/**
+ * What of an utterance was spoken until a moment, for the history that a language model goes on from.
+ *
+ * Translated from metagraph/speech/spoken_so_far.py; change that, and translate anew.
+ */
+
+import { findLineStart, measureLine } from "./items.js";
+import { SpokenWord } from "./line_timing.js";
+import { isPaused, isSameUtterance } from "./utterances.js";
+import { telling, wordsOf } from "./word_gestures.js";
+
+/**
+ * Return what of an utterance was spoken until `seconds`, up to the word that was begun, and that word; "" where nothing
+ * was. said: everything, by start.
+ * @param {Alphabet} alphabet
+ * @param {Speech[]} said
+ * @param {string} ident
+ * @param {number} seconds
+ * @returns {[string, string]}
+ */
+export function spokenUntil(alphabet, said, ident, seconds) {
+  let text = "";
+  let last = "";
+  let paced = false;
+  const pieces = _pieces(said, ident, seconds);
+  for (const [n, piece] of pieces.entries()) {
+    const [words, word] = _spokenOf(alphabet, piece, Math.min(seconds, piece.end) - findLineStart(piece));
+    const joins = paced && piece.timing !== null && piece.timing.paced;
+    if (n > 0 && text !== "" && words !== "" && !joins) {
+      text += " ";
+    }
+    text += words;
+    last = word === "" ? last : word;
+    paced = piece.timing !== null && piece.timing.paced;
+  }
+  return [alphabet.stripped(text), last];
+}
+
+/**
+ * Return the pieces of the utterance of an id that was said last; one that goes on after a pause is one.
+ * @param {Speech[]} said
+ * @param {string} ident
+ * @param {number} seconds
+ * @returns {Speech[]}
+ */
+function _pieces(said, ident, seconds) {
+  let out = [];
+  for (const piece of said) {
+    if (piece.id !== ident || piece.start >= seconds || isPaused(piece.start)) {
+      continue;
+    }
+    if (out.length > 0 && !isSameUtterance(out[out.length - 1], piece)) {
+      out = [];
+    } else if (out.length > 0 && piece.skip > 0) {
+      out.pop();
+    }
+    out.push(piece);
+  }
+  return out;
+}
+
+/**
+ * Return what of one piece was spoken in its first `seconds`, and the last word of that.
+ * @param {Alphabet} alphabet
+ * @param {Speech} piece
+ * @param {number} seconds
+ * @returns {[string, string]}
+ */
+function _spokenOf(alphabet, piece, seconds) {
+  const letters = alphabet.letters(piece.text);
+  let words = [];
+  if (piece.timing !== null && piece.timing.words.length > 0) {
+    words = [...piece.timing.words];
+  } else if (piece.timing === null || !piece.timing.paced) {
+    words = wordsOf(alphabet, piece.text, [], measureLine(piece)).map((w) => new SpokenWord(w.text, w.start));
+  }
+  const begun = words.filter((word) => word.start < seconds).map((word) => word.text);
+  if (begun.length === 0) {
+    const silent = piece.timing !== null && piece.timing.paced && words.length === 0;
+    return [silent ? piece.text : "", ""];
+  }
+  let end = 0;
+  for (const word of begun) {
+    end = _endOfWord(letters, alphabet.letters(word), end);
+    if (end < 0) { // the text says it otherwise
+      return [begun.join(" "), begun[begun.length - 1]];
+    }
+  }
+  let stop = end;
+  while (stop < letters.length && !_parts(alphabet, letters[stop])) {
+    stop += 1;
+  }
+  let first = end;
+  while (first > 0 && alphabet.stripped(letters[first - 1]) !== "") {
+    first -= 1;
+  }
+  if (begun.length === words.length && piece.timing !== null && piece.timing.paced) {
+    stop = letters.length;
+  }
+  const whole = wordsOf(alphabet, letters.slice(first, end).join(""));
+  return [letters.slice(0, stop).join(""), whole.length > 0 ? whole[whole.length - 1].text : begun[begun.length - 1]];
+}
+
+/**
+ * Whether a letter behind a word is no mark of it.
+ * @param {Alphabet} alphabet
+ * @param {string} letter
+ * @returns {boolean}
+ */
+function _parts(alphabet, letter) {
+  return alphabet.stripped(letter) === "" || telling(alphabet, [letter]);
+}
+
+/**
+ * Return the place behind a word in a text, from `first` on; -1 where it is not there.
+ * @param {string[]} letters
+ * @param {string[]} word
+ * @param {number} first
+ * @returns {number}
+ */
+function _endOfWord(letters, word, first) {
+  for (let start = first; start < letters.length - word.length + 1; start++) {
+    if ([...word.entries()].every(([n, letter]) => letters[start + n] === letter)) {
+      return start + word.length;
+    }
+  }
+  return -1;
+}

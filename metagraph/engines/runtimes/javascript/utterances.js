@@ -1,0 +1,312 @@
+/**
+ * What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that is said under
+ * one id, piece by piece, until it is over. Times are seconds.
+ *
+ * What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+ *
+ * Translated from metagraph/playback/life/utterances.py; change that, and translate anew.
+ */
+
+import { spelled } from "./graphemes.js";
+import { Speech, cut, findLineStart, measureLine } from "./items.js";
+import { timedSounds } from "./line_timing.js";
+import { Track } from "./track.js";
+import { but, maxOf, minOf, range } from "./basics.js";
+
+export const PAUSED = 1000000000; // seconds from which on lies what is paused
+export const VOICE = 0.04; // seconds in which a voice can begin; more than lips look ahead
+export const EARLIER = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
+export const TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
+
+/**
+ * Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+ * @param {number} now
+ * @param {number} lookahead
+ * @returns {number}
+ */
+export function findSoon(now, lookahead) {
+  return now > 0 ? now + Math.min(lookahead, VOICE) : 0;
+}
+
+/**
+ * Return whether what begins then is paused.
+ * @param {number} start
+ * @returns {boolean}
+ */
+export function isPaused(start) {
+  return start >= PAUSED;
+}
+
+/**
+ * Return whether a piece can be added to though it does not run: more was promised, or it is paused.
+ * @param {Speech} speech
+ * @returns {boolean}
+ */
+export function takesMore(speech) {
+  return speech.more || speech.start >= PAUSED;
+}
+
+/**
+ * Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come.
+ * @param {Speech[]} speeches
+ * @param {string} ident
+ * @param {number} now
+ * @returns {boolean}
+ */
+export function goesOn(speeches, ident, now) {
+  const last = [...speeches].reverse().find((s) => s.id === ident) ?? null;
+  return last !== null && (last.end > now || last.more);
+}
+
+/**
+ * Return the ids of the utterances that are not over at `now`; what: of one, "" for all.
+ * @param {Track} track
+ * @param {string} what
+ * @param {number} now
+ * @returns {string[]}
+ */
+export function findUtterances(track, what, now) {
+  const out = [];
+  for (const speech of track.speeches) {
+    const fits = what === "" || speech.id === what;
+    if (fits && !out.includes(speech.id) && goesOn(track.speeches, speech.id, now)) {
+      out.push(speech.id);
+    }
+  }
+  return out;
+}
+
+/**
+ * Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its sounds
+ * are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+ * @param {Alphabet} alphabet
+ * @param {Track} track
+ * @param {string} ident
+ * @param {number} soon
+ * @param {number} now
+ * @returns {number}
+ */
+export function findStop(alphabet, track, ident, soon, now) {
+  const first = now > soon ? soon - EARLIER : soon;
+  const running = track.speeches.find((s) => s.id === ident && s.start < first && first < s.end) ?? null;
+  if (running === null) {
+    const coming = track.speeches.filter((s) => s.id === ident && s.start >= first).map((s) => s.start);
+    return coming.length > 0 ? minOf([...coming, PAUSED]) : soon;
+  }
+  if (running.line !== null && running.timing === null) {
+    return first;
+  }
+  const begin = findLineStart(running);
+  const said = running.timing === null
+    ? spelled(alphabet, running.text, measureLine(running))
+    : timedSounds(alphabet, running.timing);
+  const ends = said.pieces.filter((p) => begin + p.start < first && first < begin + p.end).map((p) => begin + p.end);
+  return ends.length > 0 ? minOf([soon, running.end, ...ends]) : first;
+}
+
+/**
+ * Return a time among those that never come in which nothing lies.
+ * @param {Track} track
+ * @returns {number}
+ */
+export function findSlot(track) {
+  return maxOf([PAUSED, ...track.speeches.filter((s) => s.start >= PAUSED).map((s) => s.end + 1)]);
+}
+
+/**
+ * Return the track with an utterance over at `stop`: what comes of it is not said.
+ * @param {Track} track
+ * @param {string} ident
+ * @param {number} stop
+ * @returns {Track}
+ */
+export function breakOff(track, ident, stop) {
+  const speeches = [];
+  for (const speech of track.speeches) {
+    if (speech.id !== ident || speech.end <= stop) {
+      speeches.push(speech);
+    } else if (speech.start < stop) {
+      speeches.push(cut(speech, stop));
+    }
+  }
+  return _closed(track, speeches, ident, stop, true);
+}
+
+/**
+ * Return the track with an utterance that is over when all that is known of it was said.
+ * @param {Track} track
+ * @param {string} ident
+ * @param {number} soon
+ * @returns {Track}
+ */
+export function finishSpeech(track, ident, soon) {
+  return _closed(track, [...track.speeches], ident, soon, false);
+}
+
+/**
+ * Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was broken off.
+ * @param {Track} track
+ * @param {Speech[]} speeches
+ * @param {string} ident
+ * @param {number} now
+ * @param {boolean} cuts
+ * @returns {Track}
+ */
+function _closed(track, speeches, ident, now, cuts) {
+  const out = [...speeches];
+  let end = now;
+  for (const n of [...range(out.length)].reverse()) {
+    const last = out[n];
+    if (last.id !== ident) {
+      continue;
+    }
+    const held = cuts && last.length !== null; // it was paused
+    const silent = last.end < now && (last.more || held);
+    const length = (cuts && last.more) ? measureLine(last) : last.length;
+    out[n] = but(last, { more: false, over: silent ? now : last.over, length: length });
+    end = Math.max(last.end, now);
+    break;
+  }
+  const moods = track.moods.map((m) => (m.id === ident && m.end === PAUSED) ? _until(m, end) : m);
+  return new Track(track.looks, [...out], track.modes, track.places, track.blinks, track.stays, [...moods]);
+}
+
+/**
+ * @param {MoodFrom} mood
+ * @param {number} end
+ * @returns {MoodFrom}
+ */
+function _until(mood, end) {
+  return but(mood, { end: end });
+}
+
+/**
+ * Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of what was asked for
+ * it; it waits as long, if it has not begun.
+ * @param {Track} track
+ * @param {string} ident
+ * @param {Set<string>} made
+ * @param {number} stop
+ * @param {number} slot
+ * @returns {Track}
+ */
+export function pause(track, ident, made, stop, slot) {
+  const by = slot - stop;
+  const kept = [];
+  const held = [];
+  for (const speech of track.speeches) {
+    if (speech.id !== ident || speech.start >= PAUSED || speech.end <= stop) {
+      kept.push(speech);
+    } else if (speech.start < stop) {
+      kept.push(but(cut(speech, stop), { more: false }));
+      const skip = stop - findLineStart(speech);
+      held.push(but(speech, { start: slot, end: speech.end + by, skip: skip }));
+    } else {
+      held.push(but(speech, { start: speech.start + by, end: speech.end + by }));
+    }
+  }
+  const last = track.lastSpeech(ident);
+  if (held.length === 0 && last !== null && last.more && last.start < PAUSED) {
+    held.push(new Speech(ident, slot, slot, null, "", last.priority, null, null, 0, true));
+  }
+  if (held.length === 0) {
+    return track;
+  }
+  const moods = track.moods.map((m) => (m.id === ident && m.start < stop && m.end > stop) ? _until(m, PAUSED) : m);
+  const left = new Track(track.looks, [...kept], track.modes, track.places, track.blinks, track.stays, [...moods]);
+  return _moved(left, held, made, stop, PAUSED, by);
+}
+
+/**
+ * Return the track with an utterance that goes on at `soon`. made: as for `pause`.
+ * @param {Track} track
+ * @param {string} ident
+ * @param {Set<string>} made
+ * @param {number} soon
+ * @returns {Track}
+ */
+export function resume(track, ident, made, soon) {
+  const held = track.speeches.filter((s) => s.id === ident && s.start >= PAUSED);
+  if (held.length === 0) {
+    return track;
+  }
+  const by = soon - held[0].start;
+  const kept = track.speeches.filter((s) => s.id !== ident || s.start < PAUSED);
+  const on = held.filter((s) => s.end > s.start).map((s) => but(s, { start: s.start + by, end: s.end + by }));
+  const end = held[held.length - 1].more ? PAUSED : held[held.length - 1].end + by;
+  const moods = track.moods.map((m) => (m.id === ident && m.end === PAUSED) ? _until(m, end) : m);
+  let left = new Track(track.looks, [...kept], track.modes, track.places, track.blinks, track.stays, [...moods]);
+  if (on.length === 0) { // it had fallen silent when it was paused
+    left = held[held.length - 1].more ? left : finishSpeech(left, ident, soon);
+  }
+  return _moved(left, on, made, PAUSED, Infinity, by);
+}
+
+/**
+ * Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to before `high` moved
+ * by so many seconds.
+ * @param {Track} track
+ * @param {Speech[]} speeches
+ * @param {Set<string>} made
+ * @param {number} low
+ * @param {number} high
+ * @param {number} by
+ * @returns {Track}
+ */
+function _moved(track, speeches, made, low, high, by) {
+  const looks = [];
+  for (const x of track.looks) {
+    if (made.has(x.id) && low <= x.start && x.start < high) {
+      looks.push(but(x, { start: x.start + by, end: x.end + by }));
+    }
+  }
+  const moods = [];
+  for (const m of track.moods) {
+    if (made.has(m.id) && low <= m.start && m.start < high) {
+      moods.push(but(m, { start: m.start + by, end: m.end + by }));
+    }
+  }
+  const gone = new Set(looks.map((x) => x.id));
+  const over = new Set(moods.map((m) => m.id));
+  const left = new Track(
+    track.looks.filter((x) => !gone.has(x.id) || x.start < low || x.start >= high),
+    track.speeches,
+    track.modes,
+    track.places,
+    track.blinks,
+    track.stays,
+    track.moods.filter((m) => !over.has(m.id) || m.start < low || m.start >= high),
+  );
+  return left.joined(new Track([...looks], [...speeches], [], [], [], [], [...moods]));
+}
+
+/**
+ * Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced"; "" where it is not
+ * over there.
+ * @param {Speech[]} speeches
+ * @param {Speech} speech
+ * @returns {string}
+ */
+export function explainEnd(speeches, speech) {
+  const coming = speeches.find((s) => s.id === speech.id && s.start > speech.start) ?? null;
+  if (speech.more || (coming !== null && isSameUtterance(speech, coming))) {
+    return "";
+  }
+  if (speech.length === null) {
+    return "finished";
+  }
+  return (coming === null || coming.start > speech.end + TOGETHER) ? "interrupted" : "replaced";
+}
+
+/**
+ * Return whether a later piece of the same id goes on with what an earlier one says.
+ * @param {Speech} one
+ * @param {Speech} other
+ * @returns {boolean}
+ */
+export function isSameUtterance(one, other) {
+  if (one.more || (other.skip > 0 && one.length !== null && one.over === null)) {
+    return true;
+  }
+  return one.length === null && (other.start >= PAUSED || other.start - one.end < TOGETHER);
+}

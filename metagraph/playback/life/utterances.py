@@ -1,0 +1,211 @@
+"""What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that
+is said under one id, piece by piece, until it is over. Times are seconds.
+
+What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import replace
+
+from metagraph.playback.life.alphabet import Alphabet
+from metagraph.playback.life.graphemes import spelled
+from metagraph.playback.life.items import LookAt, Speech, cut, find_line_start, measure_line
+from metagraph.playback.life.line_timing import timed_sounds
+from metagraph.playback.life.track import Track
+from metagraph.playback.planning.mood import MoodFrom
+
+PAUSED = 1e9  # seconds from which on lies what is paused
+VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
+EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
+TOGETHER = 1e-3  # seconds between two pieces of one utterance, at most
+
+
+def find_soon(now: float, lookahead: float) -> float:
+    """Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very
+    beginning.
+    """
+    return now + min(lookahead, VOICE) if now > 0 else 0.0
+
+
+def is_paused(start: float) -> bool:
+    """Return whether what begins then is paused."""
+    return start >= PAUSED
+
+
+def takes_more(speech: Speech) -> bool:
+    """Return whether a piece can be added to though it does not run: more was promised, or it is paused."""
+    return speech.more or speech.start >= PAUSED
+
+
+def goes_on(speeches: Sequence[Speech], ident: str, now: float) -> bool:
+    """Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come."""
+    last = next((s for s in reversed(speeches) if s.id == ident), None)
+    return last is not None and (last.end > now or last.more)
+
+
+def find_utterances(track: Track, what: str, now: float) -> list[str]:
+    """Return the ids of the utterances that are not over at `now`; what: of one, "" for all."""
+    out: list[str] = []
+    for speech in track.speeches:
+        fits = what == "" or speech.id == what
+        if fits and speech.id not in out and goes_on(track.speeches, speech.id, now):
+            out.append(speech.id)
+    return out
+
+
+def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, now: float) -> float:
+    """Return when the voice of an utterance stops that should: at the end of the sound that is made, by
+    `soon`; where its sounds are not known, or it pauses, at once; where it has not begun, when it would.
+    now: when gestures can stop.
+    """
+    first = soon - EARLIER if now > soon else soon
+    running = next((s for s in track.speeches if s.id == ident and s.start < first and first < s.end), None)
+    if running is None:
+        coming = [s.start for s in track.speeches if s.id == ident and s.start >= first]
+        return min([*coming, PAUSED]) if len(coming) > 0 else soon
+    if running.line is not None and running.timing is None:
+        return first
+    begin = find_line_start(running)
+    said = (
+        spelled(alphabet, running.text, measure_line(running))
+        if running.timing is None
+        else timed_sounds(alphabet, running.timing)
+    )
+    ends = [begin + p.end for p in said.pieces if begin + p.start < first and first < begin + p.end]
+    return min([soon, running.end, *ends]) if len(ends) > 0 else first
+
+
+def find_slot(track: Track) -> float:
+    """Return a time among those that never come in which nothing lies."""
+    return max([PAUSED, *[s.end + 1.0 for s in track.speeches if s.start >= PAUSED]])
+
+
+def break_off(track: Track, ident: str, stop: float) -> Track:
+    """Return the track with an utterance over at `stop`: what comes of it is not said."""
+    speeches: list[Speech] = []
+    for speech in track.speeches:
+        if speech.id != ident or speech.end <= stop:
+            speeches.append(speech)
+        elif speech.start < stop:
+            speeches.append(cut(speech, stop))
+    return _closed(track, speeches, ident, stop, True)
+
+
+def finish_speech(track: Track, ident: str, soon: float) -> Track:
+    """Return the track with an utterance that is over when all that is known of it was said."""
+    return _closed(track, list(track.speeches), ident, soon, False)
+
+
+def _closed(track: Track, speeches: Sequence[Speech], ident: str, now: float, cuts: bool) -> Track:
+    """Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was
+    broken off.
+    """
+    out = list(speeches)
+    end = now
+    for n in reversed(range(len(out))):
+        last = out[n]
+        if last.id != ident:
+            continue
+        held = cuts and last.length is not None  # it was paused
+        silent = last.end < now and (last.more or held)
+        length = measure_line(last) if cuts and last.more else last.length
+        out[n] = replace(last, more=False, over=now if silent else last.over, length=length)
+        end = max(last.end, now)
+        break
+    moods = [_until(m, end) if m.id == ident and m.end == PAUSED else m for m in track.moods]
+    return Track(track.looks, tuple(out), track.modes, track.places, track.blinks, track.stays, tuple(moods))
+
+
+def _until(mood: MoodFrom, end: float) -> MoodFrom:
+    return replace(mood, end=end)
+
+
+def pause(track: Track, ident: str, made: AbstractSet[str], stop: float, slot: float) -> Track:
+    """Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of
+    what was asked for it; it waits as long, if it has not begun.
+    """
+    by = slot - stop
+    kept: list[Speech] = []
+    held: list[Speech] = []
+    for speech in track.speeches:
+        if speech.id != ident or speech.start >= PAUSED or speech.end <= stop:
+            kept.append(speech)
+        elif speech.start < stop:
+            kept.append(replace(cut(speech, stop), more=False))
+            skip = stop - find_line_start(speech)
+            held.append(replace(speech, start=slot, end=speech.end + by, skip=skip))
+        else:
+            held.append(replace(speech, start=speech.start + by, end=speech.end + by))
+    last = track.last_speech(ident)
+    if len(held) == 0 and last is not None and last.more and last.start < PAUSED:
+        held.append(Speech(ident, slot, slot, None, "", last.priority, None, None, 0.0, True))
+    if len(held) == 0:
+        return track
+    moods = [
+        _until(m, PAUSED) if m.id == ident and m.start < stop and m.end > stop else m for m in track.moods
+    ]
+    left = Track(track.looks, tuple(kept), track.modes, track.places, track.blinks, track.stays, tuple(moods))
+    return _moved(left, held, made, stop, PAUSED, by)
+
+
+def resume(track: Track, ident: str, made: AbstractSet[str], soon: float) -> Track:
+    """Return the track with an utterance that goes on at `soon`. made: as for `pause`."""
+    held = [s for s in track.speeches if s.id == ident and s.start >= PAUSED]
+    if len(held) == 0:
+        return track
+    by = soon - held[0].start
+    kept = [s for s in track.speeches if s.id != ident or s.start < PAUSED]
+    on = [replace(s, start=s.start + by, end=s.end + by) for s in held if s.end > s.start]
+    end = PAUSED if held[-1].more else held[-1].end + by
+    moods = [_until(m, end) if m.id == ident and m.end == PAUSED else m for m in track.moods]
+    left = Track(track.looks, tuple(kept), track.modes, track.places, track.blinks, track.stays, tuple(moods))
+    if len(on) == 0:  # it had fallen silent when it was paused
+        left = left if held[-1].more else finish_speech(left, ident, soon)
+    return _moved(left, on, made, PAUSED, math.inf, by)
+
+
+def _moved(
+    track: Track, speeches: Sequence[Speech], made: AbstractSet[str], low: float, high: float, by: float
+) -> Track:
+    """Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to
+    before `high` moved by so many seconds.
+    """
+    looks: list[LookAt] = []
+    for x in track.looks:
+        if x.id in made and low <= x.start and x.start < high:
+            looks.append(replace(x, start=x.start + by, end=x.end + by))
+    moods: list[MoodFrom] = []
+    for m in track.moods:
+        if m.id in made and low <= m.start and m.start < high:
+            moods.append(replace(m, start=m.start + by, end=m.end + by))
+    gone = {x.id for x in looks}
+    over = {m.id for m in moods}
+    left = Track(
+        tuple([x for x in track.looks if x.id not in gone or x.start < low or x.start >= high]),
+        track.speeches, track.modes, track.places, track.blinks, track.stays,
+        tuple([m for m in track.moods if m.id not in over or m.start < low or m.start >= high]),
+    )  # fmt: skip
+    return left.joined(Track(tuple(looks), tuple(speeches), (), (), (), (), tuple(moods)))
+
+
+def explain_end(speeches: Sequence[Speech], speech: Speech) -> str:
+    """Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced";
+    "" where it is not over there.
+    """
+    coming = next((s for s in speeches if s.id == speech.id and s.start > speech.start), None)
+    if speech.more or (coming is not None and is_same_utterance(speech, coming)):
+        return ""
+    if speech.length is None:
+        return "finished"
+    return "interrupted" if coming is None or coming.start > speech.end + TOGETHER else "replaced"
+
+
+def is_same_utterance(one: Speech, other: Speech) -> bool:
+    """Return whether a later piece of the same id goes on with what an earlier one says."""
+    if one.more or (other.skip > 0 and one.length is not None and one.over is None):
+        return True
+    return one.length is None and (other.start >= PAUSED or other.start - one.end < TOGETHER)

@@ -1,0 +1,219 @@
+"""What is said under one id is one utterance: it is appended to, paused, resumed, finished, interrupted."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+
+from metagraph.graph.model import Project
+from metagraph.live import steering
+from metagraph.live.live_session import LiveSession
+from metagraph.playback.life.lips import compute_mouth_shapes
+from metagraph.playback.planning.running_plan import plan_performance
+
+TICK = 1 / 60
+RAIN = "It rains all day, so take a coat with you."
+
+
+class Talk:
+    """A session, and what clients hear of it."""
+
+    def __init__(self, project: Project) -> None:
+        self.session = LiveSession(project, idle=False)
+        self.heard: list[dict[str, Any]] = []
+        self.ask(do="hello", name="agent", events=True)
+
+    def ask(self, client: int = 1, **request: Any) -> dict[str, Any]:
+        """Return the reply to a request."""
+        request = {"in" if name == "after" else name: value for name, value in request.items()}
+        self.session.receive(client, json.dumps(request))
+        replies = self.go(self.session.now + TICK / 2)
+        assert len(replies) == 1
+        return replies[0]
+
+    def go(self, until: float) -> list[dict[str, Any]]:
+        """Go on until a time; return the replies of the first tick."""
+        replies: list[Any] = []
+        while self.session.now < until:
+            out = self.session.tick(self.session.now + TICK)
+            replies = replies or out.replies
+            self.heard += [msgspec.to_builtins(e) for client, e in out.events if client == 1]
+        return [msgspec.json.decode(r) if isinstance(r, bytes) else msgspec.to_builtins(r) for r in replies]
+
+    def wait(self, seconds: float) -> None:
+        self.go(self.session.now + seconds)
+
+    def ends(self, ident: str) -> list[str]:
+        """Return the reasons with which an utterance ended."""
+        return [e["reason"] for e in self.heard if e["event"] == "ended" and e["id"] == ident]
+
+    def opens(self, start: float, end: float) -> float:
+        """Return how far the mouth is open at most between two times, 0..1."""
+        track, project = self.session.plan.track, self.session.project
+        times = np.linspace(start, end, 40)
+        shapes = compute_mouth_shapes(track, project.voices, project.life.lip_smoothing, times)
+        return 0.0 if shapes is None else float(shapes.sum(1).max())
+
+
+@pytest.fixture
+def talk(sample: Project) -> Talk:
+    return Talk(sample)
+
+
+def test_an_interrupt_stops_the_voice_at_a_sound_and_says_what_was_spoken(talk: Talk) -> None:
+    said = talk.ask(do="say", id="a", text=RAIN)
+    talk.ask(do="gesture", id="a/0", tags=["emphasis"], after=0.2)
+    talk.ask(do="gesture", id="a/1", after=3.0)
+    talk.wait(1.0)
+    now = talk.session.now
+    reply = talk.ask(do="interrupt", what="a")
+    assert reply["state"] == "done" and now < reply["at"] <= now + TICK + 0.1
+    assert reply["spoken"] == "It rains all day," and reply["last_word"] == "day"
+    assert reply["skip"] == pytest.approx(reply["at"] - said["at"], abs=1e-3)
+    talk.wait(0.6)
+    assert talk.opens(reply["at"] + 0.2, reply["at"] + 3.0) == 0
+    assert talk.ends("a") == talk.ends("a/0") == talk.ends("a/1") == ["interrupted"]
+    (end,) = [e for e in talk.heard if e["event"] == "ended" and e["id"] == "a"]
+    assert end["spoken"] == reply["spoken"] and end["why"] == steering.INTERRUPTED
+    assert talk.session.plan.layers["arms"].cues[-1].end <= now + TICK + 0.1 + 0.41
+
+
+def test_who_is_interrupted_looks_at_the_partner(talk: Talk) -> None:
+    talk.ask(do="look", to=[0.5, 1.5, 1.0])
+    talk.ask(do="say", id="a", text=RAIN)
+    talk.wait(0.5)
+    talk.ask(do="interrupt")
+    look = talk.session.plan.track.looks[-1]
+    assert look.to == "user" and look.strict and look.end - look.start == pytest.approx(2.0)
+
+
+def test_an_interrupt_without_an_id_stops_what_this_client_says_alone(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text=RAIN)
+    talk.session.join(2)
+    assert talk.ask(client=2, do="interrupt")["why"] == "nothing is said"
+    assert talk.ends("a") == []
+    assert talk.ask(do="interrupt")["state"] == "done"
+    talk.wait(0.3)
+    assert talk.ends("a") == ["interrupted"]
+
+
+def test_what_is_paused_goes_on_where_it_stopped(talk: Talk) -> None:
+    said = talk.ask(do="say", id="a", text=RAIN, mood="happy")
+    talk.ask(do="gesture", id="a/0", after=2.0)
+    talk.wait(1.0)
+    held = talk.ask(do="pause", what="a")
+    assert held["spoken"] == "It rains all day," and talk.ask(do="pause")["why"] == "it is paused already"
+    talk.wait(2.0)
+    assert talk.opens(held["at"] + 0.2, talk.session.now + 5.0) == 0 and talk.ends("a") == []
+    changed = [e for e in talk.heard if e["event"] == "changed"]
+    assert {(e["id"], e["why"]) for e in changed} == {("a", "it is paused"), ("a/0", "it is paused")}
+    assert [m.end > 1e8 for m in talk.session.plan.track.moods] == [True]
+    on = talk.ask(do="resume", what="a")
+    assert on["skip"] == held["skip"] and on["at"] == pytest.approx(talk.session.now + 0.04, abs=1e-3)
+    rest = said["until"] - held["at"]
+    talk.wait(rest + 0.2)
+    started = [e for e in talk.heard if e["event"] == "started" and e["id"] == "a"]
+    assert [e.get("skip") for e in started] == [None, held["skip"]]
+    (end,) = [e for e in talk.heard if e["event"] == "ended" and e["id"] == "a"]
+    assert end["reason"] == "finished" and end["until"] == pytest.approx(on["at"] + rest, abs=1e-3)
+    assert [m.end for m in talk.session.plan.track.moods] == [pytest.approx(end["until"], abs=1e-3)]
+    talk.wait(3.0)
+    assert talk.ends("a/0") == ["finished"]
+
+
+def test_what_is_appended_to_something_paused_waits(talk: Talk) -> None:
+    talk.ask(do="say", id="a", words=[["one", 0.0, 0.4], ["two", 0.5, 0.9]])
+    talk.wait(0.3)
+    talk.ask(do="pause")
+    reply = talk.ask(do="say", id="a", words=[["three", 0.0, 0.4]])
+    assert (reply["state"], reply["why"], reply.get("at")) == ("planned", "it is paused", None)
+    talk.wait(1.0)
+    talk.ask(do="resume")
+    talk.wait(2.0)
+    assert talk.ends("a") == ["finished"]
+    assert talk.session.plan.track.speeches[-1].text == "one two three"
+
+
+def test_tokens_are_said_as_they_come_until_no_more_do(talk: Talk) -> None:
+    for token in ("It", " rai", "ns", ",", " you", " know"):
+        assert talk.ask(do="say", id="a", text=token, more=True)["state"] == "planned"
+    talk.wait(3.0)
+    assert talk.ends("a") == []
+    talk.ask(do="say", id="a", text=", all day.", more=True)
+    talk.wait(2.0)
+    assert talk.ends("a") == []
+    assert talk.ask(do="finish", what="a")["state"] == "done"
+    talk.wait(0.2)
+    assert talk.ends("a") == ["finished"]
+    assert "".join(s.text for s in talk.session.plan.track.speeches) == "It rains, you know, all day."
+
+
+def test_an_interrupt_knows_all_that_was_said_in_pieces(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="It rai", more=True)
+    talk.ask(do="say", id="a", text="ns,", more=True)
+    talk.wait(2.0)
+    talk.ask(do="say", id="a", text=" so take a coat with you", more=True)
+    talk.wait(0.4)
+    reply = talk.ask(do="interrupt", what="a")
+    assert (reply["spoken"], reply["last_word"]) == ("It rains, so take", "take")
+
+
+def test_nothing_that_is_open_is_awaited_for_ever(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="Well", more=True)
+    talk.wait(steering.FORGOTTEN - 2)
+    assert talk.ends("a") == []
+    talk.wait(5.0)
+    assert talk.ends("a") == ["finished"]
+
+
+def test_letters_with_times_are_words(talk: Talk) -> None:
+    letters = [
+        ["H", 0, 0.1],
+        ["i", 0.1, 0.2],
+        [" ", 0.2, 0.3],
+        ["y", 0.3, 0.4],
+        ["o", 0.4, 0.5],
+        ["u", 0.5, 0.7],
+    ]
+    talk.ask(do="say", id="a", characters=letters)
+    (speech,) = talk.session.plan.track.speeches
+    assert speech.timing is not None
+    assert [(w.text, w.start, w.end) for w in speech.timing.words] == [("Hi", 0, 0.2), ("you", 0.3, 0.7)]
+
+
+def test_an_agent_that_comes_back_pauses_and_interrupts_what_it_said(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text=RAIN)
+    talk.wait(0.5)
+    talk.session.leave(1)
+    talk.session.join(7)
+    talk.ask(client=7, do="hello", name="agent", events=True)
+    assert talk.ask(client=7, do="pause", what="a")["spoken"].startswith("It rains")
+    assert talk.ask(client=7, do="interrupt", what="a")["last_word"] == "rains"
+
+
+@pytest.mark.parametrize("word", ["interrupt", "pause", "resume", "finish"])
+def test_nothing_to_do_is_said_so(talk: Talk, word: str) -> None:
+    reply = talk.ask(do=word)
+    assert reply["state"] == "done" and reply["why"]
+
+
+def test_a_kept_session_pauses_and_interrupts_again(talk: Talk, sample: Project) -> None:
+    talk.ask(do="say", id="a", text=RAIN)
+    talk.wait(0.7)
+    talk.ask(do="pause")
+    talk.wait(0.7)
+    talk.ask(do="resume")
+    talk.wait(0.7)
+    talk.ask(do="interrupt")
+    talk.wait(1.0)
+    kept = talk.session.performance("kept")
+    plan = plan_performance(sample, kept.asks, kept.length, kept.seed, kept.stances, kept.idle)
+    ours, theirs = talk.session.plan.track.speeches, plan.track.speeches
+    assert len(ours) == len(theirs) == 2
+    for mine, other in zip(ours, theirs, strict=True):
+        found = [other.start, other.end, other.skip, other.length]
+        assert found == pytest.approx([mine.start, mine.end, mine.skip, mine.length])
