@@ -46,11 +46,12 @@ def run(options: Namespace) -> int:
     project = open_for_command(options.project)
     problems = find_problems(project)
     if options.play is not None:
+        from app.cli.progress_line import ProgressLine
         from metagraph.playback.rehearsal import rehearse
 
         if not 0 < options.play <= LONGEST:
             raise ValueError(f"--play must be more than 0 and at most {LONGEST} seconds")
-        problems += rehearse(project, options.play)
+        problems += rehearse(project, options.play, ProgressLine(options, "Playing it").tell)
         order = ("error", "warning", "hint")
         problems.sort(key=lambda p: order.index(p.severity))
     warn_of_journals(options.project)

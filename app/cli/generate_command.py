@@ -69,7 +69,7 @@ def write_planted_takes(options: Namespace) -> int:
     """Write planted takes."""
     from app.cli.command_output import open_for_command, say
     from app.cli.demo_command import SAMPLE
-    from app.cli.generate_takes import make_progress_printer
+    from app.cli.progress_line import ProgressLine
     from metagraph.research.generation.planted import Planted, write_planted
 
     own = options.project is None
@@ -79,7 +79,9 @@ def write_planted_takes(options: Namespace) -> int:
             raise ValueError(f"--{name} must be a whole number, 0 or more")
     asked = Planted(count=options.count, seconds=options.seconds, seed=options.seed, moves=options.moves)
     licence = "MIT: synthetic speech, and motion of Metagraph's own sample clips." if own else ""
-    new = write_planted(project, options.out, asked, licence, make_progress_printer(options, "conversations"))
+    new = write_planted(
+        project, options.out, asked, licence, ProgressLine(options, "Writing conversations").tell
+    )
     hours = 2 * asked.count * asked.seconds / 3600
     words = (
         f"{asked.count} conversations, {2 * asked.count} takes, {hours:.2f} h in {options.out} "

@@ -76,7 +76,8 @@ def judge_models(options: Namespace) -> int:
     """Judge models; print the table, with `out` write it and the figures."""
     from app.cli.command_output import say
     from app.cli.generate_report import REPORT, report_as_data, report_as_text, write_generation_report
-    from app.cli.generate_takes import make_progress_printer, read_all, read_models
+    from app.cli.generate_takes import read_all, read_models
+    from app.cli.progress_line import ProgressLine
     from metagraph.formats.outputs import claim
     from metagraph.generation.stored import SUFFIX
     from metagraph.research.generation.evaluation import HeldOut, find_takes_unseen_by_all, judge_on_takes
@@ -97,7 +98,7 @@ def judge_models(options: Namespace) -> int:
     if left:
         print(f"note: {len(left)} takes skipped, because a model has learned from them", file=sys.stderr)
     held = HeldOut(takes, find_floor(options.floor, options.takes, takes, first.rig))
-    show = make_progress_printer(options, "made")
+    show = ProgressLine(options, "Making motion").tell
     judged = judge_on_takes(first.rig, models, held, manner, draws=options.draws, progress=show)
     beside = {r.name for r in judged.rows} if judged.floor is None else {"other motion"}
     notes = list_judging_cautions(models, takes, beside)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from app.cli.progress_line import ProgressLine
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.generation.poses import PoseRig
@@ -42,17 +44,6 @@ def add_speech_argument(parser: ArgumentParser) -> None:
     add_language_arguments(parser)
 
 
-def make_progress_printer(options: Namespace, what: str) -> Any:
-    """Return a function that prints progress on a terminal."""
-    show = sys.stderr.isatty() and not options.json
-
-    def progress(done: int, total: int) -> None:
-        if show:
-            print(f"\r{what}: {done:,} of {total:,} ", end="", file=sys.stderr, flush=True)
-
-    return progress
-
-
 def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) -> TakeBatch:
     """Read the requested takes, and print notes on them. Raises ValueError if none can be used."""
     from app.cli.language_options import read_speaking
@@ -65,7 +56,7 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
     speech = [p for p in options.speech if p.is_dir()]
     single = [p.parent for p in options.speech if p.is_file()]
     files, without = find_takes(options.takes, list(dict.fromkeys((*speech, *single))))
-    show = make_progress_printer(options, "takes")
+    show = ProgressLine(options, "Reading takes").tell
     speaking = read_speaking(options)
     batch = read_take_batch(
         files, rig, tracks=tracks, progress=lambda n, _: show(n, len(files)), speaking=speaking

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from app.cli.command_output import open_for_command, say
 from app.cli.outputs import ProjectOutput, with_project_ending
+from app.cli.progress_line import ProgressLine
 from metagraph.errors import FileError
 from metagraph.formats.action_labels import apply_labels, read_labels
 from metagraph.formats.clip_readers import list_clip_suffixes
@@ -86,22 +87,16 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         project, words, left_out = _taken(project, path, other, options)
         taken.append(words)
         lacking = lacking or left_out
-    show = sys.stderr.isatty() and not options.json
-
-    def progress(done: int, total: int, file: Path) -> None:
-        if show:
-            print(f"\r{done}/{total} {file.name[:50]:<50}", end="", file=sys.stderr)
-
+    line = ProgressLine(options, "Reading clips")
     result = import_files(
         project,
         path.resolve().parent,
         files,
-        progress,
+        lambda done, total, file: line.tell(done, total, file.name),
         retarget="yes" if options.retarget else "no",
         contacts=not options.no_contacts,
     )
-    if show:
-        print(file=sys.stderr)
+    line.finish()
     if files and not result.loaded and not result.failures:
         place = ", ".join(str(p) for p in files)
         raise FileError(

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from app.cli.outputs import ProjectOutput
     from metagraph.graph.model import Project
+    from metagraph.graph.problem import Problem
     from metagraph.suggest.alike import LabelledExample
     from metagraph.suggest.words.patterns import Patterns
 
@@ -117,7 +118,6 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import count_alike
     from metagraph.graph.check import check_project, list_grave_problems
-    from metagraph.playback.rehearsal import rehearse
     from metagraph.suggest.flags import needs_look
     from metagraph.suggest.jumps.bridges import describe_bridges, describe_unbridged
     from metagraph.suggest.left_aside import group_reasons
@@ -142,7 +142,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         output.save(taken.project, source if source.is_file() else None)
     changed = not begun.merged or bool(begun.clips)  # if not, the report of what was labelled earlier stays
     place = _free_report(path)
-    seen = rehearse(taken.project, options.play) if options.play > 0 and changed else []
+    seen = _rehearse(options, taken.project) if options.play > 0 and changed else []
     faults = [p.message for p in seen if p.severity == "error"]
     gaps = [] if options.no_bridges else describe_unbridged(taken.project)
     if changed:
@@ -205,6 +205,13 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         words, data = f"{words}\n{told_of}", data | data_of
     say(options, words, data)
     return _exit_code(len(taken.left), len(errors), len(faults))
+
+
+def _rehearse(options: Namespace, project: Project) -> list[Problem]:
+    from app.cli.progress_line import ProgressLine
+    from metagraph.playback.rehearsal import rehearse
+
+    return rehearse(project, options.play, ProgressLine(options, "Playing it to find faults").tell)
 
 
 def _exit_code(left: int, errors: int, faults: int) -> int:

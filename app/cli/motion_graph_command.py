@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.cli.motion_graph_soft import add_soft_arguments, read_soft_wish
+from app.cli.progress_line import ProgressLine
 from app.cli.takes import (
     add_speech_arguments,
     match_speech,
@@ -203,21 +204,6 @@ def _heard(options: Namespace) -> tuple[States, list[int]]:
     return states, list(find_change_states(states, speech))
 
 
-def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
-    show = sys.stderr.isatty() and not options.json
-
-    def progress(done: int, total: int) -> None:
-        if show:
-            print(
-                f"\r{what}: {done:,} of {total:,}",
-                end="\n" if done == total else "",
-                file=sys.stderr,
-                flush=True,
-            )
-
-    return progress
-
-
 @contextmanager
 def _until_stopped() -> Iterator[Callable[[], bool]]:
     """Yield a function that says whether Ctrl+C was pressed, so that finished work can be kept."""
@@ -277,7 +263,7 @@ def build_and_print(options: Namespace) -> int:
         key_states(states, options.keys, heard),
         options.most,
         False,
-        _telling(options, "key states"),
+        ProgressLine(options, "Finding key states").tell,
         makers=BlockMakers(folder=options.keep),
     )
     graph = find_largest_component(whole)
@@ -340,7 +326,7 @@ def print_states(options: Namespace) -> int:
     follows = int((~states.last).sum())
     for k in (2, 3, 4):
         limit = find_threshold(states, k, options.level)
-        whole = build_graph(states, limit, keys, options.most, False, _telling(options, f"k = {k}"))
+        whole = build_graph(states, limit, keys, options.most, False, ProgressLine(options, f"k = {k}").tell)
         try:
             graph = find_largest_component(whole)
         except SynthesisError:
@@ -544,7 +530,7 @@ def print_evaluation(options: Namespace) -> int:
             SETTINGS[:1] if options.quick else SETTINGS,
             Trials(options.search or ("greedy", "exact"), seed=options.seed),
             GraphMaking(options.k, options.level, options.keys, options.most),
-            _telling(options, "cases"),
+            ProgressLine(options, "Measuring cases").tell,
             stopped,
             Beside(wish, spoken),
         )
@@ -570,7 +556,9 @@ def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Seg
     )
 
     graphs = hold_out_takes(clips, speech, options.k, options.level, options.keys, options.most)
-    rows = list(score_extending(graphs, seed=options.seed, progress=_telling(options, "drives")))
+    rows = list(
+        score_extending(graphs, seed=options.seed, progress=ProgressLine(options, "Playing drives").tell)
+    )
     say(options, format_rows_as_text(rows), [asdict(r) for r in rows])
     return 0
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from app.cli.perceive_planning import add_arguments as planning_arguments
 from app.cli.perceive_planning import require_empty
+from app.cli.progress_line import ProgressLine
 
 NOTHING = 3  # exit code if nothing can be told
 
@@ -99,13 +100,12 @@ def make_perceptual_study(options: Namespace) -> int:
     apart = plan.choice is None or plan.choice.present == "after"  # else one sound is heard of both
     cameras: dict[str, Any] = {}
     shown: dict[tuple[str, str], str] = {}
-    tellable = sys.stderr.isatty() and not options.json
+    line = ProgressLine(options, "Making videos")
     for n, (name, (condition, ident)) in enumerate(sorted(made.key.stimuli.items())):
         item = items[ident]
         if ident not in cameras:
             cameras[ident] = stimuli.camera(item)
-        if tellable:
-            print(f"\r{n + 1} of {len(made.key.stimuli)} videos ", end="", file=sys.stderr, flush=True)
+        line.tell(n, len(made.key.stimuli))
         heard = sounds[condition, ident]
         content = hashlib.sha256(b"" if heard is None or not apart else heard.tobytes())
         frames = _digested(stimuli.pictures(condition, item, cameras[ident]), content)
@@ -113,8 +113,7 @@ def make_perceptual_study(options: Namespace) -> int:
         sound = None if heard is None else (heard, RATE)
         write_video(videos / f"{name}.mp4", frames, look.fps, (look.width, look.height), sound=sound)
         shown[condition, ident] = content.hexdigest()
-    if tellable:
-        print(file=sys.stderr)
+    line.finish()
     level_times(options.into)
     study = write_folder(options.into, plan, path.read_bytes(), made)
     each = [len(s.trials) for s in made.key.sessions.values()]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command, say
+from app.cli.progress_line import ProgressLine
 from app.look.names import name_node_rows
 from app.stage.filming import Seen, make_project_figure, measure_bounds, render_pictures
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
@@ -189,7 +190,7 @@ def run(options: Namespace) -> int:
         look = look_of(options.theme, options.light, options.background)
         direction = _direction(project, options, shown, folder, seen)
         shot = Shot(options.seconds, size, options.fps, options.frames, look, options.start, direction)
-        draw_to(options.out, seen, shot, sound, options.progress)
+        draw_to(options.out, seen, shot, sound, _choose_progress(options))
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
 
@@ -279,14 +280,27 @@ def mix_sound(
     ), RATE
 
 
+def _choose_progress(options: Namespace) -> Callable[[int, int], None]:
+    """Return what says how far a video is: a line for each picture if asked for, else one on a terminal."""
+    if not options.progress:
+        return ProgressLine(options, "Drawing pictures").tell
+
+    def tell(done: int, total: int) -> None:
+        print(f"{done}/{total}", file=sys.stderr, flush=True)
+
+    return tell
+
+
 def draw_to(
     out: Path,
     seen: Sequence[Seen],
     shot: Shot,
     sound: tuple[np.ndarray, int] | None = None,
-    progress: bool = False,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> None:
-    """Write a contact sheet (.png) or a video (.mp4), with its sound."""
+    """Write a contact sheet (.png) or a video (.mp4), with its sound. progress: called with how many pictures
+    of a video are drawn, and of how many.
+    """
     width, height = shot.size
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".mp4":
@@ -294,13 +308,9 @@ def draw_to(
 
         times = shot.start + np.arange(max(1, round(shot.seconds * shot.fps))) / shot.fps
 
-        def told(count: int) -> None:
-            if progress:
-                print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
-
         into = np.empty((height, width, 4), np.uint8)
         drawn = render_directed(seen, times, shot.size, shot.look, shot.direction, into)
-        write_video(out, drawn, shot.fps, shot.size, told, sound=sound)
+        write_video(out, drawn, shot.fps, shot.size, lambda count: progress(count, len(times)), sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import make_contact_sheet, write_png
 

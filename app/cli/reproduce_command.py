@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.progress_line import ProgressLine
+
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.research.exhibits.exhibit import Exhibit, MadeExhibit
     from metagraph.research.exhibits.material import ExhibitMaterial
@@ -149,13 +151,9 @@ def _material(options: Namespace) -> ExhibitMaterial:
     given: tuple[Recorded, ...] = ()
     told = ""
     if options.takes is not None:
-        show = sys.stderr.isatty() and not options.json
-
-        def progress(done: int, total: int) -> None:
-            if show:
-                print(f"\rreading {done + 1:,} of {total:,}", end="", file=sys.stderr, flush=True)
-
-        corpus = read_corpus(options.takes, progress=progress)
+        line = ProgressLine(options, "Reading takes")
+        corpus = read_corpus(options.takes, progress=lambda done, total: line.tell(done + 1, total))
+        line.finish()
         notes += [*corpus.failures, *corpus.notes]
         given, told = corpus.recorded, f"{options.takes.name} ({corpus.layout})"
     project = open_for_command(SAMPLE if options.project is None else options.project)

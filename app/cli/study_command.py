@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.cli.perceive_command import add_arguments as perceive_arguments
+from app.cli.progress_line import ProgressLine
 from app.cli.study_agreement import add_arguments as agreement_arguments
 from app.cli.study_people import add_arguments as people_arguments
 from app.cli.study_planning import add_arguments as plan_arguments
@@ -221,13 +222,10 @@ def _results(options: Namespace) -> Results:
     from metagraph.research.study.analysis.results import analyse_study
     from metagraph.research.study.plan.sites import merge_site_data
 
-    show = sys.stderr.isatty() and not options.json
+    line = ProgressLine(options, "Looking for jumps")
 
     def progress(done: int, total: int) -> None:
-        if show:
-            print(
-                f"\r{done + 1} of {total} ", end="" if done + 1 < total else "\n", file=sys.stderr, flush=True
-            )
+        line.tell(done + 1, total)
 
     others = getattr(options, "others", ())
     if others:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import signal
+from argparse import Namespace
 from pathlib import Path
 
 import numpy as np
@@ -128,7 +129,7 @@ def test_an_evaluation_that_is_stopped_keeps_its_cases(
         if done == 2:
             signal.raise_signal(signal.SIGINT)  # as Ctrl+C does
 
-    monkeypatch.setattr("app.cli.motion_graph_command._telling", lambda *_: told)
+    monkeypatch.setattr("app.cli.motion_graph_command.ProgressLine", lambda *_: Namespace(tell=told))
     before = signal.getsignal(signal.SIGINT)
     given = [str(folder / "takes"), *said(folder), "--search", "greedy"]
     assert main(["motion-graph", "evaluate", *given, "-o", str(tmp_path / "cases.csv")]) == 3
