@@ -59,7 +59,7 @@ def _spoken_of(alphabet: Alphabet, piece: Speech, seconds: float) -> tuple[str, 
         return (piece.text if silent else "", "")
     end = 0
     for word in begun:
-        end = _end_of_word(letters, alphabet.letters(word), end)
+        end = _end_of_letters(letters, alphabet.letters(word), end)
         if end < 0:  # the text says it otherwise
             return " ".join(begun), begun[-1]
     stop = end
@@ -79,7 +79,7 @@ def _parts(alphabet: Alphabet, letter: str) -> bool:
     return alphabet.stripped(letter) == "" or telling(alphabet, [letter])
 
 
-def _end_of_word(letters: Sequence[str], word: Sequence[str], first: int) -> int:
+def _end_of_letters(letters: Sequence[str], word: Sequence[str], first: int) -> int:
     """Return the place behind a word in a text, from `first` on; -1 where it is not there."""
     for start in range(first, len(letters) - len(word) + 1):
         if all(letters[start + n] == letter for n, letter in enumerate(word)):

@@ -76,6 +76,7 @@ READ = {
         "answers",
     ),
     *("model", "speech", "first", "given", "floor", "new", "again", "words_list", "transcripts"),
+    *("one", "other"),
 }
 
 

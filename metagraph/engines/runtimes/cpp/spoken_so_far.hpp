@@ -28,7 +28,7 @@ inline std::tuple<std::string, std::string> _spoken_of(
     double seconds
 );
 inline bool _parts(const Ref<Alphabet>& alphabet, const std::string& letter);
-inline int _end_of_word(const List<std::string>& letters, const List<std::string>& word, int first);
+inline int _end_of_letters(const List<std::string>& letters, const List<std::string>& word, int first);
 
 }  // namespace spoken_so_far
 
@@ -115,7 +115,7 @@ inline std::tuple<std::string, std::string> _spoken_of(
     }
     int end = 0;
     for (const auto& word : begun) {
-        end = spoken_so_far::_end_of_word(letters, alphabet->letters(word), end);
+        end = spoken_so_far::_end_of_letters(letters, alphabet->letters(word), end);
         if (end < 0) { // the text says it otherwise
             return std::tuple<std::string, std::string>{lang::joined(begun, " "), lang::at(begun, -1)};
         }
@@ -144,7 +144,7 @@ inline bool _parts(const Ref<Alphabet>& alphabet, const std::string& letter) {
 }
 
 /// Return the place behind a word in a text, from `first` on; -1 where it is not there.
-inline int _end_of_word(const List<std::string>& letters, const List<std::string>& word, int first) {
+inline int _end_of_letters(const List<std::string>& letters, const List<std::string>& word, int first) {
     for (int start = first; start < lang::len(letters) - lang::len(word) + 1; start++) {
         bool are_all = true;
         for (int n = 0; n < lang::len(word); n++) {

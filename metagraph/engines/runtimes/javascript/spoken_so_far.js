@@ -81,7 +81,7 @@ function _spokenOf(alphabet, piece, seconds) {
   }
   let end = 0;
   for (const word of begun) {
-    end = _endOfWord(letters, alphabet.letters(word), end);
+    end = _endOfLetters(letters, alphabet.letters(word), end);
     if (end < 0) { // the text says it otherwise
       return [begun.join(" "), begun[begun.length - 1]];
     }
@@ -118,7 +118,7 @@ function _parts(alphabet, letter) {
  * @param {number} first
  * @returns {number}
  */
-function _endOfWord(letters, word, first) {
+function _endOfLetters(letters, word, first) {
   for (let start = first; start < letters.length - word.length + 1; start++) {
     if ([...word.entries()].every(([n, letter]) => letters[start + n] === letter)) {
       return start + word.length;

@@ -91,7 +91,7 @@ namespace Metagraph
             var end = 0;
             foreach (string word in begun)
             {
-                end = EndOfWord(letters, alphabet.Letters(word), end);
+                end = EndOfLetters(letters, alphabet.Letters(word), end);
                 if (end < 0) // the text says it otherwise
                 {
                     return (string.Join(" ", begun), begun[begun.Count - 1]);
@@ -125,7 +125,7 @@ namespace Metagraph
         }
 
         /// <summary>Return the place behind a word in a text, from `first` on; -1 where it is not there.</summary>
-        private static int EndOfWord(List<string> letters, List<string> word, int first)
+        private static int EndOfLetters(List<string> letters, List<string> word, int first)
         {
             for (int start = first; start < letters.Count - word.Count + 1; start++)
             {

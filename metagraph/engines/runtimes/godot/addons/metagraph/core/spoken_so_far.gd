@@ -64,7 +64,7 @@ static func _spoken_of(alphabet, piece, seconds):
 		return [piece.text if silent else "", ""]
 	var end = 0
 	for word in begun:
-		end = _end_of_word(letters, alphabet.letters(word), end)
+		end = _end_of_letters(letters, alphabet.letters(word), end)
 		if end < 0:  # the text says it otherwise
 			return [Util.joined(begun, " "), begun[-1]]
 	var stop = end
@@ -85,7 +85,7 @@ static func _parts(alphabet, letter):
 
 
 # Return the place behind a word in a text, from `first` on; -1 where it is not there.
-static func _end_of_word(letters, word, first):
+static func _end_of_letters(letters, word, first):
 	for start in range(first, letters.size() - word.size() + 1):
 		var are_all = true
 		for n in range(word.size()):
