@@ -55,7 +55,7 @@ class AuthoredFile:
         found = lock.acquire()
         if found is not None:
             error = make_locked_error(self.path, found)
-            remedy = f"{error.remedy} Or choose 'Edit > Let agents edit' in its window, and connect again."
+            remedy = f"{error.remedy} Or choose 'File > Let agents edit' in its window, and connect again."
             raise FileError(self.path, error.cause, "", remedy)
         try:
             self._refresh()

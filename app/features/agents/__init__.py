@@ -104,9 +104,9 @@ class AgentsButton(QToolButton):
 COMMANDS = (
     Command(
         "agents",
-        "&Edit",
-        "history",
-        tr_noop("Let &agents edit"),
+        "&File",
+        "kept",
+        tr_noop("Let a&gents edit"),
         AgentsFeature.switch,
         tip=tr_noop("Let programs on this computer edit this project, step by step, while you watch"),
         enabled=AgentsFeature.can_open,

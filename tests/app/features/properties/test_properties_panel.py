@@ -5,16 +5,24 @@ from __future__ import annotations
 import sys
 from types import ModuleType
 
+import pytest
+
 from app.features.properties.properties_panel import PLOTS, PropertiesPanel
 from app.project.document import Document
 from app.stage.session import StageSession
 from metagraph.graph import edits
 
 
-def test_an_edit_while_the_plots_are_imported_does_not_wait_for_them(qtbot, monkeypatch, toy):
-    asked = []
+@pytest.fixture
+def document(qapp, toy):
     document = Document()
     document.load(toy.project(), None)
+    yield document
+    document.deleteLater()  # or it would keep its journal where the next test keeps its own
+
+
+def test_an_edit_while_the_plots_are_imported_does_not_wait_for_them(qtbot, monkeypatch, toy, document):
+    asked = []
     session = StageSession(document)
     monkeypatch.delitem(sys.modules, PLOTS, raising=False)
     panel = PropertiesPanel(document, session, lambda modules, go_on: asked.append(go_on), lambda page: None)
