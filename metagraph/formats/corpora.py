@@ -59,7 +59,6 @@ RATES = (
 CAPTURED = (30.0, 60.0, 120.0)  # at which most corpora are: these need not fit as closely
 UNEVEN = 3.0  # seconds by which motion and sound may differ in length without a word
 _WORDS = [s.lower() for s in TRANSCRIPT_SUFFIXES]  # of several, the first counts
-UNREAD = {".c3d": "markers", ".trc": "markers"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +116,8 @@ def read_corpus(
     if not clips:
         raise FileError(
             folder,
-            f"it holds no motion that can be read{_unread(folder)}",
-            remedy="Give BVH, FBX, glTF or SMPL's .npz.",
+            "it holds no motion that can be read",
+            remedy="Give BVH, FBX, glTF, SMPL's .npz, or markers (.trc, .c3d).",
         )
     layout = _layout(clips) if layout is None else layout
     found = _grouped(folder, clips, layout)
@@ -223,13 +222,6 @@ def _grouped(folder: Path, clips: Sequence[Path], layout: Layout) -> dict[str, _
 
 def _hidden(path: Path, folder: Path) -> bool:
     return any(part.startswith(".") for part in path.relative_to(folder).parts)
-
-
-def _unread(folder: Path) -> str:
-    for suffix, words in UNREAD.items():
-        if any(folder.rglob(f"*{suffix}")):
-            return f"; it has {words} ({suffix}), which are not read: convert them to BVH"
-    return ""
 
 
 # --- one conversation
