@@ -12,7 +12,7 @@ from pathlib import Path
 from metagraph.common.wording import phrase
 from metagraph.formats.face_exports import is_face_json, is_face_table
 from metagraph.formats.live_link_face import is_live_link
-from metagraph.formats.markers.marker_take import is_c3d, is_trc
+from metagraph.formats.markers.marker_reading import is_c3d, is_trc
 from metagraph.motion.clip import Clip
 
 HEAD = 4096  # bytes that show what a file is

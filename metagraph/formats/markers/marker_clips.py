@@ -13,7 +13,8 @@ from metagraph.common.files import guard_reader
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.markers.joint_centres import find_joint_centres
-from metagraph.formats.markers.marker_take import AGAIN, read_markers
+from metagraph.formats.markers.marker_reading import read_markers
+from metagraph.formats.markers.marker_take import AGAIN
 from metagraph.mimicry.keypoint_layouts import PLACE, KeypointTrack
 from metagraph.mimicry.keypoint_take import KeypointTakeError, make_clip_from_keypoints
 from metagraph.motion import rotation

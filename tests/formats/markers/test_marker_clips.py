@@ -13,7 +13,7 @@ from metagraph.errors import FileError
 from metagraph.formats.clips import read_clips
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.formats.markers.marker_clips import measure_skeleton, read_marker_clip, read_marker_track
-from metagraph.formats.markers.marker_take import read_markers
+from metagraph.formats.markers.marker_reading import read_markers
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles

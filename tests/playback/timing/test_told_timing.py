@@ -16,6 +16,7 @@ from metagraph.graph.face.names import VISEMES
 from metagraph.graph.model import Project
 from metagraph.playback.life.line_timing import ARKIT, AZURE, OCULUS, POLLY, SETS
 from metagraph.playback.life.lips import compute_mouth_shapes
+from metagraph.playback.life.utterances import VOICE
 from metagraph.playback.life.voice import choose_voice
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import RunningPlan, plan_performance
@@ -225,7 +226,7 @@ def test_a_line_that_is_over_is_said_anew_under_its_id(sample: Project) -> None:
     again = [["please", 0.0, 0.4], ["open", 0.5, 0.8], ["both", 0.9, 4.0]]
     running.hear(5.0, [a.make_request({"do": "say", "id": "s", "words": again})])
     last = running.plan.track.last_speech("s")
-    assert last is not None and last.start == pytest.approx(5.0 + sample.settings.lookahead)
+    assert last is not None and last.start == pytest.approx(5.0 + VOICE)
     assert last.text == "please open both"
     assert shown(running.plan, last.start + np.linspace(0.9, 3.9, 50)).sum(1).max() > 0.7
 
@@ -286,7 +287,7 @@ def test_another_line_is_another_line(sample: Project) -> None:
     running.hear(1.0, [a.make_request({"do": "say", "id": "s", "words": [["one", 0.1, 4.0]]})])
     running.hear(2.0, [a.make_request({"do": "say", "id": "t", "words": [["two", 0.1, 0.4]]})])
     first, second = running.plan.track.speeches
-    assert first.end == second.start == pytest.approx(2.0 + sample.settings.lookahead)
+    assert first.end == second.start == pytest.approx(2.0 + VOICE)
 
 
 def test_a_line_that_is_added_to_may_be_taken_back(sample: Project) -> None:
