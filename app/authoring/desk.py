@@ -182,7 +182,8 @@ class AuthorDesk:
             which, move = moves[name]
             there = len(self.authored.list_steps()[which])
             if there < fields.steps:
-                raise AuthorError(f"steps: there are {there} to {name}, not {fields.steps}")
+                many = f"steps: there are {there} to {name}, not {fields.steps}"
+                raise AuthorError(many if there else f"there is nothing to {name}")
             for _ in range(fields.steps):
                 move()
         done, undone = self.authored.list_steps()

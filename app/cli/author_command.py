@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
     line = AuthorLine(AuthorDesk(authored))
     line.start()
     print(
-        f"{path.name} can be edited by the Model Context Protocol on standard input. Stop with Ctrl+C.",
+        f"{path.name} can be edited: send the Model Context Protocol to standard input. Stop with Ctrl+C.",
         file=sys.stderr,
         flush=True,
     )

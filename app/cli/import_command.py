@@ -26,8 +26,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         "paths",
         type=Path,
         nargs="*",
-        help="clip files and folders (BVH, GLB, glTF, VRM animation, FBX), and other projects, whose "
-        "stances and actions come with their clips",
+        help="clip files and folders (BVH, GLB, glTF, VRM animation, FBX, C3D, TRC, AMC, SMPL .npz, faces as "
+        "CSV or JSON), and other projects, whose stances and actions come with their clips",
     )
     parser.add_argument(
         "--labels",

@@ -50,7 +50,8 @@ def run(options: Namespace) -> int:
             ],
             "roles": {role: joints[j] for role, j in roles.items()},
         }
-        lines = [f"{path.name}: {len(clips)} clips on {len(joints)} joints, {data['height']} m tall"]
+        many = "1 clip" if len(clips) == 1 else f"{len(clips)} clips"
+        lines = [f"{path.name}: {many} on {len(joints)} joints, which reach {data['height']} m high"]
         lines += [f"  {c.name:40} {c.duration:7.2f} s  {c.frames:5} frames at {c.fps:g} fps" for c in clips]
         say(options, "\n".join(lines), data)
         return 0

@@ -81,8 +81,8 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
     "render": (
         "render_command",
         True,
-        "draw a performance, or one clip: a contact sheet (.png), a video (.mp4), or plain motion (.glb, "
-        ".bvh)",
+        "draw a performance, or one clip: a contact sheet (.png), a video (.mp4), or motion (.glb, .usda, "
+        ".npz, .bvh)",
     ),
     "annotate": (
         "annotate_command",

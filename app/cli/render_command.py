@@ -157,10 +157,17 @@ def run(options: Namespace) -> int:
             "pictures can be written as .png, videos as .mp4, motion as .glb, .usda, .bvh or .npz, not as "
             f"'{name}'"
         )
+    if options.out.suffix != ".bvh" and (options.bvh_order != "ZXY" or options.bvh_metres):
+        raise ValueError("--bvh-order and --bvh-metres are for .bvh files")
     size, folder = read_size(options.size), options.project.resolve().parent
     clip = None
     if options.clip is not None:
-        clip = next((e.id for e in project.clips.values() if options.clip in (e.name, e.id)), None)
+        found = [e.id for e in project.clips.values() if options.clip in (e.name, e.id)]
+        if len(found) > 1:
+            raise ValueError(
+                f"{len(found)} clips are called '{options.clip}'; say which by its id: {', '.join(found)}"
+            )
+        clip = next(iter(found), None)
         if clip is None or project.clips[clip].motion is None:
             raise ValueError(f"there is no clip '{options.clip}' in the project")
         options.start, options.seconds = 0.0, project.clips[clip].duration

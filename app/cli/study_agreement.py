@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from dataclasses import asdict
@@ -47,7 +48,7 @@ def compare(options: Namespace) -> int:
     """Print the agreement of each pair of tiers."""
     from app.cli.command_output import say
     from metagraph.formats.elan import read_elan
-    from metagraph.research.agreement import match_tiers, measure_agreement
+    from metagraph.research.agreement import list_unpaired, match_tiers, measure_agreement
 
     chosen = []
     for words in options.tiers:
@@ -57,7 +58,12 @@ def compare(options: Namespace) -> int:
         chosen.append((first, second))
     one = read_elan(options.one)
     other = read_elan(options.other) if options.other is not None else None
-    found = [measure_agreement(a, b, options.tolerance) for a, b in match_tiers(one, other, chosen)]
+    pairs = match_tiers(one, other, chosen)
+    found = [measure_agreement(a, b, options.tolerance) for a, b in pairs]
+    left = [] if chosen else list_unpaired(one, other, pairs)
+    if left:
+        names = ", ".join(f"'{name}'" for name in left)
+        print(f"note: not compared, since no other tier has that name: {names}", file=sys.stderr)
     rows = [
         {
             **asdict(x),
@@ -65,7 +71,11 @@ def compare(options: Namespace) -> int:
         }
         for x in found
     ]
-    say(options, "\n".join(line for x in found for line in _lines(x, options.tolerance)), {"tiers": rows})
+    say(
+        options,
+        "\n".join(line for x in found for line in _lines(x, options.tolerance)),
+        {"tiers": rows, "unpaired": left},
+    )
     return 0
 
 
@@ -78,7 +88,9 @@ def _lines(found: Agreement, tolerance: float) -> list[str]:
         "annotations",
     ]
     if found.matched:
-        of = "" if found.labels_kappa is None else f" (kappa {found.labels_kappa:.2f})"
+        of = " (no kappa: chance alone gives this)"
+        if found.labels_kappa is not None:
+            of = f" (kappa {found.labels_kappa:.2f})"
         out[-1] += f"; {found.labels_same:.0%} with the same label{of}"
         out.append(f"  the second starts {found.starts:+.2f} s and ends {found.ends:+.2f} s later, medians")
     wrong = [(a, b, s) for (a, b), s in found.confusion.items() if a != b][:SHOWN]

@@ -1,7 +1,8 @@
 """Write motion as SMPL-H parameters in the way of AMASS, for programs that learn from them or show them.
 
 The motion is retargeted to the figure that `smpl` reads such files on. `trans` is where the hips are, less
-where that figure has them at rest; Z is up, as in AMASS. No model's file is needed, and none is written.
+where the models have them at rest: 0.22 m below their origin. Z is up, as in AMASS. No model's file is
+needed, and none is written.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from metagraph.motion.retarget import retarget
 Array = NDArray[Any]
 
 JOINTS = 52  # of SMPL-H: 22 of the body, 15 of each hand
+_PELVIS = np.array([0.0, -0.22, 0.03])  # of the models' neutral body at rest, metres, about
 _Z_UP = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])  # a quarter turn about X: Y to Z
 
 
@@ -37,12 +39,11 @@ def write_smpl(clip: Clip, path: str | Path) -> None:
     local = motion.poses().rotations.astype(float)
     turns = np.broadcast_to(_Z_UP, (len(local), 4))
     local[:, 0] = rotation.multiply(turns, local[:, 0])
-    places = motion.root.astype(float) - figure.rest_translations[0]
     out = io.BytesIO()
     np.savez_compressed(
         out,
         poses=_to_vectors(local).reshape(len(local), 3 * JOINTS),
-        trans=rotation.rotate_vectors(turns, places),
+        trans=rotation.rotate_vectors(turns, motion.root.astype(float)) - _PELVIS,
         mocap_framerate=np.array(clip.fps),
         gender=np.array("neutral"),
         betas=np.zeros(16),

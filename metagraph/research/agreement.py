@@ -100,6 +100,15 @@ def match_tiers(
     return pairs
 
 
+def list_unpaired(
+    one: Annotation, other: Annotation | None, pairs: Sequence[tuple[AnnotationTier, AnnotationTier]]
+) -> list[str]:
+    """Return the names of tiers with annotations that are in none of the pairs."""
+    used = {id(tier) for pair in pairs for tier in pair}
+    every = (*one.tiers, *(other.tiers if other is not None else ()))
+    return [tier.name for tier in every if tier.intervals and id(tier) not in used]
+
+
 def _named(annotation: Annotation, name: str) -> AnnotationTier:
     for tier in annotation.tiers:
         if tier.name == name:

@@ -22,8 +22,7 @@ def test_what_is_written_is_read_back_with_limbs_that_point_as_they_did(tmp_path
         assert found["poses"].shape == (clip.frames, 156) and found["trans"].shape == (clip.frames, 3)
         assert float(found["mocap_framerate"]) == clip.fps and str(found["gender"]) == "neutral"
         assert np.abs(found["poses"]).max() <= np.pi + 1e-6
-        up = np.ptp(found["trans"], axis=0)
-        assert np.isfinite(up).all()
+        assert 0.7 < found["trans"][:, 2].mean() < 1.1, "Z is up, and the hips are as high as a leg is long"
     back = read_clips(path)[0]
     assert back.frames == clip.frames and back.skeleton == make_smpl_figure(52)
     assert any("Z is up" in note for note in back.notes)

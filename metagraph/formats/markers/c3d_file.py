@@ -41,10 +41,8 @@ def read_c3d(path: str | Path) -> MarkerTake:
             found = [points[:, :4] for _, points, _ in reader.read_frames(analog_transform=False)]
     except FileError:
         raise
-    except Exception as error:  # the package checks little, and fails in many ways
-        raise FileError(
-            path, phrase("it is not a whole C3D file ({said})", said=str(error)[:80]), "", AGAIN
-        ) from None
+    except Exception:  # the package checks little, and fails in many ways
+        raise FileError(path, phrase("it is not a whole C3D file"), "", AGAIN) from None
     metres = find_metres(path, unit)
     table = np.array(found, float).reshape(len(found), count, 4)
     places = table[..., :3] * metres

@@ -47,7 +47,7 @@ def find_metres(path: Path, unit: str) -> float:
         raise FileError(
             path,
             phrase("its unit is '{unit}'", unit=unit[:20]),
-            phrase("in its head"),
+            phrase("in its header"),
             phrase("Export it in millimetres or metres."),
         )
     return METRES[word]

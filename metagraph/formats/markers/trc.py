@@ -23,7 +23,7 @@ def read_trc(path: str | Path) -> MarkerTake:
     path = Path(path)
     lines = read_file(path, KEYPOINTS_FILE).decode("utf-8-sig", "replace").splitlines()
     if len(lines) < 5:
-        raise FileError(path, phrase("it ends in its head"), "", AGAIN)
+        raise FileError(path, phrase("it ends in its header"), "", AGAIN)
     head = dict(zip(_cells(lines[1]), _cells(lines[2]), strict=False))
     rate = check_rate(path, _number(head.get("DataRate", "")))
     metres = find_metres(path, head.get("Units", "mm"))
