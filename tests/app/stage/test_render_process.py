@@ -93,4 +93,5 @@ def test_a_cancelled_job_leaves_nothing(qapp, talk, tmp_path):
     job = WindowJob("x", lambda job: None)
     job.cancel()
     write_rendering(project, ROOT / "sample_clips", RenderOrder(tmp_path / "a.mp4", ident, 60.0), job)
-    assert list(tmp_path.iterdir()) == []
+    # data is where the program keeps its own: a window of an earlier test may make it while this one waits.
+    assert {p.name for p in tmp_path.iterdir()} <= {"data"}
