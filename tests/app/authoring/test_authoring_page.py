@@ -12,6 +12,7 @@ from app.authoring.project_file import AuthoredFile
 from app.authoring.tool import make_plain
 from app.cli.parser import _parser
 from metagraph.engines.verifying_exports import verify
+from metagraph.live.mcp_protocol import MODERN
 
 PAGE = (Path(__file__).parents[3] / "docs" / "agents" / "authoring.md").read_text(encoding="utf-8")
 
@@ -24,7 +25,8 @@ def test_the_table_has_each_tool_once() -> None:
 
 
 def test_the_servers_line_is_a_command_line() -> None:
-    (client,) = re.findall(r"^```json\n(.*?)\n```$", PAGE, re.S | re.M)
+    client, message = re.findall(r"^```json\n(.*?)\n```$", PAGE, re.S | re.M)
+    assert json.loads(message)["params"]["_meta"]["io.modelcontextprotocol/protocolVersion"] == MODERN[0]
     (command,) = json.loads(client)["mcpServers"].values()
     options = _parser("author").parse_args(command["args"])
     assert options.project == Path("my.metagraph.yaml") and options.folder == [Path("clips")]

@@ -52,7 +52,7 @@ def test_undo_and_redo_are_saved_and_a_new_edit_forgets_what_was_undone(call, pr
     assert read_with_digest(project_path)[0].graphs == before.graphs
     call("edit_action", actions=[action["id"]], likelihood=5.0)
     assert call("history")["undone"] == []
-    with pytest.raises(AuthorError, match="there are 0 to redo"):
+    with pytest.raises(AuthorError, match="there is nothing to redo"):
         call("redo")
     with pytest.raises(AuthorError, match="there are 1 to undo, not 3"):
         call("undo", steps=3)

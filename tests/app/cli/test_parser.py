@@ -278,7 +278,7 @@ def test_info_tells_of_a_clip_a_project_and_an_export(
     small: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["info", str(small.parent / "clips" / "wave.glb")]) == 0
-    assert "1 clips on 4 joints" in capsys.readouterr().out
+    assert "1 clip on 4 joints" in capsys.readouterr().out
     assert main(["info", str(small.parent / "clips" / "wave.glb"), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["clips"][0]["frames"] == 31
     assert main(["info", str(small)]) == 0
