@@ -48,7 +48,7 @@ def _find(known: Mapping[str, str], name: str, kind: str, lister: str) -> str:
         return same[0]
     if same:
         raise AuthorError(f"{len(same)} {kind}s are called '{name}'; say which by its id: {_few(same)}")
-    near = get_close_matches(name, known.values(), 3)
+    near = get_close_matches(name, dict.fromkeys(known.values()), 3)
     hint = (
         f"did you mean {_few([repr(x) for x in near])}?" if near else f"{lister} names those that there are"
     )

@@ -26,7 +26,7 @@ from metagraph.playback.planning.hearing import makers
 from metagraph.speech.spoken_so_far import spoken_until
 
 FORGOTTEN = 60.0  # seconds of silence after which nothing more is awaited of what was promised to go on
-INTERRUPTED = "the partner interrupts"
+INTERRUPTED = "it was interrupted by a request"
 SteeringRequest = a.Interrupt | a.Pause | a.Resume | a.Finish
 
 
@@ -81,7 +81,7 @@ class Steering:
             return self._interrupt(known, ident, ask, keys, plan, now, work)
         if isinstance(ask, a.Finish):
             keys = [key for key in keys if self.is_open(plan, key, work)]
-            return self._turn(known, ident, ask, keys, now, work, "nothing goes on there")
+            return self._turn(known, ident, ask, keys, now, work, "nothing said there is still open")
         held = {key for key in keys if self._is_held(plan, key, work)}
         if isinstance(ask, a.Resume):
             keys = [key for key in keys if key in held]

@@ -7,12 +7,13 @@ import io
 import os
 import pickle
 import threading
+import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,13 +28,16 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.posing.contacts import measure_contact_depths
 from metagraph.playback.posing.rigs import get_rigs
 
+if TYPE_CHECKING:
+    from metagraph.common.child_channel import Child
+
 Array = NDArray[Any]
 
 CHUNK = 600  # poses measured at once
 PARTS = ("left_hand", "right_hand", "head", "hips", "left_foot", "right_foot")
 ADDED = (WEIGHT, LIFE, CONTACTS)  # stages whose own moves are measured
 LEVEL = 0.6  # of a thigh's length: its ends differ less in height where somebody sits
-# Chunks from which other processes save time: each takes a second or two to start, and a chunk as long.
+# From so many chunks on, other processes save time: one starts in a second or two, and a chunk takes as long.
 WORTH, MOST = 10, 5
 PATIENCE = 2.0  # seconds for a process to end by itself
 
@@ -61,11 +65,8 @@ class PoseWatcher:
     def __init__(self, project: Project, plan: Plan) -> None:
         skeleton = project.skeleton
         assert skeleton is not None
-        self._skeleton, self._evaluator, self._law = (
-            skeleton,
-            Evaluator(plan, project),
-            ContinuityLaw(project),
-        )
+        self._skeleton = skeleton
+        self._evaluator, self._law = Evaluator(plan, project), ContinuityLaw(project)
         roles = anatomy.project_roles(project)
         self._parts = tuple(part for part in PARTS if part in roles)
         self._joints = [roles[part] for part in self._parts]
@@ -142,8 +143,26 @@ class _Work:
         self._helpers: list[threading.Thread] = []
         self._watchers: dict[int, PoseWatcher] = {}
 
-    def helped(self, processes: int) -> _Helpers:
-        return _Helpers(self, processes)
+    @contextmanager
+    def helped(self, processes: int) -> Iterator[None]:
+        """Let so many processes work beside this one while the block lasts."""
+        from metagraph.common.child_channel import Child
+
+        children: list[Child] = []
+        try:
+            begin = _dump((self._project, self._plans)) if processes else b""
+            with suppress(OSError):  # where no process can be started, this one does it all
+                for _ in range(processes):
+                    children.append(Child("metagraph.playback.watching_child"))
+                    helper = threading.Thread(target=self._help, args=(children[-1], begin), daemon=True)
+                    self._helpers.append(helper)
+                    helper.start()
+            yield
+        finally:
+            for child in children:
+                child.close(PATIENCE)
+            for helper in self._helpers:
+                helper.join()
 
     def run(self, step: Callable[[], bool]) -> None:
         """Measure what nobody else does, until all is done or `step` returns True."""
@@ -154,7 +173,7 @@ class _Work:
             except IndexError:
                 if not any(helper.is_alive() for helper in self._helpers):
                     continue  # one may have put its piece back, as its process ended
-                threading.Event().wait(0.01)
+                time.sleep(0.01)
             else:
                 plan, times = self._pieces[piece]
                 if plan not in self._watchers:
@@ -166,7 +185,7 @@ class _Work:
                     self._todo.clear()
                     return
 
-    def help(self, child: Any, begin: bytes) -> None:
+    def _help(self, child: Child, begin: bytes) -> None:
         """Give a process one piece after the other; a piece that it does not return is done by others."""
         piece = None
         with suppress(OSError, EOFError):
@@ -191,34 +210,6 @@ class _Work:
                 break
             out.append(_join_poses([self._found[piece] for piece in own]))
         return out
-
-
-class _Helpers:
-    """Processes that work beside this one while the block lasts."""
-
-    def __init__(self, work: _Work, count: int) -> None:
-        self._work, self._count = work, count
-        self._children: list[Any] = []
-
-    def __enter__(self) -> None:
-        if self._count <= 0:
-            return
-        from metagraph.common.child_channel import Child
-
-        begin = _dump((self._work._project, self._work._plans))
-        with suppress(OSError):  # where no process can be started, this one does it all
-            for _ in range(self._count):
-                child = Child("metagraph.playback.watching_child")
-                self._children.append(child)
-                thread = threading.Thread(target=self._work.help, args=(child, begin), daemon=True)
-                self._work._helpers.append(thread)
-                thread.start()
-
-    def __exit__(self, *_: object) -> None:
-        for child in self._children:
-            child.close(PATIENCE)
-        for helper in self._work._helpers:
-            helper.join()
 
 
 def make_read_only(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
