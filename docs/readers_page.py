@@ -11,7 +11,8 @@ sys.path.insert(0, str(ROOT))
 PAGE = ROOT / "docs" / "reference" / "readers.md"
 HEAD = """# What is read from which tool
 
-After this page you know which transcripts and which mouth shapes Metagraph reads, and what of them.
+After this page you know which transcripts, mouth shapes, clips and keypoints Metagraph reads, and what of
+them.
 
 What a file is, its content says; its ending may differ. What was inferred, as a unit of time or a speaker, is
 reported. A file that is of none of these kinds is refused, with what was expected.
@@ -22,13 +23,24 @@ UNITS = """
 Where a file does not name its unit of time, the length of the sound tells it: seconds, hundredths,
 milliseconds, microseconds, nanoseconds, or ticks of 100 nanoseconds.
 """
+CLIPS = """
+[Bring your clips](../animators/bring-clips.md) says what the import repairs. [Following a
+camera](../agents/camera.md) says how keypoints become stances or a take; TRC and C3D are read there too.
+"""
 
 
 def page() -> str:
     """Return the page."""
+    from metagraph.formats.clip_readers import READERS
+    from metagraph.formats.keypoints.reader import KEYPOINT_TOOLS
     from metagraph.formats.transcripts.registry import TRANSCRIPT_READERS
     from metagraph.speech.mouth_files.registry import MOUTH_READERS
 
+    clips = (
+        (t.name, t.versions, t.holds, t.endings or reader.suffixes, t.by_tool)
+        for reader in READERS
+        for t in reader.tools
+    )
     parts = [
         HEAD,
         table(
@@ -36,6 +48,9 @@ def page() -> str:
         ),
         UNITS,
         table("Mouth shapes", ((r.name, r.versions, r.holds, r.endings, r.by_tool) for r in MOUTH_READERS)),
+        table("Clips: motion, bodies and faces", clips),
+        CLIPS,
+        table("Keypoints", ((t.name, t.versions, t.holds, (".json",), t.by_tool) for t in KEYPOINT_TOOLS)),
     ]
     return "\n".join(parts)
 

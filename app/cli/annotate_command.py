@@ -55,6 +55,12 @@ def add_arguments(parser: ArgumentParser) -> None:
         help='set the meaning of a label: gesture, fidget, transition, ignore ..., then tags ("gesture '
         'positive")',
     )
+    parser.add_argument(
+        "--annotator",
+        metavar="NAME",
+        help="if several annotators marked the same, read this one's tiers (default: the one with most "
+        "annotations)",
+    )
     meaning = parser.add_mutually_exclusive_group()
     meaning.add_argument(
         "--states", action="store_true", help="model positive and negative gestures as separate states"
@@ -147,6 +153,13 @@ def _reading(
                 f"the role of a tier is one of {', '.join((*ROLES, *SPEECH, IGNORE))}, not '{role}'"
             )
     found = begin_reading(annotation, roles, tiers, labels=(labels,))
+    if options.annotator is not None and options.annotator not in found.annotators[:1]:
+        if options.annotator not in found.annotators:
+            there = ", ".join(repr(x) for x in found.annotators) or "no two annotators of the same"
+            raise ValueError(
+                f"--annotator: '{options.annotator}' annotated nothing that is read; there are {there}"
+            )
+        found = found.with_annotator(options.annotator)
     here = [x for label in found.labels for x in (label.text, label.key)]
     said = _said(options.label, "--label", "nod=gesture positive", here, label_of)
     for meaning in said.values():

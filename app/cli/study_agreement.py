@@ -34,7 +34,7 @@ def add_arguments(action: Action) -> None:
         default=[],
         metavar="A=B",
         help="compare these two tiers; repeat for more (default: tiers with one name in both files; in one "
-        "file, tiers whose names differ only behind @ or the last _)",
+        "file, tiers whose names differ only in who annotated, or behind @ or the last _)",
     )
     made.add_argument(
         "--tolerance",

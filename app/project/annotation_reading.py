@@ -8,11 +8,22 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from app.look.plural import list_in_words
 from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.learning.annotation import SPEECH, Annotation, Label, guess_roles, list_labels
+from metagraph.playback.learning.annotation import (
+    SPEECH,
+    AnnotatedAgain,
+    Annotation,
+    Label,
+    find_annotated_again,
+    guess_roles,
+    list_labels,
+    read_other_annotator,
+    split_tier_names,
+)
 from metagraph.playback.learning.learn import Act, as_performance, find_act_sequences, learn_model
 from metagraph.playback.planning.markov import DEFAULTS
 from metagraph.playback.planning.mode_shares import with_modes
@@ -60,6 +71,26 @@ class AnnotationReading:
             for role in SPEECH
         )
         return own, partner
+
+    @cached_property
+    def again(self) -> list[AnnotatedAgain]:
+        """Return the tiers of other annotators that are left out for those that are read."""
+        return find_annotated_again(self.annotation, self.roles)
+
+    @property
+    def annotators(self) -> list[str]:
+        """Return who annotated what is read, then who annotated the same again; "" is someone without a name.
+        Empty if nobody did so again.
+        """
+        if not self.again:
+            return []
+        names = split_tier_names(self.annotation)
+        read = [names[one.read].annotator for one in self.again]
+        return list(dict.fromkeys((*read, *(one.annotator for one in self.again))))
+
+    def with_annotator(self, name: str) -> AnnotationReading:
+        """Read the tiers of an annotator instead of others'. Raises ValueError if there is none to read."""
+        return replace(self, roles=read_other_annotator(self.annotation, self.roles, name))
 
     def with_role(self, tier: str, role: str) -> AnnotationReading:
         return replace(self, roles={**self.roles, tier: role})
@@ -151,6 +182,16 @@ def remember_reading(project: Project, reading: AnnotationReading) -> Project:
 def describe_doubts(reading: AnnotationReading) -> list[str]:
     """Return in words what is doubtful about a reading."""
     out = list(reading.annotation.notes)
+    if reading.again:
+        first = reading.annotators[0]
+        out.append(
+            tr(
+                "Several annotators: {read} is read. Not read: {tiers}. You can choose another annotator, or "
+                "measure their agreement with 'metagraph study agreement'.",
+                read=first or tr("the first"),
+                tiers=list_in_words([one.tier for one in reading.again]),
+            )
+        )
     if not reading.observed:
         out.append(tr("No tier is read as arms, head or body yet. Choose what each tier stands for."))
     for layer, acts in reading.observed.items():

@@ -16,6 +16,26 @@ from metagraph.formats.markers.marker_reading import is_c3d, is_trc
 from metagraph.motion.clip import Clip
 
 HEAD = 4096  # bytes that show what a file is
+_MOTION = "skeleton and motion"
+_FACED = "skeleton, motion and blend shapes"
+_GLTF = (".glb", ".gltf")
+_MARKERS = "joint centres between the markers of the usual sets, and motion from them"
+
+
+@dataclass(frozen=True)
+class KnownTool:
+    """A program whose files are read, as the manual's table shows it (`docs/readers_page.py`).
+
+    versions: which of it, or how it names them. holds: what is read. by_tool: whether this was checked with a
+    file that the tool itself made; else with one that follows its published description. endings: of its
+    files, if they are not all of the reader's.
+    """
+
+    name: str
+    versions: str
+    holds: str
+    by_tool: bool = False
+    endings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -24,13 +44,15 @@ class ClipReader:
 
     `name` says for people what such a file is. `suffixes` are in lower case. `begins` returns whether the
     first bytes are of this kind; it gets them as they are, and without what may precede text. `read` returns
-    the takes of a file; its second argument are repairs (`takes.REPAIRS`) not to make.
+    the takes of a file; its second argument are repairs (`takes.REPAIRS`) not to make. `tools` write such
+    files.
     """
 
     name: str
     suffixes: tuple[str, ...]
     begins: Callable[[bytes, bytes], bool]
     read: Callable[[Path, Collection[str]], list[Clip]]
+    tools: tuple[KnownTool, ...] = ()
 
 
 def _read_bvh(path: Path, as_is: Collection[str]) -> list[Clip]:
@@ -88,22 +110,45 @@ def _is_fbx(head: bytes, text: bytes) -> bool:
 
 
 LIVE_LINK = ClipReader(
-    phrase("a recording of Live Link Face"), (".csv",), lambda head, text: is_live_link(head), _read_live_link
+    phrase("a recording of Live Link Face"),
+    (".csv",),
+    lambda head, text: is_live_link(head),
+    _read_live_link,
+    (KnownTool("Live Link Face", "CSV, commas or semicolons", "52 face curves, head and eyes"),),
 )
 FACE_TABLE = ClipReader(
-    phrase("a face of Audio2Face"), (".csv",), lambda head, text: is_face_table(head), _read_face_export
+    phrase("a face of Audio2Face"),
+    (".csv",),
+    lambda head, text: is_face_table(head),
+    _read_face_export,
+    (KnownTool("NVIDIA Audio2Face-3D", "CSV", "52 face curves"),),
 )
 FACE_JSON = ClipReader(
     phrase("a face of Audio2Face or Azure"),
     (".json",),
     lambda head, text: is_face_json(head),
     _read_face_export,
+    (
+        KnownTool("NVIDIA Audio2Face", "JSON", "52 face curves"),
+        KnownTool(
+            "Azure Speech", "JSON of its blend shape events", "52 face curves; no turns of head or eyes"
+        ),
+    ),
 )
 FACE_READERS = (LIVE_LINK, FACE_TABLE, FACE_JSON)
 # The first reader that recognises the beginning of a file reads it.
 READERS = [
     ClipReader(
-        phrase("a BVH file"), (".bvh",), lambda head, text: text[:9].upper() == b"HIERARCHY", _read_bvh
+        phrase("a BVH file"),
+        (".bvh",),
+        lambda head, text: text[:9].upper() == b"HIERARCHY",
+        _read_bvh,
+        (
+            KnownTool("Any", "any order of channels, centimetres, metres or inches", _MOTION, True),
+            KnownTool("Xsens MVN", "positions of all joints, YXZ", _MOTION),
+            KnownTool("Perception Neuron (Axis)", "positions of all joints, YXZ, or none", _MOTION),
+            KnownTool("Rokoko Studio", "positions relative to OFFSET", _MOTION),
+        ),
     ),
     FACE_JSON,
     ClipReader(
@@ -111,8 +156,25 @@ READERS = [
         (".glb", ".gltf", ".vrm", ".vrma"),
         lambda head, text: head.startswith(b"glTF") or text.startswith(b"{"),
         _read_gltf,
+        (
+            KnownTool("Any", "2.0; quantized, meshopt or KHR_animation_pointer too", _FACED, True, _GLTF),
+            KnownTool(
+                "Blender, Cascadeur",
+                "slotted actions: a body's and a face's animation",
+                "both as one take if they are equally long",
+                endings=_GLTF,
+            ),
+            KnownTool("VRM", "0.x, 1.0", _FACED, endings=(".vrm",)),
+            KnownTool("VRM animation", "1.0", "skeleton, motion, expressions", endings=(".vrma",)),
+        ),
     ),
-    ClipReader(phrase("an FBX file"), (".fbx",), _is_fbx, _read_fbx),
+    ClipReader(
+        phrase("an FBX file"),
+        (".fbx",),
+        _is_fbx,
+        _read_fbx,
+        (KnownTool("Any", "6.x, 7.x, binary or text", f"{_FACED}, at the file's frame rate", True),),
+    ),
     LIVE_LINK,
     FACE_TABLE,
     ClipReader(
@@ -120,15 +182,33 @@ READERS = [
         (".amc",),
         lambda head, text: b":FULLY-SPECIFIED" in head.upper() or text.startswith(b"#!OML:ASF"),
         _read_amc,
+        (KnownTool("Acclaim (CMU)", "AMC, with the ASF beside it", _MOTION),),
     ),
     ClipReader(
         phrase("SMPL parameters (AMASS, BEAT2)"),
         (".npz",),
         lambda head, text: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
         _read_smpl,
+        (
+            KnownTool("AMASS", "SMPL-H, SMPL-X", "motion, on a figure of ours"),
+            KnownTool("BEAT2", "SMPL-X 2020", "motion and the jaw, on a figure of ours; no expressions"),
+            KnownTool("SMPL, SMPL-H, SMPL-X", "`.npz` with poses of 22 to 55 joints", "motion, as above"),
+        ),
     ),
-    ClipReader(phrase("markers (TRC)"), (".trc",), lambda head, text: is_trc(head), _read_markers),
-    ClipReader(phrase("markers (C3D)"), (".c3d",), lambda head, text: is_c3d(head), _read_markers),
+    ClipReader(
+        phrase("markers (TRC)"),
+        (".trc",),
+        lambda head, text: is_trc(head),
+        _read_markers,
+        (KnownTool("OpenSim, OpenCap, Cortex", "TRC", _MARKERS),),
+    ),
+    ClipReader(
+        phrase("markers (C3D)"),
+        (".c3d",),
+        lambda head, text: is_c3d(head),
+        _read_markers,
+        (KnownTool("Vicon, OptiTrack, Qualisys", "C3D", _MARKERS),),
+    ),
 ]
 
 

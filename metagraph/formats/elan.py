@@ -60,6 +60,7 @@ class _Tier:
     name: str
     participant: str
     parent: str
+    annotator: str
     marks: list[_Mark] = field(default_factory=list)
 
 
@@ -203,7 +204,10 @@ class _Reader:
                 remedy=phrase("Rename one of them in ELAN."),
             )
         self.tier = self.tiers[name] = _Tier(
-            name, at.get("PARTICIPANT", "").strip(), at.get("PARENT_REF", "")
+            name,
+            at.get("PARTICIPANT", "").strip(),
+            at.get("PARENT_REF", ""),
+            at.get("ANNOTATOR", "").strip(),
         )
 
     def _mark(self, name: str, at: Mapping[str, str]) -> None:
@@ -308,7 +312,9 @@ def _annotation(reader: _Reader) -> Annotation:
             else:
                 lost[f"tier '{tier.name}'"] += 1
         intervals.sort(key=lambda i: (i.start, i.end))
-        tiers.append(AnnotationTier(tier.name, tuple(intervals), tier.participant, tier.parent))
+        tiers.append(
+            AnnotationTier(tier.name, tuple(intervals), tier.participant, tier.parent, tier.annotator)
+        )
     notes = [
         x
         if "refers" in x

@@ -34,8 +34,13 @@ _H36M = (
     "hips r.hip r.knee r.ankle l.hip l.knee l.ankle spine neck nose head l.shoulder l.elbow l.wrist "
     "r.shoulder r.elbow r.wrist"
 )
+_FACE_AND_HANDS = (
+    *(f"face_{n}" for n in range(68)),
+    *(f"left_hand_{n}" for n in range(21)),
+    *(f"right_hand_{n}" for n in range(21)),
+)
 # Layout -> what each of its points is called. OpenPose writes BODY_25, COCO (18 points) and MPI (15),
-# MediaPipe 33; MMPose also Halpe's 26 (AlphaPose, too) and the 133 of a whole body.
+# MediaPipe 33; AlphaPose also Halpe's 26 and 136, MMPose Halpe's 26 and the 133 of a whole body.
 LAYOUTS: Mapping[str, tuple[str, ...]] = {
     "coco": POINTS,
     "openpose coco": _named(
@@ -52,13 +57,8 @@ LAYOUTS: Mapping[str, tuple[str, ...]] = {
         "l.ankle chest"
     ),
     "halpe": (*POINTS, *_named(_HALPE)),
-    "coco whole body": (
-        *POINTS,
-        *_named(_WHOLE_FEET),
-        *(f"face_{n}" for n in range(68)),
-        *(f"left_hand_{n}" for n in range(21)),
-        *(f"right_hand_{n}" for n in range(21)),
-    ),
+    "halpe whole body": (*POINTS, *_named(_HALPE), *_FACE_AND_HANDS),
+    "coco whole body": (*POINTS, *_named(_WHOLE_FEET), *_FACE_AND_HANDS),
     "mediapipe": _named(
         "nose l.eye_inner l.eye l.eye_outer r.eye_inner r.eye r.eye_outer l.ear r.ear l.mouth r.mouth "
         "l.shoulder r.shoulder"

@@ -14,7 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from metagraph.playback.learning.annotation import Annotation, AnnotationInterval, AnnotationTier, label_of
+from metagraph.playback.learning.annotation import (
+    Annotation,
+    AnnotationInterval,
+    AnnotationTier,
+    label_of,
+    split_tier_names,
+)
 
 NOTHING = ""  # the label of a moment at which nothing is annotated
 TOLERANCE = 0.25  # seconds that starts, and ends, may lie apart
@@ -76,7 +82,8 @@ def match_tiers(
     one: Annotation, other: Annotation | None, chosen: Sequence[tuple[str, str]] = ()
 ) -> list[tuple[AnnotationTier, AnnotationTier]]:
     """Return the tiers to compare: those chosen by name; else, of two files, those with one name, and of one
-    file, those whose names are the same but for what follows an @ or the last _, which names who annotated.
+    file, those that are called the same but for the annotator. If nothing says who annotated, those with the
+    same name before an @ or the last _.
 
     Raises ValueError for a name that is not there, and where nothing can be paired.
     """
@@ -88,8 +95,11 @@ def match_tiers(
         pairs = [(t, theirs[t.name.casefold()]) for t in one.tiers if t.name.casefold() in theirs]
     else:
         groups: dict[str, list[AnnotationTier]] = {}
+        called = split_tier_names(one)
+        told = any(x.annotator and x.stem != name for name, x in called.items())
         for tier in one.tiers:
             base = tier.name.partition("@")[0] if "@" in tier.name else tier.name.rpartition("_")[0]
+            base = called[tier.name].stem if told else base
             if base.strip():
                 groups.setdefault(base.strip().casefold(), []).append(tier)
         pairs = [(some[0], later) for some in groups.values() for later in some[1:]]

@@ -94,6 +94,12 @@ def test_tiers_are_paired_by_name_in_two_files_and_by_annotator_in_one() -> None
         ("Head_1", "Head_2"),
     ]
     assert match_tiers(one, None, [("Head_1", "Arms@Ben")])[0][1].name == "Arms@Ben"
+    raters = Annotation(
+        (tier("LH_form", *rows), tier("LH_phase rater 1", *rows), tier("LH_phase rater 2", *rows))
+    )
+    assert [(a.name, b.name) for a, b in match_tiers(raters, None)] == [
+        ("LH_phase rater 1", "LH_phase rater 2")
+    ]
 
 
 def test_what_cannot_be_compared_is_refused_with_the_names_that_there_are() -> None:

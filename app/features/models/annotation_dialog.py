@@ -13,6 +13,7 @@ from PySide6.QtCore import QSettings, Qt, Signal
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import (
     QCheckBox,
+    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -198,6 +199,7 @@ class AnnotateDialog(QDialog):
         self.facts = QLabel(" · ".join(facts), self, wordWrap=True)
         self.facts.setProperty("dim", True)
         layout.addWidget(self.facts)
+        self._add_annotators(layout)
         tables = QHBoxLayout()
         tables.setSpacing(18)
         self.tiers = self._table(
@@ -245,6 +247,23 @@ class AnnotateDialog(QDialog):
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
         layout.addWidget(self.buttons)
+
+    def _add_annotators(self, layout: QVBoxLayout) -> None:
+        """Offer a choice of who annotated, if several people annotated the same."""
+        names = self.reading.annotators
+        self.annotator = QComboBox(self)
+        self.annotator.setAccessibleName(tr("Annotator"))
+        for name in names:
+            self.annotator.addItem(name or tr("No name"), name)
+        self.annotator.activated.connect(lambda _: self._set_annotator(self.annotator.currentData()))
+        row = QHBoxLayout()
+        label = QLabel(tr("Annotator"), self)
+        label.setBuddy(self.annotator)
+        for widget in (label, self.annotator):
+            widget.setVisible(len(names) > 1)
+            row.addWidget(widget)
+        row.addStretch(1)
+        layout.addLayout(row)
 
     def _table(
         self,
@@ -396,6 +415,12 @@ class AnnotateDialog(QDialog):
         self.reading = self.reading.with_role(tier, role)
         self._show_tiers()
         self._changed()
+
+    def _set_annotator(self, name: str) -> None:
+        if name in (one.annotator for one in self.reading.again):
+            self.reading = self.reading.with_annotator(name)
+            self._show_tiers()
+            self._changed()
 
     def _set_meaning(self, label: Label, meaning: str) -> None:
         if meaning == OTHER:

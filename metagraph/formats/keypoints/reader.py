@@ -6,8 +6,8 @@ object that holds one, or one object a line. A frame is OpenPose's (`people`, ea
 `_3d`) or MediaPipe's (33 landmarks of one person or several, however `worldLandmarks`, `poseLandmarks`,
 `pose_landmarks` ... is spelt), or COCO's (`keypoints`), with MMPose's scores beside them (`instances`,
 `keypoint_scores`). OpenPose's people have `pose_keypoints` before 1.2, `body_parts` in 1.0 and `joints` (of
-`bodies`) before. Points count 15, 17, 18, 25, 26, 33 or 133. Markers of motion capture (TRC, C3D) are read
-by `metagraph.formats.markers`.
+`bodies`) before. Points count 15, 17, 18, 25, 26, 33, 133 or 136. Markers of motion capture (TRC, C3D) are
+read by `metagraph.formats.markers`.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from metagraph.common.budgets import KEYPOINT_FRAMES, KEYPOINT_SECONDS, KEYPOINTS_FILE
 from metagraph.common.files import guard_reader, read_file
 from metagraph.errors import FileError
+from metagraph.formats.clip_readers import KnownTool
 from metagraph.formats.keypoints.frames import (
     REMEDY,
     KeypointFrame,
@@ -52,6 +53,16 @@ Array = NDArray[Any]
 
 FPS = 30.0  # frames a second, if nothing says how many
 PICTURE = (16.0, 9.0)  # what a picture measures, if nothing says it
+# What the manual's table says (`docs/readers_page.py`).
+KEYPOINT_TOOLS = (
+    KnownTool("OpenPose", "1.0 to 1.7: BODY_25, COCO, MPI; a file a frame, or one", "all points, 2D or 3D"),
+    KnownTool("MediaPipe Pose", "33 landmarks, in lists or a frame a line", "landmarks, in space before 2D"),
+    KnownTool("MMPose", "1.x `instance_info`; 17, 26 or 133 points", "all points with their scores"),
+    KnownTool("AlphaPose", "COCO's 17, Halpe's 26 or 136; a list of people", "all points with their scores"),
+    KnownTool("COCO", "17 keypoints", "all points with their visibility"),
+    KnownTool("TensorFlow (PoseNet, MoveNet)", "named keypoints with scores", "17 points"),
+    KnownTool("Human3.6M", "17 points, where a name tells it", "points of the body"),
+)
 _CUT = "Correct them, or cut the recording into pieces."
 _WHOLE = ("frames", "data", "results", "poses", "predictions", "instance_info")
 _FRAME_NAME = re.compile(r"(\d+)(?:_keypoints)?\.json$", re.I)

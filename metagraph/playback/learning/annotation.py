@@ -46,13 +46,14 @@ class AnnotationInterval:
 @dataclass(frozen=True)
 class AnnotationTier:
     """intervals: ascending by start. participant: whose tier it is, "" if the file does not say. parent: the
-    tier it refers to.
+    tier it refers to. annotator: who wrote it, "" if the file does not say.
     """
 
     name: str
     intervals: tuple[AnnotationInterval, ...] = ()
     participant: str = ""
     parent: str = ""
+    annotator: str = ""
 
     @cached_property
     def labels(self) -> Mapping[str, int]:
@@ -160,9 +161,46 @@ _SPOKEN = _set("speech utterance utterances")
 _SIDES = _set("lh rh linkehand rechtehand left right links rechts")  # enough without a word for hand
 
 
-def guess_role(tier: AnnotationTier) -> str:
-    """Return one of `ROLES` or `IGNORE`, from the tier's name or, where it says nothing, from its labels."""
-    words = set(_words(tier.name.partition("@")[0]))
+# Who annotated, at the end of a tier's name: "LH rater 2", "gesture (coder B)", "gesture_annotatorAK".
+_ANNOTATOR = re.compile(
+    r"[\s_.(\[-]+(?:annotator|annot|rater|coder|codeur|kodierer|transcriber)[\s_-]*(\w{1,12})[)\]]?\s*$", re.I
+)
+# The same in short, which counts only where there is another with the same beginning: "LH_R1" and "LH_R2".
+_SHORT = re.compile(r"[\s_.(\[-]+([RAC][\s_-]?\d)[)\]]?\s*$", re.I)
+
+
+@dataclass(frozen=True)
+class TierName:
+    """stem: a tier's name without who annotated it. annotator: who did, "" if nothing says it."""
+
+    stem: str
+    annotator: str
+
+
+def split_tier_names(annotation: Annotation) -> dict[str, TierName]:
+    """Return for each tier, by its name, what it is called and who annotated it: as its file says, else as
+    the end of its name does.
+    """
+    short = {t.name: _SHORT.search(t.name) for t in annotation.tiers}
+    stems = Counter(t.name[: m.start()].casefold() for t in annotation.tiers if (m := short[t.name]))
+    out = {}
+    for tier in annotation.tiers:
+        found = _ANNOTATOR.search(tier.name)
+        brief = short[tier.name]
+        if found is None and brief is not None and stems[tier.name[: brief.start()].casefold()] > 1:
+            found = brief
+        stem = tier.name[: found.start()].strip() if found else ""
+        out[tier.name] = TierName(
+            stem or tier.name, tier.annotator or (found[1].strip() if found and stem else "")
+        )
+    return out
+
+
+def guess_role(tier: AnnotationTier, stem: str = "") -> str:
+    """Return one of `ROLES` or `IGNORE`, from the tier's name or, where it says nothing, from its labels.
+    stem: its name without who annotated it, if that is part of it.
+    """
+    words = set(_words((stem or tier.name).partition("@")[0]))
     if words & _ELSE:
         return IGNORE
     left, right, arms = bool(words & _LEFT), bool(words & _RIGHT), bool(words & _ARMS)
@@ -187,19 +225,31 @@ def guess_role(tier: AnnotationTier) -> str:
 def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[str, str]:
     """Return tier -> role for every tier: as remembered (the earlier mapping counts), else as guessed.
 
-    Of the people in an annotation only the one with most intervals is taken; of several tiers that would be
-    the same to them, the one whose labels are best known.
+    Of the people in an annotation only the one with most intervals is taken; of several annotators of what
+    they did, the one with most intervals too; of several tiers that would be the same to both, the one whose
+    labels are best known.
     """
+    names = split_tier_names(annotation)
     said = {
         t.name: next((m[t.name] for m in remembered if m.get(t.name) in (*ROLES, *SPEECH, IGNORE)), None)
         for t in annotation.tiers
     }
-    guessed = {t.name: guess_role(t) for t in annotation.tiers}
+    guessed = {t.name: guess_role(t, names[t.name].stem) for t in annotation.tiers}
     people = Counter[str]()
     for tier in annotation.tiers:
         if (said[tier.name] or guessed[tier.name]) != IGNORE:
             people[tier.whose] += len(tier.intervals) or 0
     who = people.most_common(1)[0][0] if people else ""
+    work = Counter[str]()
+    for tier in annotation.tiers:
+        if tier.whose == who and guessed[tier.name] != IGNORE:
+            work[names[tier.name].annotator] += len(tier.intervals)
+    main = work.most_common(1)[0][0] if work else ""
+
+    def rank(tier: AnnotationTier) -> tuple[bool, bool, float]:
+        filled, clear = _clarity(tier)
+        return filled, names[tier.name].annotator == main, clear
+
     best: dict[str, AnnotationTier] = {}
     for tier in annotation.tiers:
         spoken = set(_words(tier.name.partition("@")[0])) & _SPOKEN
@@ -208,7 +258,7 @@ def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[
             best.setdefault(guessed[tier.name], tier)
         elif said[tier.name] is None and tier.whose == who and guessed[tier.name] != IGNORE:
             other = best.get(guessed[tier.name])
-            if other is None or _clarity(tier) > _clarity(other):
+            if other is None or rank(tier) > rank(other):
                 best[guessed[tier.name]] = tier
     out = {}
     for tier in annotation.tiers:
@@ -216,6 +266,54 @@ def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[
         out[tier.name] = said[tier.name] or (
             guess if best.get(guess) is tier and guess not in said.values() else IGNORE
         )
+    return out
+
+
+@dataclass(frozen=True)
+class AnnotatedAgain:
+    """A tier that is not read since another one, by another annotator, is read for the same. role: of both.
+    read: the other tier's name.
+    """
+
+    tier: str
+    annotator: str
+    role: str
+    read: str
+
+
+def find_annotated_again(annotation: Annotation, roles: Mapping[str, str]) -> list[AnnotatedAgain]:
+    """Return the tiers that are ignored because another annotator's tier is read for the same person and
+    role; of several by one annotator, the one whose labels are best known.
+    """
+    names = split_tier_names(annotation)
+    used = [t for t in annotation.tiers if roles[t.name] != IGNORE]
+    found: dict[tuple[str, str], tuple[AnnotationTier, AnnotationTier]] = {}
+    for tier in annotation.tiers:
+        role, annotator = guess_role(tier, names[tier.name].stem), names[tier.name].annotator
+        if roles[tier.name] != IGNORE or not tier.intervals:
+            continue
+        for other in used:  # one that does not say whose it is may be anyone's
+            same = other.whose == tier.whose or not (other.whose and tier.whose)
+            if roles[other.name] == role and same and names[other.name].annotator != annotator:
+                key = (other.name, annotator)
+                if key not in found or _clarity(tier) > _clarity(found[key][0]):
+                    found[key] = tier, other
+    return [
+        AnnotatedAgain(tier.name, annotator, roles[other.name], other.name)
+        for (_, annotator), (tier, other) in found.items()
+    ]
+
+
+def read_other_annotator(annotation: Annotation, roles: Mapping[str, str], annotator: str) -> dict[str, str]:
+    """Return the roles with one annotator's tiers read instead of those of others for the same. Raises
+    ValueError if nobody of that name annotated anything that is read otherwise.
+    """
+    again = [x for x in find_annotated_again(annotation, roles) if x.annotator == annotator]
+    if not again:
+        raise ValueError(f"no tier of annotator '{annotator}' is left out for another's")
+    out = dict(roles)
+    for one in again:
+        out[one.read], out[one.tier] = IGNORE, one.role
     return out
 
 

@@ -75,6 +75,30 @@ def test_tiers_and_labels_are_said_otherwise_and_remembered(
     assert (again["tiers"], again["labels"]) == (data["tiers"], data["labels"])
 
 
+def test_another_annotators_tiers_are_read_where_asked(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = tmp_path / "again.eaf"
+    text = EAF.read_text(encoding="utf-8")
+    start = text.index("<TIER", text.index('TIER_ID="Speech"') - 200)
+    rows = "".join(
+        f"""<ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="again{n}" TIME_SLOT_REF1="ts{2 * n + 1}"
+        TIME_SLOT_REF2="ts{2 * n + 2}"><ANNOTATION_VALUE>fidget</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION>
+        </ANNOTATION>"""
+        for n in range(4)
+    )
+    tier = """<TIER TIER_ID="Left arm rater BM" LINGUISTIC_TYPE_REF="none">""" + rows + "</TIER>"
+    again.write_text(text[:start] + tier + text[start:], encoding="utf-8")
+    code, data, notes = run(capsys, "annotate", project, again)
+    assert code == 0 and data["tiers"]["Left arm rater BM"] == "ignore"
+    assert "Not read: Left arm rater BM" in notes
+    code, data, notes = run(capsys, "annotate", project, again, "--annotator", "BM")
+    assert code == 0 and data["tiers"]["Left arm rater BM"] == "left arm"
+    assert data["tiers"]["Left arm"] == "ignore" and "Not read: Left arm" in notes
+    code, data, _ = run(capsys, "annotate", project, again, "--annotator", "CC")
+    assert code == 1 and "'CC' annotated nothing that is read; there are '', 'BM'" in data["error"]
+
+
 WRONG = {
     "a tier that is not there": (
         ("--tier", "Left arms=left arm"),

@@ -4,6 +4,7 @@ it.
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from metagraph.playback.learning.annotation import (
     AnnotationInterval,
     AnnotationTier,
     Label,
+    find_annotated_again,
     guess_meaning,
     guess_role,
     guess_roles,
@@ -23,7 +25,9 @@ from metagraph.playback.learning.annotation import (
     is_meaning,
     label_notes,
     list_labels,
+    read_other_annotator,
     split_meaning,
+    split_tier_names,
 )
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
@@ -144,6 +148,58 @@ def test_of_several_tiers_for_one_arm_the_one_with_the_best_known_labels_is_take
         "LH": "left arm",
         "LH more": "ignore",
     }
+
+
+def annotated(by: str, name: str, *texts: str) -> AnnotationTier:
+    return dataclasses.replace(of(name, *texts), annotator=by)
+
+
+def test_one_annotators_tiers_are_read_and_those_who_annotated_the_same_again_are_found() -> None:
+    annotation = Annotation(
+        (
+            annotated("AK", "LH", "prep", "stroke", "retraction"),
+            annotated("AK", "RH", "gesture"),
+            annotated("BM", "LH 2nd", "gesture", "gesture"),
+            annotated("BM", "RH 2nd", "gesture"),
+            annotated("BM", "Head", "nod"),
+        )
+    )
+    roles = guess_roles(annotation)
+    assert roles == {
+        "LH": "left arm", "RH": "right arm", "LH 2nd": "ignore", "RH 2nd": "ignore", "Head": "head action",
+    }, "the arms of one annotator, though the other's labels are clearer"  # fmt: skip
+    again = find_annotated_again(annotation, roles)
+    assert [(x.tier, x.annotator, x.role, x.read) for x in again] == [
+        ("LH 2nd", "BM", "left arm", "LH"),
+        ("RH 2nd", "BM", "right arm", "RH"),
+    ]
+    other = read_other_annotator(annotation, roles, "BM")
+    assert other == {
+        "LH": "ignore", "RH": "ignore", "LH 2nd": "left arm", "RH 2nd": "right arm", "Head": "head action",
+    }  # fmt: skip
+    assert read_other_annotator(annotation, other, "AK") == roles, "and back"
+    with pytest.raises(ValueError, match="no tier of annotator 'BM'"):
+        read_other_annotator(annotation, other, "BM")
+
+
+@pytest.mark.parametrize(
+    ("names", "who"),
+    [
+        (("LH rater 1", "LH rater 2"), ("1", "2")),
+        (("LH (coder A)", "LH (coder B)"), ("A", "B")),
+        (("LH_annotatorAK", "LH"), ("AK", "")),
+        (("LH_R1", "LH_R2"), ("R1", "R2")),
+        (("LH_R1", "RH_R2"), ("", "")),
+        (("rater 1", "rater 2"), ("", "")),
+    ],
+)
+def test_who_annotated_is_known_from_the_end_of_a_name(names: tuple[str, str], who: tuple[str, str]) -> None:
+    annotation = Annotation(tuple(of(name, "gesture") for name in names))
+    found = split_tier_names(annotation)
+    assert tuple(found[name].annotator for name in names) == who
+    if who[0]:
+        assert {found[name].stem for name in names} == {"LH"}
+        assert list(guess_roles(annotation).values()) == ["left arm", "ignore"]
 
 
 def test_what_is_remembered_comes_before_every_guess_and_the_earlier_memory_first() -> None:

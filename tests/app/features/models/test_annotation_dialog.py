@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 from PySide6.QtCore import QSettings, Qt
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog
 
 from app.features.models.annotation_dialog import (
@@ -123,6 +126,24 @@ def test_nothing_that_is_read_is_said_and_cannot_be_imported(open_dialog):
     dialog.keep.setChecked(True)
     dialog.called.setText("  ")
     assert not dialog.go.isEnabled(), "a performance needs a name"
+
+
+def test_another_annotators_tiers_are_offered_and_read_when_chosen(open_dialog):
+    first = dataclasses.replace(tier("LH", "gesture", "gesture"), annotator="AK")
+    second = dataclasses.replace(tier("LH again", "fidget"), annotator="BM")
+    dialog = open_dialog(Annotation((first, second)))
+    assert "AK is read" in dialog.doubts.text() and "LH again" in dialog.doubts.text()
+    assert [dialog.annotator.itemText(n) for n in range(dialog.annotator.count())] == ["AK", "BM"]
+    assert dialog.annotator.isVisibleTo(dialog)
+    dialog.annotator.setFocus()
+    QTest.keyClick(dialog.annotator, Qt.Key.Key_Down)
+    assert dialog.reading.roles == {"LH": "ignore", "LH again": "left arm"}
+    assert "BM is read" in dialog.doubts.text()
+    assert rows(dialog.labels) == [("fidget", "arms", "1", "◆ fidget")]
+    QTest.keyClick(dialog.annotator, Qt.Key.Key_Up)
+    assert dialog.reading.roles == {"LH": "left arm", "LH again": "ignore"}
+    alone = open_dialog(Annotation((first,)))
+    assert not alone.annotator.isVisibleTo(alone), "nothing to choose"
 
 
 def test_an_annotation_without_tiers_opens_too(open_dialog):
