@@ -145,6 +145,7 @@ class Document(QObject):
         self.owner = make_owner()
         self.lock: Lock | None = None
         self.read_only = False
+        self.newer = False
         self.common: Project | None = None
         self.digest: str | None = None
         self.access: Access | None = None
@@ -242,15 +243,18 @@ class Document(QObject):
         digest: str | None = None,
         lock: Lock | None = None,
         read_only: bool = False,
+        newer: bool = False,
     ) -> None:
         """Show another project; without a path, its clip paths are absolute. `past` says how it came to be.
 
-        `digest` is that of its file (its present one if left out), and `lock` the lock of the file.
+        `digest` is that of its file (its present one if left out), and `lock` the lock of the file. `newer`
+        says that a newer Metagraph wrote it.
         """
         steps = past.steps
         self._leave_file(lock)
         before, self.project = self.project, project
-        self.path, self.lock, self.read_only, self._returned = path, lock, read_only, False
+        self.path, self.lock, self.read_only, self._returned = path, lock, read_only or newer, False
+        self.newer = newer
         self.digest = digest or self._digest_now()
         self._settle_in()
         first = steps[0].before if steps else project
@@ -284,7 +288,7 @@ class Document(QObject):
         before, self.project, self.path = self.project, other.project, other.path
         self.owner, self.common, self.digest = other.owner, other.common, other.digest
         self.access, self._home = other.access, other._home
-        self.read_only, self._returned = other.read_only, other._returned
+        self.read_only, self.newer, self._returned = other.read_only, other.newer, other._returned
         self.lock, other.lock = other.lock, None
         self.autosave.take_over(other.autosave)
         theirs, stack = other.undo_stack, self.undo_stack
@@ -396,7 +400,7 @@ class Document(QObject):
         for change, step in zip(changes, moved, strict=True):
             change.before, change.after = step.before, step.after
         self._move_lock(target)
-        self.project, self.path, self.read_only = now.after, target, False
+        self.project, self.path, self.read_only, self.newer = now.after, target, False, False
         self.changed.emit(before, self.project)
 
     def _settle_in(self) -> None:
@@ -434,7 +438,7 @@ class Document(QObject):
 
     def regain(self, lock: Lock) -> None:
         """Take the lock of the project's file, perhaps after losing it."""
-        self.lock, self.read_only = lock, False
+        self.lock, self.read_only = lock, self.newer
         self.state_changed.emit()
 
     def lose_lock(self) -> None:

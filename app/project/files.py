@@ -221,6 +221,7 @@ class Files(QObject):
                     digest=opened.digest,
                     lock=lock,
                     read_only=read_only,
+                    newer=opened.newer,
                 )
                 self._remember(path)
             over = chosen is not None and self.document.secured()  # otherwise it stays, and is offered again

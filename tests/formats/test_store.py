@@ -151,6 +151,34 @@ def test_a_file_of_a_newer_version_is_refused_with_what_to_do() -> None:
     assert error.remedy == "Update Metagraph."
 
 
+def test_a_file_of_a_newer_version_can_be_looked_at_but_not_replaced(tmp_path: Path) -> None:
+    project = grown()
+    text = text_of(project).replace("metagraph: 2", "metagraph: 3\ngravity: 9.81")
+    first = next(iter(project.actions()))
+    text = text.replace(f"id: {first.id}", f"id: {first.id}, sparkle: true")
+    path = tmp_path / "new.metagraph.yaml"
+    path.write_text(text, encoding="utf-8")
+    opened = open_project(path)
+    assert opened.newer and opened.project.graphs == project.graphs
+    assert "newer Metagraph" in opened.notes[0] and "gravity" in opened.notes[1]
+    with pytest.raises(FileError, match="newer Metagraph") as refusal:
+        save_project(opened.project, path)
+    assert refusal.value.remedy == "Update Metagraph, or save under another name."
+    assert path.read_text(encoding="utf-8") == text
+    save_project(opened.project, tmp_path / "copy.metagraph.yaml")
+    assert not open_project(tmp_path / "copy.metagraph.yaml").newer
+    with pytest.raises(FileError, match="Update Metagraph"):
+        read_project(path)
+
+
+def test_a_newer_file_whose_known_part_makes_no_sense_is_refused_as_newer(tmp_path: Path) -> None:
+    path = tmp_path / "new.metagraph.yaml"
+    text = text_of(grown()).replace("metagraph: 2", "metagraph: 3").replace("kind: gesture", "kind: dance")
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(FileError, match="written by a newer Metagraph"):
+        open_project(path)
+
+
 def test_an_older_file_is_upgraded_step_by_step(monkeypatch: pytest.MonkeyPatch) -> None:
     steps: list[int] = []
 

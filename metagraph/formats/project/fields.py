@@ -23,6 +23,10 @@ class DataError(ValueError):
         super().__init__(message)
 
 
+class UnknownFieldError(DataError):
+    """The data has a field that is not known here."""
+
+
 # --- writing
 
 
@@ -126,7 +130,8 @@ def refuse_unknown_fields(data: Data, allowed: Collection[str], where: str) -> N
 
             near = get_close_matches(str(key), allowed, 1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise DataError(f"{where}.{key}" if where else str(key), f"is not a field known here{hint}")
+            place = f"{where}.{key}" if where else str(key)
+            raise UnknownFieldError(place, f"is not a field known here{hint}")
 
 
 def is_too_large(data: Any, where: str) -> str | None:

@@ -123,6 +123,25 @@ def test_the_second_window_says_who_has_it_and_opens_read_only(windows, person, 
     assert not two.document.read_only
 
 
+def test_a_file_of_a_newer_metagraph_opens_read_only_and_is_saved_elsewhere(
+    windows, person, saved, qtbot, tmp_path
+):
+    text = saved.read_text(encoding="utf-8").replace("metagraph: 2", "metagraph: 3\ngravity: 9.81")
+    saved.write_text(text, encoding="utf-8")
+    one = opened(qtbot, windows(), saved)
+    assert one.document.read_only
+    seed(one, 6)
+    person.save_as(saved)
+    one.save()
+    qtbot.waitUntil(lambda: bool(person.warned))
+    assert "Update Metagraph, or save under another name" in person.warned[0]
+    assert saved.read_text(encoding="utf-8") == text
+    person.save_as(tmp_path / "mine.metagraph.yaml")
+    one.save()
+    qtbot.waitUntil(lambda: not one.document.dirty)
+    assert on_disk(tmp_path / "mine.metagraph.yaml") == 6 and not one.document.read_only
+
+
 def test_the_second_windows_edits_do_not_touch_the_firsts_journal(windows, person, saved, qtbot):
     one = opened(qtbot, windows(), saved)
     seed(one, 5)
