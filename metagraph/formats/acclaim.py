@@ -22,7 +22,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError, clean_text
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton
+from metagraph.motion.skeleton import FARTHEST, Skeleton
 
 Array = NDArray[Any]
 
@@ -90,6 +90,10 @@ def read_amc(path: str | Path) -> Clip:
         figure.bones[p].direction * figure.bones[p].length * metres if p in figure.bones else np.zeros(3)
         for p in (figure.bones[n].parent for n in names[1:])
     ]
+    long = next((p for p, at in zip(names, rest, strict=True) if not (np.abs(at) < FARTHEST).all()), None)
+    if long is not None:
+        bone = clean_text(figure.bones[long].parent[:40])
+        raise FileError(skeleton_file, phrase("bone '{name}' is far too long", name=bone), "", _AGAIN)
     skeleton = Skeleton(
         names, np.array(parents), rotation.make_identity_rotations((len(names),)), np.array(rest, float)
     )

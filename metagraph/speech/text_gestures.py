@@ -195,6 +195,13 @@ class TextStream:
                 self.free = max(self.free, now + START) + part.pause
         return out
 
+    def interrupt(self) -> dict[str, Any]:
+        """Forget what came in and is not said yet; return the request that breaks off what is said. What is
+        taken in next is said at once.
+        """
+        self._text, self._spoken, self.free = "", SpokenText(), 0.0
+        return {"do": "interrupt"}
+
     @property
     def left_out(self) -> tuple[str, ...]:
         """What of the text so far was not said: thinking, code, addresses, pictures."""

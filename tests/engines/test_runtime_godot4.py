@@ -99,9 +99,13 @@ func _ready():
 	asked.append(avatar.ask({"do": "nod", "after": 2.0}))
 	asked.append(avatar.look("user", {}))
 	asked.append(avatar.say("Hello! How are you?"))
+	asked.append_array([avatar.mood("happy", 0.5), avatar.mode("talking"), avatar.place("door", Vector3(1, 1, 1))])
+	asked.append(avatar.withdraw("nothing"))
 	var hands = []
 	for n in 600:
 		avatar._process(1.0 / 60)
+		if n == 40:
+			asked.append(avatar.interrupt())
 		if n % 100 == 0:
 			var hand = skeleton.get_bone_global_pose(skeleton.find_bone("RightHand")).origin
 			hands.append([hand.x, hand.y, hand.z])
@@ -227,7 +231,7 @@ def test_the_tree_plays_states_of_any_name_and_the_glb_is_read_without_an_error(
 
 
 @pytest.mark.nightly
-def test_the_node_plays_five_requests_on_the_glb_that_godot_has_read(
+def test_the_node_plays_ten_requests_on_the_glb_that_godot_has_read(
     sample: Project, tmp_path: Path, browse: Browser
 ) -> None:
     out = tmp_path / "out"
@@ -236,7 +240,7 @@ def test_the_node_plays_five_requests_on_the_glb_that_godot_has_read(
     code, told = play(tmp_path, browse, files | {"sample.motion": (out / "sample.glb").read_bytes()})
     assert code == 0
     found = seen(told)
-    assert len(found["states"]) == 5 and not {*found["states"]} - {"planned", "late", "done"}
+    assert len(found["states"]) == 10 and not {*found["states"]} - {"planned", "late", "done"}
     assert {"arms", "head", "speech"} <= {line.split()[0] for line in found["begun"]}
     assert any("on hips" in line for line in found["begun"])
     assert len({tuple(hand) for hand in found["hands"]}) == len(found["hands"])

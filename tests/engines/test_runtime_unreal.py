@@ -62,7 +62,7 @@ def test_space_is_changed_and_changed_back(cpp_probe: Path) -> None:
 def test_the_component_plays_what_it_is_asked(cpp_probe: Path) -> None:
     done = played(cpp_probe, "play", STICK / "stick.json")
     assert done.returncode == 0, done.stdout + done.stderr
-    before, answers, told, texts = done.stdout.splitlines()
+    before, answers, told, texts, asked = done.stdout.splitlines()
     assert before == "before refused"
     gesture, nonsense, unknown, said, look = answers.split()
     assert {gesture, said, look} <= {"planned", "late", "done"}
@@ -71,6 +71,9 @@ def test_the_component_plays_what_it_is_asked(cpp_probe: Path) -> None:
     whole, early, *pieces, plain = texts.split()
     assert (whole, early, pieces) == ("said#1", "0", ["said#2", "said#3"])
     assert plain.startswith("#"), "without gestures it is a request as any other"
+    gesture, unknown, nowhere, *others, interrupt = asked.split()[1:]
+    assert {gesture, *others} <= {"planned", "late", "done"} and len(others) == 4
+    assert (unknown, nowhere, interrupt) == ("refused", "refused", "done")
 
 
 @needs_compiler

@@ -166,3 +166,39 @@ def test_an_agent_in_a_page_talks_with_gestures(
     assert len(said) == 3 and "let us build a boat" in said[1] and 6 < free < 12
     gestures = [meta for layer, _, meta in begun if layer != "speech" and meta.startswith("said#")]
     assert len(gestures) >= 2, begun  # the arms may be at something else when a sentence comes
+
+
+@pytest.mark.nightly
+def test_an_agent_in_a_page_stops_when_the_microphone_hears_somebody(
+    sample: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, browse: Browser
+) -> None:
+    """The microphone is an oscillator, first as quiet as a room, then as loud as a voice."""
+    with kept_web_tools(tmp_path_factory.mktemp("kept")):
+        registry.write_for_target(sample, "web", tmp_path)
+    shutil.copy(ROOT / "docs" / "clients" / "barge_in.html", tmp_path)
+    microphone = """navigator.mediaDevices.getUserMedia = async () => {
+      const context = new AudioContext(), gain = new GainNode(context, { gain: 0.005 });
+      const hum = new OscillatorNode(context, { frequency: 180 }), out = new MediaStreamAudioDestinationNode(context);
+      hum.connect(gain).connect(out);
+      hum.start();
+      window.voice = gain.gain;
+      return out.stream;
+    }; 1"""
+    ada = "document.querySelector('#ada')"
+    speeches = f"{ada}.character.plan.track.speeches"
+    (_, before, _, after), errors = browse(
+        tmp_path,
+        {"url": "barge_in.html", "until": f"{ada}.talk"},
+        {"run": microphone},
+        {"click": "button"},
+        {"until": f"window.voice && {speeches}.some((one) => one.start + 0.5 < {ada}.time)"},
+        {"run": f"[{ada}.time, {speeches}.at(-1).end]"},
+        {"run": "window.voice.value = 0.3; 1"},
+        {"until": "document.querySelector('output').value.startsWith('You have')"},
+        {"wait": 500},
+        {"run": f"[{ada}.time, {speeches}.at(-1)?.end ?? 0, {ada}.talk.free, {ada}.talk.text]"},
+    )
+    assert not errors
+    assert before[1] > before[0] + 2, "she had more to say"
+    assert after[1] < after[0], "and says it no longer"
+    assert after[2:] == [0, ""], "what is said next begins at once"

@@ -131,6 +131,15 @@ public static class Scene
         }
         Answer unknown = actor.AnswerTo(id);
         Console.WriteLine("pieces " + actor.SayPiece("Hello").Count + " " + string.Join(" ", actor.SayPiece(" there! No", true).ToArray()));
+        string[] typed =
+        {
+            actor.Mood("happy", 0.5f), actor.Mode("listening"), actor.Mode(null), actor.Mood("nonsense"), actor.Withdraw("nothing"), actor.Interrupt(),
+        };
+        for (int frame = 0; frame < 10; frame++)
+        {
+            Call(actor, "LateUpdate");
+        }
+        Console.WriteLine("typed " + string.Join(" ", typed.Select(one => one == null ? "nothing" : actor.AnswerTo(one).State).ToArray()));
         actor.gestures = false;
         Console.WriteLine("plain " + (actor.Say("Hello there!") ?? "nothing"));
         if (graph == null)
@@ -194,6 +203,8 @@ def test_the_component_moves_joints_as_unity_shows_them(scene: Path) -> None:
     assert lines[-1] == "mirrored"
     assert any(line.startswith("begin arms") for line in lines)
     assert "pieces 0 said#2 said#3" in lines, "said#1 was said whole; a sentence is said once it is whole"
+    typed = next(line for line in lines if line.startswith("typed")).split()[1:]
+    assert set(typed[:3]) <= {"planned", "done"} and typed[3] == "refused" and typed[5] == "done", typed
     assert any(line.startswith("plain #") for line in lines), "without gestures it is a request as any other"
 
 
@@ -201,7 +212,11 @@ def test_a_component_without_its_files_says_so_and_stays_quiet(scene: Path) -> N
     done = mono(scene)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.startswith("error: ")
-    assert done.stdout.splitlines()[-3:] == ["pieces 0 ", "plain nothing", "False nothing nothing"]
+    assert done.stdout.splitlines()[-3:] == [
+        "typed nothing nothing nothing nothing nothing nothing",
+        "plain nothing",
+        "False nothing nothing",
+    ]
 
 
 SHARING = r"""

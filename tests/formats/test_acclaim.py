@@ -86,6 +86,11 @@ def test_the_first_turn_is_the_innermost(tmp_path: Path) -> None:
         (amc(frames=0), None, "no frames"),
         (amc(), asf().replace("name head", "name hed"), "'head' is not defined once"),
         (amc(), ":version 1.10\n", "no bones"),
+        (
+            amc(),
+            asf(length=1e-6).replace("length 10\n", "length 1000000\n"),
+            "bone 'lowerback' is far too long",
+        ),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path: Path, motion: str, skeleton: str | None, cause: str) -> None:

@@ -222,3 +222,12 @@ def test_a_stream_goes_on_in_the_language_it_has_been_in() -> None:
     stream.take(text, 0.0)
     out = stream.take("Nein, das geht so nicht.\n", 5.0)
     assert any(request["do"] == "shake" for request in out)
+
+
+def test_after_an_interruption_the_rest_is_forgotten_and_what_follows_is_said_at_once() -> None:
+    stream = TextStream({"arms": set(), "head": set()})
+    first = stream.take("It rains all day, so take a coat with you. And then", now=1.0)
+    assert first[0]["at"] == pytest.approx(1.35) and stream.free > 2.0
+    assert stream.interrupt() == {"do": "interrupt"}
+    (again,) = stream.take("Yes?", now=2.0, over=True)
+    assert (again["text"], again["at"]) == ("Yes?", pytest.approx(2.35)), "nothing of 'And then'"

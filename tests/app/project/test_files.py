@@ -183,7 +183,9 @@ def test_a_template_is_opened_without_its_file(desk, saved, qtbot):
     assert desk.recent() == []
 
 
-@pytest.mark.parametrize("content", [None, b"", b"\xff\xfe\x00", b"a: [", b"metagraph: 99\nlayers: 5\n", b"- 1\n"])
+@pytest.mark.parametrize(
+    "content", [None, b"", b"\xff\xfe\x00", b"a: [", b"metagraph: 99\nlayers: 5\n", b"- 1\n"]
+)
 def test_what_is_no_project_is_told_and_nothing_changes(desk, person, tmp_path, qtbot, content):
     path = tmp_path / "bad.metagraph.yaml"
     if content is not None:

@@ -141,6 +141,14 @@ static int Play(UMetagraphAsset& asset) {
     for (const FString& id : component.SayPiece(FString(u" there! No"), true)) std::cout << " " << FTCHARToUTF8(*id).Get();
     component.bGestures = false;
     std::cout << " " << FTCHARToUTF8(*component.Say(FString(u"Hello there!"))).Get() << "\n";
+    const FString asked[] = {
+        component.Gesture(TArray<FString>()), component.Gesture(TArray<FString>({FString(u"no such tag")})), component.Stance(FString(u"nowhere"), true), component.PlacePoint(FString(u"door"), FVector(1100, 200, 150)),
+        component.Mood(FString(u"happy"), 0.5f), component.Mode(FString(u"listening")), component.Mode(FString(u"")), component.Interrupt(),
+    };
+    for (int frame = 0; frame < 10; frame++) component.TickComponent(0.02f, LEVELTICK_All, nullptr);
+    std::cout << "asked";
+    for (const FString& id : asked) std::cout << " " << FTCHARToUTF8(*component.Answer(id).State).Get();
+    std::cout << "\n";
     return 0;
 }
 

@@ -95,6 +95,14 @@ public:
         return said;
     }
 
+    /// Break off all that is said, because the other speaks, and forget what came in and is not said yet. What is said next begins at
+    /// once. Returns the request's id.
+    std::string interrupt() {
+        text_.clear();
+        free_ = 0.0;
+        return character_.ask(Json::object({{"do", "interrupt"}}));
+    }
+
     /// The gestures that go with words.
     List<Ref<ProposedGesture>> proposed(const List<Ref<TextWord>>& words) const {
         return word_gestures::proposed_for(words, arms_, head_, lexicon_, small_, seed_ + count_);

@@ -31,6 +31,8 @@ export class MetagraphCharacter extends HTMLElement {
   say(text: string, options?: SayOptions): Promise<string>;
   /** Say what comes in piece by piece, each sentence when it is whole; returns a promise of the ids of what it says by it. */
   sayPiece(piece: string, over?: boolean): Promise<string[]>;
+  /** Break off all that is said, because the other speaks; what is said next begins at once. Returns the request's id. */
+  interrupt(): string;
   play(): void;
   pause(): void;
   /** Move on to a time, and stay there. */

@@ -250,6 +250,14 @@ export class MetagraphCharacter extends HTMLElement {
     return this.talk.take(piece, over).map(({ id }) => id);
   }
 
+  /**
+   * Break off all that is said, because the other speaks: sounds stop, gestures go back, and the gaze goes to the other. What is said
+   * next begins at once. Returns the request's id.
+   */
+  interrupt() {
+    return this.talk ? this.talk.interrupt() : this.ask({ do: "interrupt" });
+  }
+
   play() {
     this.paused = false;
   }

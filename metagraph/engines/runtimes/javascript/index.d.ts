@@ -331,4 +331,6 @@ export class Talk {
   say(text: string, options?: Partial<Ask>): Said;
   /** Take in what comes next of a text: each sentence is said when it is whole. `over`: whether the text ends here. */
   take(piece: string, over?: boolean): Said[];
+  /** Break off all that is said, and forget what came in; what is said next begins at once. Returns the request's id. */
+  interrupt(): string;
 }

@@ -50,6 +50,16 @@ export class Talk {
     return { id, gestures };
   }
 
+  /**
+   * Break off all that is said, because the other speaks, and forget what came in and is not said yet. What is said next begins at once.
+   * Returns the request's id.
+   */
+  interrupt() {
+    this.text = "";
+    this.free = 0;
+    return this.character.ask({ do: "interrupt" });
+  }
+
   /** Return the gestures that go with words. @param {import("./word_gestures.js").TextWord[]} words */
   proposed(words) {
     return proposedFor(words, this.arms, this.head, this.lexicon, this.small, (this.seed + this.count) >>> 0);

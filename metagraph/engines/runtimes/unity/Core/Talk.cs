@@ -120,6 +120,17 @@ namespace Metagraph
             return said;
         }
 
+        /// <summary>
+        /// Break off all that is said, because the other speaks, and forget what came in and is not said yet. What is said next begins at
+        /// once. Returns the request's id.
+        /// </summary>
+        public string Interrupt()
+        {
+            text = "";
+            Free = 0.0;
+            return character.Ask("{\"do\": \"interrupt\"}");
+        }
+
         /// <summary>The gestures that go with words.</summary>
         public List<ProposedGesture> Proposed(List<TextWord> words)
         {

@@ -236,6 +236,33 @@ namespace Metagraph
         }
 
         /// <summary>
+        /// Break off all that is said, because the other speaks: the voice stops at its next sound, gestures go back, and the character
+        /// looks at the other. What is said next begins at once.
+        /// </summary>
+        public string Interrupt()
+        {
+            return talk == null ? null : talk.Interrupt();
+        }
+
+        /// <summary>Take a request back, by its id; all of them without one.</summary>
+        public string Withdraw(string id = "")
+        {
+            return Ask("{\"do\":\"withdraw\",\"what\":" + Json.Quote(id) + "}");
+        }
+
+        /// <summary>Be in a mood from now on: "happy", "sad" and others; "neutral" ends it. intensity: 0 to 1.</summary>
+        public string Mood(string mood, float intensity = 1)
+        {
+            return Ask("{\"do\":\"mood\",\"mood\":" + Json.Quote(mood) + ",\"intensity\":" + Word(intensity) + "}");
+        }
+
+        /// <summary>From now on be "idle", "listening", "talking", "thinking" or "reacting"; null leaves it to what is said.</summary>
+        public string Mode(string mode)
+        {
+            return Ask("{\"do\":\"mode\",\"mode\":" + (mode == null ? "null" : Json.Quote(mode)) + "}");
+        }
+
+        /// <summary>
         /// Say a line whose sound comes in while it is said: with each call its next samples, -1..1; the lips do what is heard. An id is
         /// one line's; returns it. rate: samples a second, 8000 to 48000.
         /// </summary>

@@ -146,6 +146,32 @@ func say_piece(piece: String, over := false) -> Array:
 	return ids
 
 
+## Breaks off all that is said, because the other speaks: the voice stops at its next sound, gestures go back, and the character looks
+## at the other. What is said next begins at once.
+func interrupt() -> String:
+	return talk.interrupt() if talk != null else ""
+
+
+## Takes a request back, by its id; all of them without one.
+func withdraw(id := "") -> String:
+	return _ask("withdraw", {"what": id}, {})
+
+
+## Is in a mood from now on: "happy", "sad" and others; "neutral" ends it. intensity: 0 to 1.
+func mood(name_of_mood: String, intensity := 1.0, more := {}) -> String:
+	return _ask("mood", {"mood": name_of_mood, "intensity": intensity}, more)
+
+
+## From now on is "idle", "listening", "talking", "thinking" or "reacting"; null leaves it to what is said.
+func mode(what, more := {}) -> String:
+	return _ask("mode", {"mode": what}, more)
+
+
+## Puts a named point somewhere in the character's space; who looks at it follows it.
+func place(point: String, at: Vector3, more := {}) -> String:
+	return _ask("place", {"name": point, "point": [at.x, at.y, at.z]}, more)
+
+
 ## Says a line whose sound comes in while it is said: with each call its next samples, -1..1; the lips do what is heard. An id is one
 ## line's. rate: samples a second, 8000 to 48000.
 func say_sound(ident: String, samples, rate: float) -> String:

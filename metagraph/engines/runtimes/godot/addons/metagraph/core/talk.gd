@@ -70,6 +70,14 @@ func say(text, more = {}):
 	return {id = ident, gestures = gestures}
 
 
+# Breaks off all that is said, because the other speaks, and forgets what came in and is not said yet. What is said next begins at
+# once. Returns the request's id.
+func interrupt():
+	_text = ""
+	free_from = 0.0
+	return character.ask({"do": "interrupt"})
+
+
 # Returns the gestures that go with words.
 func proposed(words):
 	return WordGestures.proposed_for(words, _arms, _head, _lexicon, _small, (_seed + _count) & 0xFFFFFFFF)

@@ -120,6 +120,11 @@ func say_piece(piece, over = false):
 	return ids
 
 
+# Breaks off all that is said, because the other speaks. What is said next begins at once.
+func interrupt():
+	return talk.interrupt() if talk != null else ""
+
+
 func say_sound(ident, samples, rate):
 	return character.say_sound(ident, samples, rate) if character != null else ""
 

@@ -5,6 +5,14 @@
 #include "MetagraphAsset.h"
 #include "MetagraphPoses.h"
 
+namespace
+{
+FString RequestOf(const metagraph::List<std::pair<std::string, metagraph::Json>>& Fields)
+{
+	return MetagraphText::Unreal(metagraph::json::text(metagraph::Json::object(Fields)));
+}
+} // namespace
+
 UMetagraphComponent::UMetagraphComponent()
 {
 	PrimaryComponentTick.bCanEverTick = true;
@@ -158,14 +166,59 @@ FString UMetagraphComponent::LookAt(FVector Place)
 	{
 		return FString();
 	}
-	const FVector Own = Mesh ? Mesh->GetComponentTransform().InverseTransformPosition(Place) : Place;
-	const FVector Point = MetagraphSpace::FromUnreal(Own);
+	const FVector Point = OwnSpace(Place);
 	return MetagraphText::Unreal(Character->Character.look(metagraph::Vec{Point.X, Point.Y, Point.Z}));
 }
 
 FString UMetagraphComponent::LookAtPoint(const FString& Point)
 {
 	return Begin() ? MetagraphText::Unreal(Character->Character.look(MetagraphText::Plain(Point))) : FString();
+}
+
+FString UMetagraphComponent::Gesture(const TArray<FString>& Tags)
+{
+	metagraph::List<std::string> Words;
+	for (const FString& Tag : Tags)
+	{
+		Words.push_back(MetagraphText::Plain(Tag));
+	}
+	return Ask(RequestOf({{"do", "gesture"}, {"tags", metagraph::Json::texts(Words)}}));
+}
+
+FString UMetagraphComponent::Stance(const FString& Stance, bool bStay)
+{
+	return Ask(RequestOf({{"do", "stance"}, {"stance", MetagraphText::Plain(Stance)}, {"stay", bStay}}));
+}
+
+FString UMetagraphComponent::PlacePoint(const FString& Point, FVector Place)
+{
+	const FVector Own = OwnSpace(Place);
+	return Ask(RequestOf({
+		{"do", "place"},
+		{"name", MetagraphText::Plain(Point)},
+		{"point", metagraph::Json::list({Own.X, Own.Y, Own.Z})},
+	}));
+}
+
+FString UMetagraphComponent::Mood(const FString& Mood, float Intensity)
+{
+	return Ask(RequestOf({{"do", "mood"}, {"mood", MetagraphText::Plain(Mood)}, {"intensity", static_cast<double>(Intensity)}}));
+}
+
+FString UMetagraphComponent::Mode(const FString& Mode)
+{
+	const std::string Name = MetagraphText::Plain(Mode);
+	return Ask(RequestOf({{"do", "mode"}, {"mode", Name.empty() ? metagraph::Json() : metagraph::Json(Name)}}));
+}
+
+FString UMetagraphComponent::Interrupt()
+{
+	return Begin() ? MetagraphText::Unreal(Character->Talk.interrupt()) : FString();
+}
+
+FVector UMetagraphComponent::OwnSpace(FVector Place) const
+{
+	return MetagraphSpace::FromUnreal(Mesh ? Mesh->GetComponentTransform().InverseTransformPosition(Place) : Place);
 }
 
 FString UMetagraphComponent::Withdraw(const FString& Request)

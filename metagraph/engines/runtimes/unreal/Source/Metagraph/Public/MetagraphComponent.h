@@ -120,6 +120,31 @@ public:
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString LookAtPoint(const FString& Point);
 
+	/** Make a gesture that has all the tags. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Gesture(const TArray<FString>& Tags);
+
+	/** Go to a stance, by id or name. bStay: the models do not leave it of their own accord. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Stance(const FString& Stance, bool bStay);
+
+	/** Put a named point of the export at a place in the world; who looks at it follows it. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString PlacePoint(const FString& Point, FVector Place);
+
+	/** Be in a mood from now on: "happy", "sad" and others; "neutral" ends it. Intensity: 0 to 1. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Mood(const FString& Mood, float Intensity = 1.0f);
+
+	/** From now on be "idle", "listening", "talking", "thinking" or "reacting"; empty leaves it to what is said. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Mode(const FString& Mode);
+
+	/** Break off all that is said, because the other speaks: the voice stops at its next sound, gestures go back, and the character
+	 *  looks at the other. What is said next begins at once. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Interrupt();
+
 	/** Take a request back; all of them where no id is given. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Withdraw(const FString& Request);
@@ -154,6 +179,7 @@ private:
 	TObjectPtr<USkeletalMeshComponent> Mesh;
 
 	bool Begin();
+	FVector OwnSpace(FVector Place) const;
 	void Tell();
 	void Show();
 };
