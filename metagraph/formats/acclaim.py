@@ -92,8 +92,8 @@ def read_amc(path: str | Path) -> Clip:
     ]
     long = next((p for p, at in zip(names, rest, strict=True) if not (np.abs(at) < FARTHEST).all()), None)
     if long is not None:
-        bone = clean_text(figure.bones[long].parent[:40])
-        raise FileError(skeleton_file, phrase("bone '{name}' is far too long", name=bone), "", _AGAIN)
+        called = clean_text(figure.bones[long].parent[:40])
+        raise FileError(skeleton_file, phrase("bone '{name}' is far too long", name=called), "", _AGAIN)
     skeleton = Skeleton(
         names, np.array(parents), rotation.make_identity_rotations((len(names),)), np.array(rest, float)
     )
