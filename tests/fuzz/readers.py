@@ -375,7 +375,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm", ".tsv"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
         "services": Fuzzed(read_transcript, _services(".json"), JSON, spoilt_json),
-        "transcribers": Fuzzed(read_transcript, _services(".trs", ".exb", ".cha", ".par", ".csv", ".tsv", ".ctm", ".marks"), XML, spoilt_words),
+        "transcribers": Fuzzed(read_transcript, _services(".trs", ".exb", ".cha", ".par", ".csv", ".tsv", ".ctm", ".marks", ".ttml", ".ass", ".sbv", ".lrc"), XML, spoilt_words),
         "mouths": Fuzzed(read_mouth_file, _mouths(False), XML, spoilt_words),
         "mouth lists": Fuzzed(read_mouth_file, _mouths(True), JSON, spoilt_json),
         "words": Fuzzed(read_pack, _fixed(sv_yaml=b"code: sv\nname: x\nresponses: [ja, 'n\xc3\xa5']\nsmall: i, den\n"), (b"&a", b"{", b"- ", b", "), spoilt_words),

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from metagraph.common.wording import phrase, plural_phrase
@@ -27,7 +27,11 @@ _DASH = re.compile(r"^\s*(?:[-–]|>{1,2})\s*")
 
 
 @dataclass
-class _Cue:
+class TextCue:
+    """A text and when it is shown. line: of the file, from 1. start, end: seconds. text: its lines, with tags
+    as WebVTT has them.
+    """
+
     line: int
     start: float
     end: float
@@ -42,7 +46,11 @@ def is_cues(source: TranscriptSource) -> bool:
 def read_cues(source: TranscriptSource) -> Transcript:
     """Read WebVTT or SRT. Raises FileError."""
     out = Collected(source.path)
-    cues = list(_cues(out, source.text))
+    return collect_cues(out, list(_cues(out, source.text)))
+
+
+def collect_cues(out: Collected, cues: Sequence[TextCue]) -> Transcript:
+    """Return the transcript of cues. Raises FileError."""
     shown, repeats = drop_repeats([_shown(cue) for cue in cues])
     if repeats:
         out.notes.append(
@@ -65,7 +73,7 @@ def read_cues(source: TranscriptSource) -> Transcript:
     return out.finished()
 
 
-def _cues(out: Collected, text: str) -> Iterator[_Cue]:
+def _cues(out: Collected, text: str) -> Iterator[TextCue]:
     lines = text.split("\n")
     rolls = lines[0].lstrip("\ufeff").startswith("WEBVTT")  # there a line of blanks is a line of the cue
     n = 0
@@ -86,7 +94,7 @@ def _cues(out: Collected, text: str) -> Iterator[_Cue]:
                 phrase("line {n}", n=n + 1),
             )
         times = found.groups()
-        cue = _Cue(n + 1, _seconds(*times[:4]), _seconds(*times[4:]), [])
+        cue = TextCue(n + 1, _seconds(*times[:4]), _seconds(*times[4:]), [])
         if cue.end < cue.start:
             raise out.fail(
                 phrase(
@@ -111,7 +119,7 @@ def _plain(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub("", _INSIDE.sub("", text))).split())
 
 
-def _shown(cue: _Cue) -> ShownText:
+def _shown(cue: TextCue) -> ShownText:
     lines = tuple(x for x in cue.text if x.strip())
     timed = tuple(_INSIDE.search(x) is not None for x in lines)
     return ShownText(cue.line, cue.start, cue.end, lines, tuple(map(_plain, lines)), timed)

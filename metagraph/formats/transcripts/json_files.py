@@ -236,6 +236,24 @@ def read_transformers(source: TranscriptSource) -> Transcript:
     return out.finished()
 
 
+def is_nemo(source: TranscriptSource) -> bool:
+    stamps = source.data.get("timestamp") if isinstance(source.data, dict) else None
+    return isinstance(stamps, dict) and bool({"word", "segment"} & set(stamps))
+
+
+def read_nemo(source: TranscriptSource) -> Transcript:
+    """Read `timestamp`: its words, or else its segments. Raises FileError."""
+    out = Collected(source.path)
+    stamps = source.data["timestamp"]
+    key = "word" if stamps.get("word") else "segment"
+    rows = [
+        {**row, "word": parse_text(row.get("word", row.get("segment")))} if isinstance(row, dict) else row
+        for row in list_of(out, stamps.get(key) or [], f"timestamp.{key}")
+    ]
+    add_words(out, rows, "", f"timestamp.{key}")
+    return out.finished()
+
+
 def is_vosk(source: TranscriptSource) -> bool:
     return "result" in source.keys and "text" in source.keys
 

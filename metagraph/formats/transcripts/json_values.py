@@ -111,7 +111,18 @@ def _kind(value: Any) -> str:
 
 # How starts, ends, lengths and texts of a word or a segment are called where no service says it.
 _TEXTS = ("punctuated_word", "word", "text", "token", "content", "alignedWord", "value", "label")
-_STARTS = ("start", "start_time", "startTime", "begin", "from", "onset", "ts", "offset", "begin_time")
+_STARTS = (
+    "start",
+    "start_time",
+    "startTime",
+    "begin",
+    "from",
+    "onset",
+    "ts",
+    "offset",
+    "begin_time",
+    "start_ts",
+)
 _ENDS = ("end", "end_time", "endTime", "stop", "to", "end_ts", "offset_end", "finish")
 _LENGTHS = ("duration", "dur", "length")
 _THOUSANDTHS = ("_ms", "Ms", "_millis", "Millis", "_milliseconds", "Milliseconds")

@@ -12,6 +12,8 @@ from metagraph.formats.transcripts.speaker_names import find_speaker_names
 from metagraph.formats.transcripts.units import infer_time_unit
 from metagraph.formats.transcripts.words import Collected, Transcript
 
+_RTTM = ("SPEAKER ", "SPKR-INFO ", "NOSCORE ", "LEXEME ")
+
 
 def is_ctm(source: TranscriptSource) -> bool:
     """Return whether the first line that is no comment is one of CTM: recording, channel, start, duration,
@@ -37,6 +39,12 @@ def _ctm(line: str) -> tuple[str, str, float, float, str] | None:
 def read_ctm(source: TranscriptSource) -> Transcript:
     """Read NIST's time-marked words. A channel, or else a recording, is a speaker. Raises FileError."""
     out = Collected(source.path)
+    if source.head.startswith(_RTTM):
+        raise out.fail(
+            phrase("it says who speaks when (RTTM), but no words"),
+            "",
+            phrase("Choose a transcript with words. Many diarizers write one with their speakers."),
+        )
     rows = []
     for n, line in enumerate(source.text.split("\n")):
         if not line.strip() or line.lstrip().startswith((";;", "#")):
@@ -86,7 +94,7 @@ def _table_row(line: str) -> tuple[float, float, str] | None:
     if len(cells) != 3:
         return None
     try:
-        return float(cells[0]), float(cells[1]), cells[2]
+        return float(cells[0].replace(",", ".")), float(cells[1].replace(",", ".")), cells[2]
     except ValueError:
         return None
 

@@ -99,10 +99,22 @@ JSON_TRANSCRIPTS: dict[str, Any] = {
     "transformers": {"text": "so we yes", "chunks": [{"text": f" {w}", "timestamp": [s, e]} for w, s, e, _ in WORDS]},
     "vosk": {"result": [{"conf": 1.0, "start": s, "end": e, "word": w} for w, s, e, _ in WORDS], "text": "so we yes"},
     "gentle": {"transcript": "so we yes", "words": [{"alignedWord": w, "case": "success", "word": w, "start": s, "end": e, "startOffset": 0, "endOffset": 2, "phones": [{"duration": e - s, "phone": "s_B"}]} for w, s, e, _ in WORDS]},
+    "speechmatics": {"format": "2.9", "metadata": {"type": "transcription"}, "results": [
+        *({"type": "word", "start_time": s, "end_time": e, "alternatives": [{"content": w, "confidence": 0.9, "language": "en", "speaker": f"S{'AB'.index(p) + 1}"}]} for w, s, e, p in WORDS)]},
+    "gladia": {"id": "1", "status": "done", "result": {"metadata": {}, "transcription": {"full_transcript": "so we yes", "utterances": [
+        {"text": "x", "start": some[0][1], "end": some[-1][2], "speaker": n, "channel": 0, "words": [{"word": f" {w}", "start": s, "end": e, "confidence": 0.9} for w, s, e, _ in some]} for n, some in enumerate((WORDS[:2], WORDS[2:]))]}}},
+    "cartesia": {"type": "timestamps", "context_id": "c", "word_timestamps": {"words": [w for w, *_ in WORDS], "start": [s for _, s, _, _ in WORDS], "end": [e for _, _, e, _ in WORDS]}},
+    "youtube": {"wireMagic": "pb3", "events": [{"tStartMs": 0, "dDurationMs": 2000, "id": 1}, {"tStartMs": 100, "dDurationMs": 500, "segs": [{"utf8": "so"}, {"utf8": " we", "tOffsetMs": 200}]},
+        {"tStartMs": 600, "dDurationMs": 400, "aAppend": 1, "segs": [{"utf8": "\n"}]}, {"tStartMs": 1000, "dDurationMs": 400, "segs": [{"utf8": "yes"}]}]},
+    "nemo": {"text": "so we yes", "timestamp": {"word": [{"word": w, "start": s, "end": e, "start_offset": 1, "end_offset": 2} for w, s, e, _ in WORDS], "segment": []}},
     "mfa json": {"start": 0, "end": 2, "tiers": {"words": {"type": "interval", "entries": [[s, e, w] for w, s, e, _ in WORDS]}, "phones": {"type": "interval", "entries": [[0.1, 0.3, "S"]]}}},
 }  # fmt: skip
 _utf8 = {
     "kaldi ctm": ("a.ctm", "utt 1 0.10 0.20 so\nutt 1 0.30 0.30 we\nutt 1 1.00 0.40 yes\n"),
+    "ttml": ("a.ttml", '<?xml version="1.0"?><tt xmlns="http://www.w3.org/ns/ttml" xmlns:ttm="http://www.w3.org/ns/ttml#metadata" xmlns:ttp="http://www.w3.org/ns/ttml#parameter" ttp:frameRate="10"><head><metadata><ttm:agent xml:id="a" type="person"><ttm:name type="full">Ann</ttm:name></ttm:agent><ttm:agent xml:id="b" type="person"><ttm:name type="full">Ben</ttm:name></ttm:agent></metadata></head><body begin="0.1s"><div><p ttm:agent="a" begin="0s" end="00:00:00:05"><span begin="0s">so </span><span begin="200ms">we</span></p><p ttm:agent="b" begin="9f" dur="0.4s">yes</p></div></body></tt>'),
+    "substation": ("a.ass", "[Script Info]\nTitle: x\n\n[V4+ Styles]\nFormat: Name, Fontname\n\n[Events]\nFormat: Layer, Start, End, Style, Name, MarginL, MarginR, MarginV, Effect, Text\nDialogue: 0,0:00:01.00,0:00:01.40,Default,Ben,0,0,0,,{\\i1}yes{\\i0}\nComment: 0,0:00:01.50,0:00:01.60,Default,Ben,0,0,0,,no\nDialogue: 0,0:00:00.10,0:00:00.30,Default,Ann,0,0,0,,so\nDialogue: 0,0:00:00.30,0:00:00.60,Default,Ann,0,0,0,,we\n"),
+    "sbv": ("a.sbv", "0:00:00.100,0:00:00.300\nso\n\n0:00:00.300,0:00:00.600\nwe\n\n0:00:01.000,0:00:01.400\nyes\n"),
+    "lrc": ("a.lrc", "[ti:talk]\n[00:00.10]so\n[00:00.30]<00:00.30>we <00:00.60>\n[00:01.00]yes <00:01.40>\n"),
     "mfa csv": ("a.csv", "Begin,End,Label,Type,Speaker\n0.1,0.3,so,words,A\n0.3,0.6,we,words,A\n0.1,0.2,S,phones,A\n1.0,1.4,yes,words,B\n"),
     "whisper tsv": ("a.tsv", "start\tend\ttext\n100\t300\tso\n300\t600\twe\n1000\t1400\tyes\n"),
     "polly": ("a.marks", '{"time":100,"type":"word","start":0,"end":2,"value":"so"}\n{"time":300,"type":"word","start":3,"end":5,"value":"we"}\n{"time":300,"type":"viseme","value":"u"}\n{"time":1000,"type":"word","start":6,"end":9,"value":"yes"}\n{"time":1400,"type":"viseme","value":"sil"}\n'),
