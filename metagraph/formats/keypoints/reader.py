@@ -98,7 +98,20 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
         notes.append("its points are Human3.6M's, as it says")
         for frame in frames:
             frame.flat, frame.space = ([_from_h36m(p) for p in some] for some in (frame.flat, frame.space))
-    times = _times(frames, fps or head.fps, notes)
+    return make_keypoint_track(path, frames, fps or head.fps, picture or _size(head), notes)
+
+
+def make_keypoint_track(
+    path: Path,
+    frames: Sequence[KeypointFrame],
+    fps: float | None,
+    picture: tuple[float, float] | None,
+    notes: list[str],
+) -> KeypointTrack:
+    """Follow one person through frames. path: for messages; fps: where frames have no times; picture: its
+    width and height; notes: what was found out before. Raises FileError.
+    """
+    times = _times(frames, fps, notes)
     lasts = float(np.max(times, initial=0.0))
     if not lasts <= KEYPOINT_SECONDS:
         raise FileError(path, f"its frames lie {lasts:.3g} s apart", "their times or numbers", _CUT)
@@ -108,7 +121,7 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
             f"{_many(len(times) - len(kept), 'frame')} left out that came no later than the one before"
         )
     times, frames = times[kept], [frames[n] for n in kept]
-    return _gathered(path, times, frames, picture or _size(head), notes)
+    return _gathered(path, times, frames, picture, notes)
 
 
 def _joined(found: Iterable[KeypointFrame]) -> list[KeypointFrame]:
