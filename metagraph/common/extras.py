@@ -49,8 +49,8 @@ EXTRAS: Mapping[str, Extra] = {
         "torch", ("torch>=2.4", *CPU), phrase("training models of motion from takes"), 750, "BSD-3-Clause"
     ),
     "lab": Extra("pylsl", ("pylsl>=1.16",), phrase("markers for lab recorders (LSL)"), 5, "MIT"),
-    # Of those before 0.10.30; newer ones have neither `solutions` nor a model in them. What it asks for beside these (OpenCV,
-    # JAX, Matplotlib, SentencePiece) is for drawing and for other models than the body's.
+    # Packages from 0.10.30 on have neither `solutions` nor a model in them. What it asks for beside these
+    # (OpenCV, JAX, Matplotlib, SentencePiece) is for drawing and for other models than the body's.
     "camera": Extra(
         "mediapipe",
         ("mediapipe>=0.10.14,<0.10.22", "numpy>=1.26,<2", "protobuf>=4.25.3,<5", "absl-py>=2"),

@@ -1,5 +1,5 @@
-"""Read the pictures of a camera as they come, through PyAV: V4L2 on Linux, AVFoundation on macOS, DirectShow on
-Windows. A video file in the place of a device is played in real time, to try all this without a camera.
+"""Read the pictures of a camera as they come, through PyAV: V4L2 on Linux, AVFoundation on macOS, DirectShow
+on Windows. A video file in the place of a device is played in real time, to try all this without a camera.
 """
 
 from __future__ import annotations
@@ -48,8 +48,10 @@ class Camera:
         while True:
             with self._new:
                 if not self._new.wait_for(lambda: self._picture is not None or self._ended, PATIENCE):
-                    raise CameraError(f"The camera {self.device} sends no pictures. Close other programs that "
-                                      "use it, and check that it is switched on.")  # fmt: skip
+                    raise CameraError(
+                        f"The camera {self.device} sends no pictures. Close other programs that use it, and "
+                        "check that it is switched on."
+                    )
                 picture, self._picture = self._picture, None
             if picture is None:
                 if self._why:
@@ -111,8 +113,8 @@ def _open_device(device: str) -> Any:
     except (OSError, ValueError) as error:
         words = (error.strerror or str(error)) if isinstance(error, OSError) else str(error)
         raise CameraError(
-            f"The camera {device} cannot be opened: {words}. Check that it is plugged in, that you may use it, "
-            "and that no other program does."
+            f"The camera {device} cannot be opened: {words}. Check that it is plugged in, that you may use "
+            "it, and that no other program does."
         ) from None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from typing import Any
 
 from metagraph.common.child_channel import Child
@@ -60,10 +61,8 @@ class PoseEstimator:
         EstimatorError.
         """
         height, width = picture.picture.shape[:2]
-        try:
+        with suppress(OSError):  # it has ended; receiving says so
             self._child.send(HEAD.pack(picture.seconds, height, width) + picture.picture.tobytes())
-        except OSError:
-            pass  # it has ended; receiving says so
         return self._receive()
 
     def _receive(self) -> dict[str, Any]:
@@ -73,8 +72,8 @@ class PoseEstimator:
             self._child.end(PATIENCE)
             raise EstimatorError(
                 phrase(
-                    "MediaPipe has ended by itself (code {code}). It needs a processor with AVX. Give keypoints "
-                    "of any other pose estimator.",
+                    "MediaPipe has ended by itself (code {code}). It needs a processor with AVX. Give "
+                    "keypoints of any other pose estimator.",
                     code=self._child.process.returncode,
                 )
             ) from None

@@ -1,5 +1,5 @@
-"""The process that looks for a person in pictures, with MediaPipe's pose models. It imports MediaPipe from the
-folder of the extra, which the program itself never does.
+"""The process that looks for a person in pictures, with MediaPipe's pose models. It imports MediaPipe from
+the folder of the extra, which the program itself never does.
 
 Its parent (`metagraph.formats.filmed.estimator`) sends pictures through a `ChildChannel`: HEAD (seconds,
 height, width) and the bytes of red, green and blue. Each answer is a JSON object, the first one before any

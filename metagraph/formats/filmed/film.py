@@ -27,7 +27,7 @@ _FILM = phrase("Film one person from the front, at least from the head to the hi
 Tell = Callable[[int, int], None]
 
 
-class FilmStopped(RuntimeError):
+class FilmStoppedError(RuntimeError):
     """Whoever asked for the keypoints stopped it."""
 
 
@@ -46,7 +46,7 @@ def film_video(
     is_stopped: Callable[[], bool] = lambda: False,
 ) -> FilmedKeypoints:
     """Return the keypoints of the person in a video. tell: called with how many pictures are done, and of how
-    many there are about. Raises FileError, EstimatorError, and FilmStopped.
+    many there are about. Raises FileError, EstimatorError, and FilmStoppedError.
     """
     path = Path(path)
     with closing(VideoFile(path)) as video:
@@ -93,7 +93,7 @@ def _look_at(
     frames: list[dict[str, Any]] = []
     for picture in pictures:
         if is_stopped():
-            raise FilmStopped("stopped")
+            raise FilmStoppedError("stopped")
         frames.append(estimator.look(picture))
         done(len(frames))
         at(picture.seconds)

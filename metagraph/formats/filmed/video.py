@@ -67,7 +67,9 @@ class VideoFile:
         import av
 
         if not self._container.streams.video:
-            raise FileError(self.path, phrase("it has no pictures"), "", phrase("Choose a video of a person."))
+            raise FileError(
+                self.path, phrase("it has no pictures"), "", phrase("Choose a video of a person.")
+            )
         stream = self._container.streams.video[0]
         if stream.width * stream.height > PICTURE_PIXELS:
             size = f"{stream.width} x {stream.height}"

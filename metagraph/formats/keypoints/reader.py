@@ -103,7 +103,7 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
 
 def make_keypoint_track(
     path: Path,
-    frames: Sequence[KeypointFrame],
+    frames: list[KeypointFrame],
     fps: float | None,
     picture: tuple[float, float] | None,
     notes: list[str],
