@@ -80,11 +80,11 @@ class CameraLine:
 
 def read_message(frame: dict[str, Any], mirror: bool) -> Keypoints | None:
     """Return what to ask for a frame of the estimator's; None if nobody was seen."""
-    marks = frame.get("worldLandmarks")
+    marks = frame.get("landmarks")  # where stances are seen better than in MediaPipe's space
     if not marks:
         return None
     return Keypoints(
-        points=tuple((x, y, z) for x, y, z, _ in marks),
-        confidence=tuple(min(1.0, max(0.0, sure)) for *_, sure in marks),
+        points=tuple((x, y) for x, y, *_ in marks),
+        confidence=tuple(sure for *_, sure in marks),
         mirror=mirror,
     )

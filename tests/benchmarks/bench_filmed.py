@@ -14,12 +14,11 @@ import sys
 import tempfile
 import time
 from argparse import ArgumentParser
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import radians
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -30,8 +29,7 @@ from app.cli.render_command import load_figure  # noqa: E402
 from app.stage.filming import measure_bounds, render_pictures  # noqa: E402
 from app.stage.playback_source import ShownPlayback  # noqa: E402
 from metagraph.formats.filmed.film import FilmedKeypoints, film_video, write_filmed_keypoints  # noqa: E402
-from metagraph.formats.keypoints.frames import KeypointFrame, read_frame  # noqa: E402
-from metagraph.formats.keypoints.reader import make_keypoint_track, read_keypoints  # noqa: E402
+from metagraph.formats.keypoints.reader import read_keypoints  # noqa: E402
 from metagraph.graph.model import LAYERS, Project  # noqa: E402
 from metagraph.mimicry.keypoint_layouts import PLACE, KeypointTrack  # noqa: E402
 from metagraph.mimicry.keypoint_take import make_clip_from_keypoints  # noqa: E402
@@ -105,14 +103,6 @@ def score_stances(project: Project, plan: Plan, track: KeypointTrack) -> Mapping
         names = [s for _, s in said[layer] if s is not None]
         out[layer] = good / total, sum(a != b for a, b in pairwise(names)) - (len(rows) - 1)
     return out
-
-
-def make_flat_track(filmed: Sequence[Mapping[str, Any]], path: Path) -> KeypointTrack:
-    """Return what the estimator saw in the picture, without its points in space."""
-    frames: list[KeypointFrame] = [
-        read_frame(path, {k: v for k, v in frame.items() if k != "worldLandmarks"}, "") for frame in filmed
-    ]
-    return make_keypoint_track(path, frames, None, SIZE, [])
 
 
 def view_from_trunk(points: np.ndarray) -> dict[str, np.ndarray]:
@@ -204,7 +194,8 @@ def main() -> None:
         assert len(read_keypoints(path.with_suffix(".jsonl"))) == len(filmed.track)
         found = sum("worldLandmarks" in frame for frame in filmed.frames) / len(filmed.frames)
         print(f"{shooting.name}: found in {found:.1%}, {1e3 * took / len(filmed.frames):.0f} ms a picture")
-        for way, track in (("space", filmed.track), ("picture", make_flat_track(filmed.frames, path))):
+        for way, track in (("space", filmed.track), ("picture", filmed.track.flat)):
+            assert track is not None
             scores = score_stances(project, plan, track)
             words = ", ".join(f"{layer} {share:.0%} ({more:+d})" for layer, (share, more) in scores.items())
             print(f"  stances in {way:8} {words}")

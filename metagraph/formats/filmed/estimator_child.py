@@ -4,8 +4,9 @@ the folder of the extra, which the program itself never does.
 Its parent (`metagraph.formats.filmed.estimator`) sends pictures through a `ChildChannel`: HEAD (seconds,
 height, width) and the bytes of red, green and blue. Each answer is a JSON object, the first one before any
 picture: {"estimator": "MediaPipe 0.10.21"} or {"error": "..."}. Those of pictures have `time` in seconds and,
-if somebody is seen, `landmarks` and `worldLandmarks` of 33 points [x, y, z, visibility], as MediaPipe has
-them. Nothing is loaded from the network: only the models in the package are used.
+if somebody is seen, `landmarks` (pixels) and `worldLandmarks` (metres from the hips) of 33 points [x, y, z,
+visibility], in MediaPipe's order and axes. Nothing is loaded from the network: only the models in the package
+are used.
 """
 
 from __future__ import annotations
@@ -77,16 +78,22 @@ def _look(pose: Any, content: bytes) -> dict[str, Any]:
     pose._simulated_timestamp += max(step, 1) - 33333
     found = pose.process(picture)
     answer: dict[str, Any] = {"time": seconds}
-    for key, marks in (
-        ("landmarks", found.pose_landmarks),
-        ("worldLandmarks", found.pose_world_landmarks),
-    ):
-        if marks is not None:
-            answer[key] = [
-                [round(float(value), 4) for value in (mark.x, mark.y, mark.z, mark.visibility)]
-                for mark in marks.landmark
-            ]
+    if found.pose_landmarks is not None and found.pose_world_landmarks is not None:
+        answer["landmarks"] = _list_points(found.pose_landmarks, width, height, 1)
+        answer["worldLandmarks"] = _list_points(found.pose_world_landmarks, 1, 1, 4)
     return answer
+
+
+def _list_points(marks: Any, width: int, height: int, digits: int) -> list[list[float]]:
+    return [
+        [
+            round(float(mark.x) * width, digits),
+            round(float(mark.y) * height, digits),
+            round(float(mark.z) * width, digits),
+            round(min(1.0, max(0.0, float(mark.visibility))), 3),
+        ]
+        for mark in marks.landmark
+    ]
 
 
 def _encode(answer: dict[str, Any]) -> bytes:

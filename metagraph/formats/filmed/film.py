@@ -18,7 +18,7 @@ from metagraph.formats.filmed.camera import Camera
 from metagraph.formats.filmed.estimator import PoseEstimator
 from metagraph.formats.filmed.video import RATE, FilmedPicture, VideoFile
 from metagraph.formats.keypoints.frames import read_frame
-from metagraph.formats.keypoints.reader import make_keypoint_track
+from metagraph.formats.keypoints.tracks import make_keypoint_track
 from metagraph.mimicry.keypoint_layouts import KeypointTrack
 
 RARE = 0.98  # share of the pictures with somebody in them below which it is said
