@@ -32,7 +32,7 @@ from metagraph.formats.filmed.film import FilmedKeypoints, film_video, write_fil
 from metagraph.formats.keypoints.reader import read_keypoints  # noqa: E402
 from metagraph.graph.model import LAYERS, Project  # noqa: E402
 from metagraph.mimicry.keypoint_layouts import PLACE, KeypointTrack  # noqa: E402
-from metagraph.mimicry.keypoint_take import make_clip_from_keypoints  # noqa: E402
+from metagraph.mimicry.keypoint_take import KeypointTakeError, make_clip_from_keypoints  # noqa: E402
 from metagraph.mimicry.mimic import Mimic  # noqa: E402
 from metagraph.mimicry.signatures import BodySignature  # noqa: E402
 from metagraph.motion.roles import find_roles  # noqa: E402
@@ -201,8 +201,11 @@ def main() -> None:
             print(f"  stances in {way:8} {words}")
         for limb, off in measure_angles(project, plan, filmed.track).items():
             print(f"  {limb:10} off {describe(off, 'degrees')}")
-        off = 100 * measure_take(project, plan, filmed.track)
-        print(f"  take       off {describe(off, '% of the height')}")
+        try:
+            off = 100 * measure_take(project, plan, filmed.track)
+            print(f"  take       off {describe(off, '% of the height')}")
+        except KeypointTakeError as error:
+            print(f"  take       none: {error}")
         sys.stdout.flush()
 
 
