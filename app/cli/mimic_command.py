@@ -156,6 +156,8 @@ def _take(options: Namespace, project: Project, seen: KeypointTrack) -> Path | N
         raise FileError(
             _name_source(options), str(error).partition(": ")[0], "", str(error).partition(": ")[2]
         ) from None
+    for note in clip.notes:
+        print(f"note: {note}", file=sys.stderr)
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".bvh":
         write_bvh(clip, path)
