@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtWidgets import QMessageBox
 
 from app.project.jobs import WindowJob
-from app.translation import tr, tr_error
+from app.translation import format_minutes, tr, tr_error
 from metagraph.common.extras import EXTRAS, install_extra, is_installed
 from metagraph.formats.filmed.estimator import EXTRA
 from metagraph.formats.filmed.film import film_video
@@ -17,6 +18,8 @@ from metagraph.mimicry.keypoint_layouts import KeypointTrack
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
+
+EARLY = 2.0  # seconds of work before what is left is estimated
 
 
 def read_video(shell: Shell, file: Path, show: Callable[[KeypointTrack], None]) -> None:
@@ -73,9 +76,14 @@ def _when_installed(shell: Shell, begin: Callable[[], None]) -> None:
 
 def _start(shell: Shell, file: Path, show: Callable[[KeypointTrack], None]) -> None:
     def work(job: WindowJob) -> KeypointTrack:
-        return film_video(
-            file, lambda done, total: job.tell(done, total, file.name), lambda: job.cancelled
-        ).track
+        began = time.monotonic()
+
+        def tell(done: int, total: int) -> None:
+            spent = time.monotonic() - began
+            left = spent / max(done, 1) * (total - done)
+            job.tell(done, total, tr("{clock} left", clock=format_minutes(left)) if spent > EARLY else "")
+
+        return film_video(file, tell, lambda: job.cancelled).track
 
     def failed(error: Exception) -> None:
         QMessageBox.warning(shell.widget, tr("Not read"), tr_error(error))
