@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtWidgets import QMessageBox
 
 from app.project.jobs import WindowJob
-from app.translation import format_minutes, tr, tr_error
+from app.translation import tr, tr_error
 from metagraph.common.extras import EXTRAS, install_extra, is_installed
 from metagraph.formats.filmed.estimator import EXTRA
 from metagraph.formats.filmed.film import film_video
@@ -81,7 +81,9 @@ def _start(shell: Shell, file: Path, show: Callable[[KeypointTrack], None]) -> N
         def tell(done: int, total: int) -> None:
             spent = time.monotonic() - began
             left = spent / max(done, 1) * (total - done)
-            job.tell(done, total, tr("{clock} left", clock=format_minutes(left)) if spent > EARLY else "")
+            job.tell(
+                done, total, tr("about {seconds:,} s left", seconds=round(left)) if spent > EARLY else ""
+            )
 
         return film_video(file, tell, lambda: job.cancelled).track
 

@@ -73,7 +73,7 @@ def _look(pose: Any, content: bytes) -> dict[str, Any]:
 
     seconds, height, width = HEAD.unpack_from(content)
     picture = np.frombuffer(content, np.uint8, offset=HEAD.size).reshape(height, width, 3)
-    # It counts 30 frames a second by itself; its filters are told the picture's own time instead.
+    # It counts 30 frames a second by itself; its filters get the picture's own time instead.
     step = round(seconds * 1e6) - pose._simulated_timestamp
     pose._simulated_timestamp += max(step, 1) - 33333
     found = pose.process(picture)
