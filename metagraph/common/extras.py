@@ -159,6 +159,7 @@ def install_extra(name: str) -> None:
         target = place / name
         shutil.rmtree(target, ignore_errors=True)
         fresh.replace(target)
+        make_own(target)  # whatever the user's mask is, others cannot write there
     except (OSError, TimeoutError) as error:
         raise ExtraError(str(error)) from None
     finally:
