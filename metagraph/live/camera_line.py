@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Any
 
-from metagraph.formats.filmed.camera import Camera
+from metagraph.formats.filmed.camera import CameraFeed
 from metagraph.formats.filmed.estimator import PoseEstimator
 from metagraph.live.hub import Hub
 from metagraph.live.messages import Hello, Keypoints, encode
@@ -17,7 +17,8 @@ from metagraph.live.messages import Hello, Keypoints, encode
 
 class CameraLine:
     """A client that asks as the person before a camera moves. A thread looks at one picture after another,
-    always the newest. Raises what `Camera` and `PoseEstimator` do; what goes wrong later is said by `tell`.
+    always the newest. Raises what `CameraFeed` and `PoseEstimator` do; what goes wrong later is said by
+    `tell`.
     """
 
     formats = ()
@@ -35,7 +36,7 @@ class CameraLine:
         self._loop = asyncio.get_running_loop()
         self._estimator = PoseEstimator()
         try:
-            self._camera = Camera(device)
+            self._camera = CameraFeed(device)
         except BaseException:
             self._estimator.close()
             raise

@@ -56,15 +56,12 @@ class Shooting:
     body: str = "ada.glb"
     yaw: float = 0.0
     waist: bool = False
-    light: str = "studio"
-    background: str = "neutral"
 
 
 SHOOTINGS = (
     Shooting("Ada from the front"),
     Shooting("Ada, 25 degrees aside", yaw=25.0),
     Shooting("Ada from the hips up", waist=True),
-    Shooting("Ada, evening light", light="evening", background="dusk"),
     Shooting("Ben from the front", "ben.glb"),
     Shooting("the mannequin", "mannequin.glb"),
 )
@@ -79,7 +76,7 @@ def shoot(shooting: Shooting, project: Project, plan: Plan, path: Path) -> None:
     if shooting.waist:
         low[1] = high[1] - 0.52 * (high[1] - low[1])
     camera = Camera(fov=radians(40.0)).facing(radians(shooting.yaw), radians(3.0)).frame((low, high), 1.0)
-    look = look_of("light", shooting.light, shooting.background)
+    look = look_of("light", backdrop="neutral")
     write_video(path, render_pictures(seen, times, SIZE, look, camera), FPS, SIZE)
 
 

@@ -22,7 +22,7 @@ class CameraError(RuntimeError):
     """A camera cannot be read; the message says why and what to do."""
 
 
-class Camera:
+class CameraFeed:
     """A camera that is read on a thread, which keeps only the newest picture: whoever is slower than the
     camera misses some and is never late. Raises CameraError, and FileError for a file that is no video.
 

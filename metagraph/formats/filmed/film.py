@@ -14,7 +14,7 @@ from metagraph.common.budgets import KEYPOINT_FRAMES
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.filmed.camera import Camera
+from metagraph.formats.filmed.camera import CameraFeed
 from metagraph.formats.filmed.estimator import PoseEstimator
 from metagraph.formats.filmed.video import RATE, FilmedPicture, VideoFile
 from metagraph.formats.keypoints.frames import read_frame
@@ -69,10 +69,11 @@ def film_camera(
     tell: Callable[[float], None] = lambda seconds: None,
     is_stopped: Callable[[], bool] = lambda: False,
 ) -> FilmedKeypoints:
-    """Return the keypoints of the person before a camera (`Camera`), filmed until `is_stopped` or for so many
-    seconds. tell: called with the seconds that were filmed. Raises CameraError, FileError, EstimatorError.
+    """Return the keypoints of the person before a camera (`CameraFeed`), filmed until `is_stopped` or for so
+    many seconds. tell: called with the seconds that were filmed. Raises CameraError, FileError,
+    EstimatorError.
     """
-    with closing(PoseEstimator()) as estimator, closing(Camera(device)) as camera:
+    with closing(PoseEstimator()) as estimator, closing(CameraFeed(device)) as camera:
         pictures = takewhile(
             lambda picture: not is_stopped() and (seconds is None or picture.seconds <= seconds),
             camera.read(),

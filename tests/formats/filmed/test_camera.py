@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.filmed.camera import Camera, CameraError, name_device
+from metagraph.formats.filmed.camera import CameraError, CameraFeed, name_device
 from tests.films import make_film
 
 
@@ -22,12 +22,12 @@ def test_each_system_has_its_own_way_to_name_a_camera() -> None:
 
 def test_a_camera_that_is_not_there_says_what_to_check() -> None:
     with pytest.raises(CameraError, match=r"camera /dev/video98 cannot be opened.*plugged in"):
-        Camera("/dev/video98")
+        CameraFeed("/dev/video98")
 
 
 def test_whoever_is_slow_gets_the_newest_picture(tmp_path: Path) -> None:
     film = make_film(tmp_path / "a.mp4", [n / 20 for n in range(20)])
-    with closing(Camera(str(film))) as camera:
+    with closing(CameraFeed(str(film))) as camera:
         found = []
         for picture in camera.read():
             found.append(picture.seconds)
@@ -37,7 +37,7 @@ def test_whoever_is_slow_gets_the_newest_picture(tmp_path: Path) -> None:
 
 def test_a_camera_can_be_closed_while_it_is_read(tmp_path: Path) -> None:
     film = make_film(tmp_path / "a.mp4", [n / 20 for n in range(200)])
-    camera = Camera(str(film))
+    camera = CameraFeed(str(film))
     pictures = camera.read()
     next(pictures)
     camera.close()
@@ -47,4 +47,4 @@ def test_a_camera_can_be_closed_while_it_is_read(tmp_path: Path) -> None:
 def test_a_file_that_is_no_video_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mp4").write_bytes(b"nothing")
     with pytest.raises(FileError, match="no video"):
-        Camera(str(tmp_path / "a.mp4"))
+        CameraFeed(str(tmp_path / "a.mp4"))
