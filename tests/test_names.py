@@ -35,7 +35,7 @@ VERBS = set(
     collect combine compare compose compute conjugate connect continue contribute convert copy count cover
     crop crossfade cut declare decode decompose delay delete derive describe detect differs digest
     discover drag draw drive drop duplicate ease edit elide encode escape estimate evaluate exchange
-    exhibit expand explain export extend fade fetch fill filter find finish fit fix fold follow foresee
+    exhibit expand explain export extend fade fetch fill film filter find finish fit fix fold follow foresee
     forget format free freeze from gather generate get go grade group guard guess handle has hear hide hit
     hold holds identify import improvise infer install is join judge keep keeps key label land last lay
     lead leap learn leave level lie lift limit list load localize lock log look main make mark mask match

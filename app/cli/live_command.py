@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli import live_graph_options
+from app.cli.filmed_keypoints import DEFAULT_CAMERA, require_estimator
 from app.cli.kept_options import check_kept_name, parse_kept_seed
 from app.cli.outputs import ProjectOutput
 from metagraph.live import FACE_PORT, OSC_PORT, PORT, VMC_PORT
@@ -41,6 +42,15 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--vmc-in", nargs="?", type=int, const=VMC_PORT, metavar="PORT",
         help="mimic a person whom another program tracks, as it sends VMC to this UDP port "
         f"(default: {VMC_PORT})",
+    )  # fmt: skip
+    parser.add_argument(
+        "--camera", nargs="?", const=DEFAULT_CAMERA, metavar="DEVICE",
+        help="mimic the person before a camera of this computer: a number from 0, or the system's name for "
+        "it, such as /dev/video0 (default: 0)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--no-mirror", action="store_true",
+        help="match left with left, instead of mirroring the person before the camera",
     )  # fmt: skip
     parser.add_argument(
         "--face", nargs="?", const="", metavar="[HOST:]PORT",
@@ -111,8 +121,12 @@ def run(options: Namespace) -> int:
             vmc=_parse_receiver("--vmc", options.vmc, VMC_PORT),
             face=_parse_receiver("--face", options.face, FACE_PORT),
             person=options.vmc_in,
+            camera=options.camera,
+            mirror=not options.no_mirror,
         )
     )
+    if options.camera is not None:
+        require_estimator(options)
     live_graph_options.require_consistent_options(options)
     opened = open_whole(options.project)
     for note in opened.notes:
@@ -223,6 +237,7 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     sent = f" It sends VMC to {options.vmc[0]}:{options.vmc[1]}." if options.vmc is not None else ""
     sent += f" It sends the face to {options.face[0]}:{options.face[1]}." if options.face is not None else ""
     sent += f" It mimics whom VMC on port {options.person} shows." if options.person is not None else ""
+    sent += f" It mimics the person before camera {options.camera}." if options.camera is not None else ""
     token = "; clients need the token" if ready.token else ""
     where = f": {', '.join(ways)}" if ways else " to no one"
     print(

@@ -1,4 +1,6 @@
-"""`metagraph mimic`: recognise stances in a person's keypoints, and let the character mimic them."""
+"""`metagraph mimic`: recognise a person's stances in keypoints, a video or before a camera, and let the
+character mimic them.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +11,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.cli.filmed_keypoints import add_camera_arguments, read_person
 from app.cli.outputs import ProjectOutput
 from metagraph.graph.words import LAYERS
 
@@ -28,9 +31,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "keypoints",
         type=Path,
-        help="OpenPose's or MediaPipe's keypoints: a JSON file, or a folder of OpenPose frames; or "
-        "markers of motion capture (.trc, .c3d)",
+        nargs="?",
+        help="a video of a person; or keypoints of OpenPose or MediaPipe: a JSON file, or a folder of "
+        "OpenPose frames; or markers of motion capture (.trc, .c3d)",
     )
+    add_camera_arguments(parser)
     parser.add_argument(
         "-o",
         "--out",
@@ -97,14 +102,14 @@ def _mimicked(
 ) -> int:
     """output: the path at which the project is saved, or None."""
     from app.cli.command_output import open_for_command
-    from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.graph.requests import Performance
     from metagraph.mimicry.performing import REST, mimic_performance, place_requests
 
     project = open_for_command(options.project)
-    seen = read_keypoints(options.keypoints, options.fps, picture)
+    seen = read_person(options, picture)
+    source = _name_source(options)
     length = round(seen.seconds + REST, 3)
-    new = Performance(name=options.keep or options.keypoints.stem, seed=options.seed, length=length)
+    new = Performance(name=options.keep or Path(source).stem, seed=options.seed, length=length)
     found = mimic_performance(
         project, seen, not options.no_mirror, options.layer or LAYERS, options.gaze, new
     )
@@ -149,8 +154,10 @@ def _take(options: Namespace, project: Project, seen: KeypointTrack) -> Path | N
         )
     except KeypointTakeError as error:
         raise FileError(
-            options.keypoints, str(error).partition(": ")[0], "", str(error).partition(": ")[2]
+            _name_source(options), str(error).partition(": ")[0], "", str(error).partition(": ")[2]
         ) from None
+    for note in clip.notes:
+        print(f"note: {note}", file=sys.stderr)
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".bvh":
         write_bvh(clip, path)
@@ -224,9 +231,13 @@ def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
     return rows
 
 
+def _name_source(options: Namespace) -> str:
+    return str(options.keypoints) if options.keypoints is not None else f"camera {options.camera}"
+
+
 def _facts(options: Namespace, seen: KeypointTrack) -> dict[str, Any]:
     return {
-        "keypoints": str(options.keypoints),
+        "keypoints": _name_source(options),
         "seconds": round(seen.seconds, 3),
         "frames": len(seen),
         "dimensions": seen.dims,
@@ -238,7 +249,9 @@ def _lines(
     options: Namespace, seen: KeypointTrack, rows: list[dict[str, Any]], written: list[str]
 ) -> list[str]:
     how = "as in a mirror" if not options.no_mirror else "left as left"
-    out = [f"{options.keypoints}: {len(seen)} frames, {seen.seconds:.1f} s, {seen.dims} dimensions, {how}"]
+    out = [
+        f"{_name_source(options)}: {len(seen)} frames, {seen.seconds:.1f} s, {seen.dims} dimensions, {how}"
+    ]
     for row in rows:
         when = (
             f"goes there {row['goes']:.2f} s to {row['there']:.2f} s"

@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for what only writing 
 # Options that name what is written. All others of type Path are read, unless `WRITTEN` says otherwise.
 OUTPUTS = ("out", "output", "into", "bids", "xes", "take", "video")
 # Command, action and option of those whose name alone does not tell.
-WRITTEN = (("motion-graph", "build", "keep"),)
+WRITTEN = (("motion-graph", "build", "keep"), ("mimic", None, "save_keypoints"))
 # Commands, and actions of some, whose output is a folder, in which nothing but their own files is replaced.
 FOLDERS = (
     ("export", None),

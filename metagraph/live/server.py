@@ -21,6 +21,7 @@ from metagraph.live.wire import BatchResult, Ready, RequestBatch
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Project
+    from metagraph.live.camera_line import CameraLine
 
 TICK = 1 / 60  # seconds
 LAST = 2.0  # seconds at most for answering what was asked before the end
@@ -33,7 +34,8 @@ class Options(Struct, frozen=True):
     files. stdio: whether standard input and output are a client. mcp: whether that speaks the Model Context
     Protocol. vmc, face: host and port of a program that receives VMC, and of an Unreal Engine that receives
     Live Link Face, None for none. person: the UDP port at which VMC of a tracked person is read, on this
-    machine alone, None for none.
+    machine alone, None for none. camera: the camera whose person is mimicked, None for none; mirror: as in a
+    mirror.
     """
 
     host: str = ""
@@ -46,6 +48,8 @@ class Options(Struct, frozen=True):
     vmc: tuple[str, int] | None = None
     face: tuple[str, int] | None = None
     person: int | None = None
+    camera: str | None = None
+    mirror: bool = True
 
 
 class LiveError(ValueError):
@@ -99,6 +103,7 @@ class Server:
         self._servers: list[asyncio.Server] = []
         self._osc: Any = None
         self.person_port = 0  # at which VMC of a tracked person is read, once it is
+        self.camera: CameraLine | None = None
         self._stdio: StdioLine | None = None
         self._stdio_number = 0
 
@@ -122,6 +127,8 @@ class Server:
                 await self._open_face(*options.face)
             if options.person is not None:
                 await self._open_person(options.person)
+            if options.camera is not None:
+                self._open_camera(options.camera)
         except OSError as error:
             await self.close()
             words = error.strerror or str(error)
@@ -192,6 +199,11 @@ class Server:
             lambda: VmcPersonLine(self.hub, self.clock), ("127.0.0.1", port)
         )
         self.person_port = int(transport.get_extra_info("sockname")[1])
+
+    def _open_camera(self, device: str) -> None:
+        from metagraph.live.camera_line import CameraLine  # only who has a camera loads PyAV
+
+        self.camera = CameraLine(self.hub, self.clock, device, self.options.mirror)
 
     def _line(self, line: bytes | None) -> None:
         if line is not None:

@@ -79,7 +79,8 @@ _CHOSEN: Mapping[int, Array] = {
 class KeypointTrack:
     """One person over time. times `[F]` seconds, ascending from 0 or later; points `[F, K, 3]`, z 0 where
     dims is 2; confidence `[F, K]` 0..1, 0 for what was not found; names of the K points. notes: what was left
-    out, in words.
+    out, in words. flat: the same person in the picture, where depth was guessed from one picture; stances are
+    seen better there.
     """
 
     times: Array
@@ -88,6 +89,7 @@ class KeypointTrack:
     names: tuple[str, ...]
     dims: int
     notes: tuple[str, ...] = ()
+    flat: KeypointTrack | None = None
 
     def __len__(self) -> int:
         return len(self.times)
@@ -110,7 +112,8 @@ class KeypointTrack:
     def mirrored(self) -> KeypointTrack:
         """Return the person as seen in a mirror: left and right changed over."""
         names = tuple(_other(name) for name in self.names)
-        return replace(self, points=self.points * np.array([-1.0, 1.0, 1.0]), names=names)
+        flat = self.flat.mirrored() if self.flat is not None else None
+        return replace(self, points=self.points * np.array([-1.0, 1.0, 1.0]), names=names, flat=flat)
 
 
 def _other(name: str) -> str:

@@ -26,6 +26,10 @@ FPS = 30.0
 SURE = 0.3  # confidence below which a point was not seen
 LONGEST_GAP = 0.5  # seconds that are bridged; somebody unseen for longer stays as he was last seen
 SMOOTH = 0.05  # seconds, standard deviation of the filter on places
+LEGS = ("left_knee", "right_knee", "left_ankle", "right_ankle")
+RARE = 0.1  # share of the time below which a leg's points count as not seen
+LEG_UNSEEN = "knees or feet were not seen, so the character stands on straight legs"
+SHANK = 0.85  # of a thigh or a lower leg, in lengths of the torso from hips to shoulders
 STRAIGHT = 0.15  # sine of the bend below which a limb has no plane of its own
 NEEDED = ("hips", "head", "left_upper_arm", "right_upper_arm", "left_upper_leg", "right_upper_leg")
 LIMBS = (  # role, the point it begins at and the one it points to; parents first
@@ -44,8 +48,9 @@ def make_clip_from_keypoints(
     keypoints: KeypointTrack, skeleton: Skeleton, name: str, fps: float = FPS, smooth: float = SMOOTH
 ) -> Clip:
     """Return a clip of the skeleton at `fps` frames a second that moves as a person's keypoints do. Places
-    are smoothed over `smooth` seconds, a standard deviation. Raises KeypointTakeError if they are flat, too
-    few, or the skeleton lacks arms, legs or a head.
+    are smoothed over `smooth` seconds, a standard deviation. Somebody whose knees or feet are not in the
+    picture stands on straight legs, which the clip's notes say. Raises KeypointTakeError if points are flat,
+    too few, or the skeleton lacks arms, legs or a head.
     """
     if keypoints.dims < 3:
         raise KeypointTakeError(
@@ -56,7 +61,7 @@ def make_clip_from_keypoints(
     missing = [role for role in NEEDED if role not in roles]
     if missing:
         raise KeypointTakeError(f"the skeleton has no {', '.join(missing)}: name them in its joints' roles")
-    times, places = _even(keypoints, fps, smooth)
+    times, places, notes = _even(keypoints, fps, smooth)
     seen = {point: places[:, n] for point, n in PLACE.items()}
     turns = _turned(skeleton, roles, seen)
     rest = skeleton.rest
@@ -70,21 +75,25 @@ def make_clip_from_keypoints(
     root = _placed(skeleton, roles, local, seen, smooth * fps)
     translations = np.repeat(rest.translations[None, :1], len(times), 0)
     translations[:, 0] = root
-    return Clip(name, skeleton, fps, rotation.make_continuous(local), translations)
+    return Clip(name, skeleton, fps, rotation.make_continuous(local), translations, notes=notes)
 
 
-def _even(keypoints: KeypointTrack, fps: float, smooth: float) -> tuple[Array, Array]:
-    """Return even times `[F]` and smoothed places `[F, 17, 3]` of the points, gaps bridged."""
+def _even(keypoints: KeypointTrack, fps: float, smooth: float) -> tuple[Array, Array, tuple[str, ...]]:
+    """Return even times `[F]`, smoothed places `[F, 17, 3]` of the points, gaps bridged, and notes."""
     places, sure = keypoints.canonical
     if len(keypoints) < 2 or keypoints.seconds <= keypoints.times[0]:
         raise KeypointTakeError("one frame is no motion: give a recording")
     times = np.arange(keypoints.times[0], keypoints.seconds + 1e-9, 1 / fps)
     out = np.empty((len(times), len(PLACE), 3))
+    legs = True
     for name, n in PLACE.items():
         there = (sure[:, n] >= SURE) & np.isfinite(places[:, n]).all(-1)
-        if there.sum() < 2:
+        if there.sum() < 2 or (name in LEGS and there.mean() < RARE):
             if name in ("nose", "left_eye", "right_eye", "left_ear", "right_ear"):
                 out[:, n] = np.nan  # the head then follows the chest
+                continue
+            if name in LEGS:
+                legs = False
                 continue
             raise KeypointTakeError(f"the {name.replace('_', ' ')} was never seen: show the whole person")
         at, of = keypoints.times[there], places[there, n]
@@ -94,7 +103,19 @@ def _even(keypoints: KeypointTrack, fps: float, smooth: float) -> tuple[Array, A
         long = (at[after] - at[before] > LONGEST_GAP) & (times < at[after])
         known[long] = of[before[long]]
         out[:, n] = _smoothed(known, smooth * fps)
-    return times - times[0], out
+    if not legs:
+        _stand(out)
+    return times - times[0], out, () if legs else (LEG_UNSEEN,)
+
+
+def _stand(places: Array) -> None:
+    """Put knees and ankles of places `[F, 17, 3]` straight below the hips."""
+    hips = places[:, [PLACE["left_hip"], PLACE["right_hip"]]]
+    shoulders = places[:, [PLACE["left_shoulder"], PLACE["right_shoulder"]]]
+    torso = float(np.median(np.linalg.norm((shoulders - hips).mean(1), axis=-1)))
+    for part, below in (("knee", SHANK), ("ankle", 2 * SHANK)):
+        for n, side in enumerate(("left", "right")):
+            places[:, PLACE[f"{side}_{part}"]] = hips[:, n] - np.array([0.0, below * torso, 0.0])
 
 
 def _smoothed(places: Array, frames: float) -> Array:

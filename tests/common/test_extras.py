@@ -84,4 +84,61 @@ def test_extras_are_those_that_the_package_offers():
     offered = tomllib.loads((extras.ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     declared = offered["project"]["optional-dependencies"]
     for name, extra in EXTRAS.items():
-        assert declared[name] == [extra.wants[0]]
+        assert declared.get(name) == (None if extra.holds else [extra.wants[0]])
+
+
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    """A home, and a Metagraph that is no bundle."""
+    monkeypatch.setattr(extras, "find_user_folder", lambda kind: tmp_path / kind)
+    monkeypatch.setattr(sys, "version_info", (3, 12, 1))
+    return tmp_path
+
+
+def place_files(files, commands):
+    """Stand in for pip: write files where it is told to, and remember the command."""
+    from pathlib import Path
+
+    def run_program(command, timeout=None, **options):
+        commands.append(command)
+        for name in files:
+            path = Path(command[command.index("--target") + 1]) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
+        return 0, ""
+
+    return run_program
+
+
+def test_an_extra_that_lives_apart_is_installed_anywhere_and_never_imported(home, monkeypatch):
+    commands = []
+    monkeypatch.setattr(extras, "run_program", place_files(EXTRAS["camera"].holds, commands))
+    assert not extras.is_installed("camera") and extras.find_extra_folder("camera") is None
+    before = list(sys.path)
+    extras.install_extra("camera")
+    folder = extras.find_extra_folder("camera")
+    assert folder == home / "data" / "Metagraph" / "extras-3.12" / "camera"
+    assert extras.is_installed("camera") and sys.path == before
+    assert "--no-deps" in commands[0] and set(EXTRAS["camera"].wants) <= set(commands[0])
+    assert extras.remove_extra("camera") and not extras.is_installed("camera")
+
+
+def test_a_package_without_its_models_is_not_kept(home, monkeypatch):
+    commands = []
+    monkeypatch.setattr(extras, "run_program", place_files(["mediapipe/__init__.py"], commands))
+    with pytest.raises(ExtraError, match="lacks the files"):
+        extras.install_extra("camera")
+    assert not extras.is_installed("camera") and not list((home / "data" / "Metagraph").glob("*-new"))
+
+
+def test_a_python_without_packages_is_told_which_there_are(home, monkeypatch):
+    monkeypatch.setattr(sys, "version_info", (3, 13, 0))
+    with pytest.raises(ExtraError, match=r"Python 3\.12 and older.*runs with Python 3\.13"):
+        extras.install_extra("camera")
+
+
+def test_a_folder_that_others_write_to_is_not_used(home, monkeypatch):
+    monkeypatch.setattr(extras, "run_program", place_files(EXTRAS["camera"].holds, []))
+    extras.install_extra("camera")
+    (home / "data" / "Metagraph" / "extras-3.12" / "camera").chmod(0o777)
+    assert not extras.is_installed("camera")

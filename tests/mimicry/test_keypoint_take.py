@@ -187,3 +187,32 @@ def test_who_is_unseen_for_long_stays_as_last_seen(sample: Project) -> None:
     gap = places[26:64]
     assert np.linalg.norm(gap - gap[0], axis=-1).max() < 1e-6
     assert np.linalg.norm(places[80] - gap[0]) > 0.05
+
+
+def test_somebody_seen_from_the_hips_up_stands_on_straight_legs(sample: Project) -> None:
+    clip = next(c.motion for c in sample.clips.values() if c.motion is not None and "open_palms" in c.name)
+    whole = seen(clip)
+    hidden = whole.confidence.copy()
+    hidden[:, [n for n, name in enumerate(POINTS) if name.endswith(("knee", "ankle"))]] = 0.0
+    made = make_clip_from_keypoints(replace(whole, confidence=hidden), clip.skeleton, "x")
+    assert made.notes == ("knees or feet were not seen, so the character stands on straight legs",)
+    roles = find_roles(clip.skeleton)
+    places = made.skeleton.globals(made.poses())[1]
+    for side in ("left", "right"):
+        leg = places[:, roles[f"{side}_foot"]] - places[:, roles[f"{side}_upper_leg"]]
+        assert (-leg[:, 1] > 0.99 * np.linalg.norm(leg, axis=-1)).all()
+    arms = [0, 1, 3, 4]
+    np.testing.assert_allclose(
+        off(clip, made)[:, arms],
+        off(clip, make_clip_from_keypoints(whole, clip.skeleton, "x"))[:, arms],
+        atol=1e-3,
+    )
+
+
+def test_somebody_without_hips_is_refused(sample: Project) -> None:
+    clip = next(c.motion for c in sample.clips.values() if c.motion is not None)
+    whole = seen(clip)
+    hidden = whole.confidence.copy()
+    hidden[:, POINTS.index("left_hip")] = 0.0
+    with pytest.raises(KeypointTakeError, match="the left hip was never seen"):
+        make_clip_from_keypoints(replace(whole, confidence=hidden), clip.skeleton, "x")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,15 @@ def test_nobody_is_refused(somebody: Project) -> None:
     empty = KeypointTrack(np.zeros(0), np.zeros((0, 17, 3)), np.zeros((0, 17)), POINTS, 3)
     with pytest.raises(ValueError, match="nobody"):
         mimic_performance(somebody, empty)
+
+
+def test_stances_are_looked_for_in_the_picture_where_depth_was_guessed(somebody: Project) -> None:
+    wrong, right = (shown(somebody, [(kind, 4)]) for kind in ("down", "raised"))
+    right = replace(right, points=right.points * [1.0, 1.0, 0.0], dims=2)
+    found = mimic_performance(somebody, replace(wrong, flat=right), mirror=False)
+    assert found.performance.asks == mimic_performance(somebody, right, mirror=False).performance.asks
+    arms = {ask.stance for ask in found.performance.asks if ask.layer == "arms"}  # type: ignore[union-attr]
+    assert {somebody.stance(stance).name for stance in arms} == {"raised"}  # type: ignore[union-attr]
 
 
 def test_what_is_seen_is_asked_for_when_it_is_seen(somebody: Project) -> None:

@@ -1,4 +1,4 @@
-"""Keypoints of a person, mimicked."""
+"""A person in a video, before a camera or in keypoints, mimicked."""
 
 from __future__ import annotations
 
@@ -13,6 +13,11 @@ def contribute(shell: Shell) -> Contribution:
 
         open_keypoints(shell)
 
+    def mimic_camera() -> None:
+        from app.features.mimic.mimic_dialog import open_camera
+
+        open_camera(shell)
+
     can = lambda: shell.document.project.skeleton is not None and shell.stage.performance.live.stage is None  # noqa: E731
     return Contribution(
         commands=(
@@ -20,9 +25,19 @@ def contribute(shell: Shell) -> Contribution:
                 "mimic",
                 "&Motion",
                 "make",
-                tr("Mimic &keypoints…"),
+                tr("Mimic a &person…"),
                 mimic,
-                tip=tr("Make the character copy the stances of a person on video"),
+                tip=tr("Make the character copy the stances of a person in a video, or of keypoints"),
+                enabled=can,
+                when="meta",
+            ),
+            Command(
+                "mimic_camera",
+                "&Motion",
+                "make",
+                tr("Mimic a &camera…"),
+                mimic_camera,
+                tip=tr("Film yourself, and make the character copy your stances"),
                 enabled=can,
                 when="meta",
             ),

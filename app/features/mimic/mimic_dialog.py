@@ -23,9 +23,11 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
+from app.features.mimic.filmed_keypoints import film_person, read_video
 from app.look.theme import strengthen
 from app.project.jobs import WindowJob
 from app.translation import format_number, tr, tr_error, tr_noop, tr_plural
+from metagraph.formats.filmed.video import VIDEO_ENDINGS, is_video
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
@@ -36,7 +38,9 @@ from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, place
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-FILTER = tr_noop("Keypoints of OpenPose or MediaPipe, markers (*.json *.jsonl *.trc *.c3d);;All files (*)")
+FILTER = tr_noop(
+    "Videos, keypoints, markers ({videos} *.json *.jsonl *.trc *.c3d);;Videos ({videos});;All files (*)"
+)
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints" / "conversation.openpose.json"
 _NUMBERED = re.compile(r"_\d+_keypoints\.json$", re.I)
 
@@ -50,10 +54,11 @@ class MimicDialog(QDialog):
         super().__init__(shell.widget)
         self.shell, self.keypoints, self.name = shell, keypoints, name
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle(tr("Mimic keypoints"))
+        self.setWindowTitle(tr("Mimic a person"))
         self.setMinimumWidth(480)
         layout = QVBoxLayout(self)
-        deep = tr("with depth") if keypoints.dims == 3 else tr("without depth")
+        flat = (keypoints.flat or keypoints).dims == 2
+        deep = tr("without depth") if flat else tr("with depth")
         frames = tr_plural("{count:,} frame", "{count:,} frames", len(keypoints))
         facts = QLabel(f"{name}: {frames}, {format_number(keypoints.seconds, '.1f')} s, {deep}", self)
         facts.setWordWrap(True)
@@ -104,7 +109,7 @@ class MimicDialog(QDialog):
             else tr("The detected stances become a new performance. Gestures and fidgets continue as before.")
         )
         layout.addWidget(self._dim(into))
-        if keypoints.dims == 2:
+        if flat:
             layout.addWidget(self._dim(tr("Without depth, leaning towards the camera cannot be detected.")))
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
@@ -181,7 +186,7 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
     if not found.sightings:
         shell.tell(tr("No stance of the project was recognised in the keypoints."))
         return
-    shell.document.edit(tr("Mimic keypoints"), edit)
+    shell.document.edit(tr("Mimic a person"), edit)
     shell.stage.session.onstage.set_performance(made)
     shell.stage.session.transport.show_plan()
     shell.tell(
@@ -203,10 +208,11 @@ def pick_recording(file: Path) -> Path:
 
 
 def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
-    """Ask for keypoints (or take `path`), read them on a thread and open the dialog."""
+    """Ask for keypoints or a video (or take `path`), read them on a thread and open the dialog."""
     if not path:
         start = str(QSettings().value("mimic/folder") or shell.document.folder or Path.home())
-        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Mimic keypoints"), start, tr(FILTER))
+        kinds = tr(FILTER, videos=" ".join(f"*{ending}" for ending in VIDEO_ENDINGS))
+        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Mimic a person"), start, kinds)
         if not path:
             return
         QSettings().setValue("mimic/folder", str(Path(path).parent))
@@ -215,7 +221,16 @@ def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
     def show(keypoints: KeypointTrack) -> None:
         MimicDialog(shell, keypoints, file.name).open()
 
+    if is_video(file):
+        read_video(shell, file, show)
+        return
+
     def failed(error: Exception) -> None:
         QMessageBox.warning(shell.widget, tr("Not read"), tr_error(error))
 
     shell.jobs.start(tr("Reading {name}", name=file.name), lambda _: read_keypoints(file), show, failed)
+
+
+def open_camera(shell: Shell) -> None:
+    """Film the person before a camera, then open the dialog."""
+    film_person(shell, lambda keypoints: MimicDialog(shell, keypoints, tr("Camera")).open())

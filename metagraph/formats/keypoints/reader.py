@@ -23,7 +23,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.budgets import KEYPOINT_FRAMES, KEYPOINT_SECONDS, KEYPOINTS_FILE
+from metagraph.common.budgets import KEYPOINT_FRAMES, KEYPOINTS_FILE
 from metagraph.common.files import guard_reader, read_file
 from metagraph.errors import FileError
 from metagraph.formats.clip_readers import KnownTool
@@ -37,33 +37,25 @@ from metagraph.formats.keypoints.frames import (
     normalize_key,
     read_frame,
 )
+from metagraph.formats.keypoints.tracks import CUT, make_keypoint_track
 from metagraph.formats.markers.marker_clips import read_marker_track
-from metagraph.mimicry.keypoint_layouts import (
-    BY_COUNT,
-    H36M,
-    LAYOUTS,
-    PLACE,
-    POINTS,
-    KeypointTrack,
-    choose_points,
-)
-from metagraph.mimicry.people import SeenPerson, follow_person
+from metagraph.mimicry.keypoint_layouts import H36M, POINTS, KeypointTrack
+from metagraph.mimicry.people import SeenPerson
 
 Array = NDArray[Any]
 
-FPS = 30.0  # frames a second, if nothing says how many
-PICTURE = (16.0, 9.0)  # what a picture measures, if nothing says it
 # What the manual's table says (`docs/readers_page.py`).
 KEYPOINT_TOOLS = (
     KnownTool("OpenPose", "1.0 to 1.7: BODY_25, COCO, MPI; a file a frame, or one", "all points, 2D or 3D"),
-    KnownTool("MediaPipe Pose", "33 landmarks, in lists or a frame a line", "landmarks, in space before 2D"),
+    KnownTool(
+        "MediaPipe Pose", "33 landmarks, in lists or a frame a line", "landmarks, in space and in the picture"
+    ),
     KnownTool("MMPose", "1.x `instance_info`; 17, 26 or 133 points", "all points with their scores"),
     KnownTool("AlphaPose", "COCO's 17, Halpe's 26 or 136; a list of people", "all points with their scores"),
     KnownTool("COCO", "17 keypoints", "all points with their visibility"),
     KnownTool("TensorFlow (PoseNet, MoveNet)", "named keypoints with scores", "17 points"),
     KnownTool("Human3.6M", "17 points, where a name tells it", "points of the body"),
 )
-_CUT = "Correct them, or cut the recording into pieces."
 _WHOLE = ("frames", "data", "results", "poses", "predictions", "instance_info")
 _FRAME_NAME = re.compile(r"(\d+)(?:_keypoints)?\.json$", re.I)
 
@@ -101,7 +93,7 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
     found = _folder(path) if path.is_dir() else _file(path, head)
     frames = _joined(islice(found, KEYPOINT_FRAMES + 1))
     if len(frames) > KEYPOINT_FRAMES:
-        raise FileError(path, f"it has more than {KEYPOINT_FRAMES:,} frames", "", _CUT)
+        raise FileError(path, f"it has more than {KEYPOINT_FRAMES:,} frames", "", CUT)
     if not frames:
         raise FileError(path, "there are no frames in it", "", REMEDY)
     notes: list[str] = []
@@ -109,17 +101,7 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
         notes.append("its points are Human3.6M's, as it says")
         for frame in frames:
             frame.flat, frame.space = ([_from_h36m(p) for p in some] for some in (frame.flat, frame.space))
-    times = _times(frames, fps or head.fps, notes)
-    lasts = float(np.max(times, initial=0.0))
-    if not lasts <= KEYPOINT_SECONDS:
-        raise FileError(path, f"its frames lie {lasts:.3g} s apart", "their times or numbers", _CUT)
-    kept = np.flatnonzero(np.concatenate([[True], np.diff(np.maximum.accumulate(times)) > 0]))
-    if len(kept) < len(times):
-        notes.append(
-            f"{_many(len(times) - len(kept), 'frame')} left out that came no later than the one before"
-        )
-    times, frames = times[kept], [frames[n] for n in kept]
-    return _gathered(path, times, frames, picture or _size(head), notes)
+    return make_keypoint_track(path, frames, fps or head.fps, picture or _size(head), notes)
 
 
 def _joined(found: Iterable[KeypointFrame]) -> list[KeypointFrame]:
@@ -263,141 +245,5 @@ def _heading(path: Path, data: Mapping[str, Any], head: _Head) -> None:
             setattr(head, name, float(value))
 
 
-# --- all of it
-
-
-def _times(frames: Sequence[KeypointFrame], fps: float | None, notes: list[str]) -> Array:
-    """Return seconds of frames, from 0: as they say, else from their numbers."""
-    said = [f.time for f in frames]
-    if all(t is not None for t in said) and len(said) > 1:
-        times = np.array(said, float)
-        step = float(np.median(np.diff(times)))
-        unit = 1.0 if step < 5 else 1e-3 if step < 5000 else 1e-6 if step < 5e6 else 1e-9
-        return np.asarray((times - times[0]) * unit)
-    if fps is None and len(frames) > 1:
-        notes.append(f"how many frames a second there are is not said; {FPS:g} were taken")
-    numbers = [f.number for f in frames]
-    known = all(n is not None for n in numbers)
-    count = np.array(numbers if known else range(len(frames)), float)
-    return np.asarray((count - count[0]) / (fps or FPS))
-
-
 def _size(head: _Head) -> tuple[float, float] | None:
     return (head.width, head.height) if head.width and head.height else None
-
-
-def _gathered(
-    path: Path,
-    times: Array,
-    frames: Sequence[KeypointFrame],
-    picture: tuple[float, float] | None,
-    notes: list[str],
-) -> KeypointTrack:
-    """Follow one person and bring them into our axes."""
-    deep = sum(bool(f.space) for f in frames) * 2 >= sum(bool(f.space or f.flat) for f in frames) and any(
-        f.space for f in frames
-    )
-    people = [f.space if deep else f.flat for f in frames]
-    counts = {len(p.points) for some in people for p in some}
-    if not counts:
-        raise FileError(path, _why_nobody(frames), f"{_many(len(frames), 'frame')}", REMEDY)
-    if len(counts) > 1:
-        raise FileError(
-            path,
-            f"people have {' and '.join(map(str, sorted(counts)))} points",
-            "in its frames",
-            "Keep to one layout.",
-        )
-    count = counts.pop()
-    scale = np.ones(3) if deep else _stretch(people, picture, notes)
-    middle = picture[0] / 2 if picture and not deep else None
-    points, confidence = np.zeros((len(frames), count, 3)), np.zeros((len(frames), count))
-    stretched = [[SeenPerson(p.points * scale, p.confidence, p.ident) for p in some] for some in people]
-    for n, person in enumerate(follow_person(times.tolist(), stretched, middle)):
-        if person is not None:
-            points[n], confidence[n] = person.points, person.confidence
-    if max(map(len, people)) > 1:
-        notes.append("several people are seen; the one who is largest and nearest to the middle is followed")
-    names = LAYOUTS[BY_COUNT[count]]
-    return KeypointTrack(
-        times, _upright(points, confidence, deep, notes), confidence, names, 3 if deep else 2, tuple(notes)
-    )
-
-
-def _why_nobody(frames: Sequence[KeypointFrame]) -> str:
-    """Return why no frame has anybody's points."""
-    keys = next((k for f in frames for k in f.kept if k), None)
-    if keys is None:
-        return "nobody is in any of its frames"
-    named = ", ".join(repr(k[:30]) for k in keys[:8])
-    return f"its people have no body's keypoints that are known, only {named}"
-
-
-def _stretch(
-    people: Sequence[Sequence[SeenPerson]], picture: tuple[float, float] | None, notes: list[str]
-) -> Array:
-    """Return what to multiply points by: shares of a picture become lengths that are as long down as
-    across.
-    """
-    found = [
-        np.abs(p.points[p.confidence > 0, :2]) for some in people for p in some if (p.confidence > 0).any()
-    ]
-    if not found or float(np.quantile(np.concatenate(found), 0.9)) > 2.0:
-        return np.ones(3)
-    if picture is None:
-        notes.append("how wide and tall the picture is is not said; 16:9 was taken")
-        picture = PICTURE
-    return np.array([picture[0], picture[1], picture[0]])
-
-
-def _upright(points: Array, confidence: Array, deep: bool, notes: list[str]) -> Array:
-    """Return points with y up and z towards the camera, whichever way the file has them: heads are above
-    hips, noses before ears.
-    """
-    where, sure = zip(*(choose_points(p, c) for p, c in zip(points, confidence, strict=True)), strict=True)
-    at, seen = np.array(where), np.array(sure) > 0.2
-
-    def middle(*names: str) -> tuple[Array, Array]:
-        places = [PLACE[n] for n in names]
-        return np.asarray(at[:, places].mean(1)), np.asarray(seen[:, places].all(1))
-
-    top, has_top = middle("left_shoulder", "right_shoulder")
-    low, has_low = middle("left_hip", "right_hip")
-    standing = has_top & has_low
-    if deep and standing.any():
-        trunk = np.median((top - low)[standing], axis=0)
-        if abs(trunk[2]) > 1.5 * abs(trunk[1]):
-            notes.append("z grows upwards in it" if trunk[2] > 0 else "z grows downwards in it")
-            across = (at[:, PLACE["left_shoulder"]] - at[:, PLACE["right_shoulder"]])[standing, 0]
-            return _turn_z_up(points, float(np.sign(trunk[2])), float(np.median(across)) < 0)
-    nose, has_nose = middle("nose")
-    up, known = (top - low)[:, 1], has_top & has_low
-    if not known.any():
-        up, known = (nose - top)[:, 1], has_nose & has_top
-    upwards = bool(known.any()) and float(np.median(up[known])) > 0
-    if upwards:
-        notes.append("y grows upwards in it")
-    signs = np.array([1.0, 1.0 if upwards else -1.0, -1.0])
-    if not deep:
-        return np.asarray(points * [signs[0], signs[1], 0.0])
-    ears, has_ears = middle("left_ear", "right_ear")
-    known = has_nose & has_ears & has_top
-    if known.any():
-        across = (at[:, PLACE["left_shoulder"]] - at[:, PLACE["right_shoulder"]]) * signs
-        ahead = (nose - ears) * signs
-        facing = across[:, 0] * ahead[:, 2] - across[:, 2] * ahead[:, 0]  # along across x up
-        if float(np.median(facing[known])) < 0:
-            signs[2] = 1.0
-    return np.asarray(points * signs)
-
-
-def _turn_z_up(points: Array, up: float, away: bool) -> Array:
-    """Return points whose z is vertical, with y up. up: -1 if z grows downwards. away: whether the body's
-    left is at smaller x, so that it is turned round to face the camera.
-    """
-    turned = points[..., [0, 2, 1]] * [1.0, up, -up]
-    return np.asarray(turned * ([-1.0, 1.0, -1.0] if away else [1.0, 1.0, 1.0]))
-
-
-def _many(count: int, word: str) -> str:
-    return f"{count} {word}{'s' if count != 1 else ''}"

@@ -458,3 +458,15 @@ def test_people_of_one_picture_in_a_list_are_one_frame(read: Any) -> None:
 def test_people_without_a_body_say_what_they_have_instead(read: Any) -> None:
     with pytest.raises(FileError, match="only 'face_keypoints_2d'"):
         read({"people": [{"face_keypoints_2d": [1, 2, 3]}]})
+
+
+def test_mediapipes_people_in_space_keep_their_places_in_the_picture(read: Any) -> None:
+    seen = [[x, y, 0.0, 0.9] for x, y, _ in picture("mediapipe")]
+    both = {"landmarks": seen, "worldLandmarks": marks()}
+    found = read([{"t": n / 10, **both} for n in range(3)])
+    assert found.dims == 3 and found.flat is not None and found.flat.dims == 2
+    assert found.flat.points[0, 0, 0] == pytest.approx(seen[0][0]) and found.flat.flat is None
+    swapped, in_picture = found.mirrored(), found.flat
+    assert swapped.flat is not None and (swapped.flat.points[..., 0] == -in_picture.points[..., 0]).all()
+    alone = read([{"t": n / 10, "worldLandmarks": marks()} for n in range(3)])
+    assert alone.dims == 3 and alone.flat is None

@@ -8,11 +8,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from PySide6.QtWidgets import QFileDialog, QMessageBox
+from PySide6.QtWidgets import QFileDialog, QLabel, QMessageBox
 
+from app.features.mimic import filmed_keypoints
+from app.features.mimic.camera_dialog import CameraDialog
 from app.features.mimic.mimic_dialog import MimicDialog, pick_recording
 from app.project.files import SAMPLE
+from metagraph.common.extras import ExtraError
 from metagraph.graph import requests as a
+from tests.films import install_stand_in, make_film, remove_stand_in
 
 KEYPOINTS = Path(__file__).resolve().parents[4] / "sample_clips" / "keypoints"
 DEEP, FLAT = KEYPOINTS / "conversation.mediapipe.jsonl", KEYPOINTS / "conversation.openpose.json"
@@ -134,3 +138,101 @@ def test_files_that_are_none_and_people_in_no_stance_are_told(
 @pytest.mark.gl
 def test_without_a_character_or_while_live_there_is_nobody_to_mimic_with(drive: Any) -> None:
     assert not drive.actions["mimic"].isEnabled()
+
+
+@pytest.mark.nightly
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_video_is_read_by_an_estimator_and_mimicked(
+    opened: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    install_stand_in(tmp_path / "home", monkeypatch)
+    film = make_film(tmp_path / "talk.mp4", [n / 10 for n in range(100)], sound=True)
+    dialog = dialog_of(opened, monkeypatch, film)
+    words = " ".join(label.text() for label in dialog.findChildren(QLabel))
+    assert "talk.mp4: 100 frames, 9.9 s, without depth" in words
+    assert "Its sound is not used." in words and "Found by Stand-in 1." in words
+    before = set(opened.document.project.performances)
+    dialog.mirror.setChecked(False)
+    dialog.go.click()
+    opened.wait(lambda: len(opened.document.project.performances) == len(before) + 1, 60)
+    (made,) = set(opened.document.project.performances) - before
+    asks = opened.document.project.performances[made].asks
+    assert "on hips" in {opened.document.project.stance(ask.stance).name for ask in asks}
+
+
+@pytest.mark.nightly
+@pytest.mark.window
+@pytest.mark.gl
+def test_without_mediapipe_the_user_is_asked_and_may_decline_or_install(
+    opened: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    remove_stand_in(tmp_path, monkeypatch)
+    film = make_film(tmp_path / "talk.mp4", [n / 10 for n in range(10)])
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(film), ""))
+    asked: list[str] = []
+    wanted = "Cancel"
+
+    def answer(box: QMessageBox) -> None:
+        asked.append(f"{box.text()} {box.informativeText()}")
+        next(button for button in box.buttons() if button.text().replace("&", "") == wanted).click()
+
+    monkeypatch.setattr(QMessageBox, "exec", answer)
+    opened.actions["mimic"].trigger()
+    assert "150 MB" in asked[0] and "Apache-2.0" in asked[0] and "this computer" in asked[0]
+    assert not opened.window.findChildren(MimicDialog) and not opened.shell.jobs.running
+
+    wanted, said = "Install", list[str]()
+    monkeypatch.setattr(QMessageBox, "warning", lambda *words: said.append(str(words[2])))
+
+    def install(name: str) -> None:
+        raise ExtraError("It could not be installed (no network).")
+
+    monkeypatch.setattr(filmed_keypoints, "install_extra", install)
+    opened.actions["mimic"].trigger()
+    opened.wait(lambda: bool(said))
+    assert said == ["It could not be installed (no network)."]
+    monkeypatch.setattr(filmed_keypoints, "install_extra", lambda _: install_stand_in(tmp_path, monkeypatch))
+    opened.actions["mimic"].trigger()
+    opened.wait(lambda: bool(opened.window.findChildren(MimicDialog)))
+    opened.window.findChild(MimicDialog).reject()
+
+
+@pytest.mark.nightly
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_camera_films_until_it_is_stopped(
+    opened: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    install_stand_in(tmp_path / "home", monkeypatch)
+    film = make_film(tmp_path / "talk.mp4", [n / 20 for n in range(600)])
+    opened.actions["mimic_camera"].trigger()
+    opened.wait(lambda: opened.window.findChild(CameraDialog) is not None)
+    dialog = opened.window.findChild(CameraDialog)
+    dialog.device.setText(str(film))
+    dialog.go.click()
+    assert dialog.go.text() == "Stop filming"
+    opened.wait(lambda: dialog.words.text().endswith("s filmed"), 20)
+    dialog.go.click()
+    opened.wait(lambda: opened.window.findChild(MimicDialog) is not None, 20)
+    made = opened.window.findChild(MimicDialog)
+    assert made.keypoints.seconds < 10
+    made.reject()
+
+
+@pytest.mark.nightly
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_camera_that_is_not_there_is_reported(
+    opened: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    install_stand_in(tmp_path / "home", monkeypatch)
+    said: list[str] = []
+    monkeypatch.setattr(QMessageBox, "warning", lambda *words: said.append(str(words[2])))
+    opened.actions["mimic_camera"].trigger()
+    opened.wait(lambda: opened.window.findChild(CameraDialog) is not None)
+    dialog = opened.window.findChild(CameraDialog)
+    dialog.device.setText("98")
+    dialog.go.click()
+    opened.wait(lambda: bool(said), 20)
+    assert "camera 98 cannot be opened" in said[0]
