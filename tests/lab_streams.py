@@ -1,4 +1,6 @@
-"""The Lab Streaming Layer for tests: the real one, kept to this machine, or a stand-in that keeps what is sent."""
+"""The Lab Streaming Layer for tests: the real one, kept to this machine, or a stand-in that keeps what is
+sent.
+"""
 
 from __future__ import annotations
 
@@ -31,6 +33,9 @@ def require_lsl(folder: Path) -> Any:
         else:
             os.environ["LSLAPICFG"] = before
     return pylsl
+
+
+FORMATS = {"float32": 1, "string": 3, "int32": 4}  # LSL's numbers of them
 
 
 class Element:
@@ -66,8 +71,6 @@ class Element:
 class StreamInfo:
     """What a stream tells of itself, as pylsl's StreamInfo."""
 
-    FORMATS = {"float32": 1, "string": 3, "int32": 4}
-
     def __init__(self, name: str, kind: str, count: int, rate: float, form: str, source: str) -> None:
         self.told = name, kind, count, rate, form, source
         self._desc = Element("desc")
@@ -82,7 +85,7 @@ class StreamInfo:
         return self.told[2]
 
     def channel_format(self) -> int:
-        return self.FORMATS[self.told[4]]
+        return FORMATS[self.told[4]]
 
     def hostname(self) -> str:
         return "here"

@@ -49,8 +49,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--lsl", action="store_true",
-        help="open streams of the Lab Streaming Layer: events (Markers), the pose (MoCap) and the face; needs "
-        "the extra lab",
+        help="open streams of the Lab Streaming Layer: events (Markers), the pose (MoCap) and the face; "
+        "needs the extra lab",
     )  # fmt: skip
     parser.add_argument(
         "--lsl-in", action="append", default=[], metavar="STREAM",

@@ -51,8 +51,8 @@ class Channel:
 
 @dataclass(frozen=True)
 class OutletPlan:
-    """A stream to be opened. kind: its content type. rate: samples a second, 0 for samples now and then. format:
-    "string" or "float32". more: other parts of the description, as (path, text).
+    """A stream to be opened. kind: its content type. rate: samples a second, 0 for samples now and then.
+    format: "string" or "float32". more: other parts of the description, as (path, text).
     """
 
     name: str
@@ -67,8 +67,8 @@ class OutletPlan:
 def find_own_settings() -> str:
     """Return where the user's own settings of LSL are, "" if there are none."""
     named = os.environ.get("LSLAPICFG", "")
-    places = [named] if named else [os.path.expanduser(place) for place in SETTINGS]
-    return next((place for place in places if Path(place).is_file()), "")
+    places = [Path(place).expanduser() for place in ((named,) if named else SETTINGS)]
+    return next((str(place) for place in places if place.is_file()), "")
 
 
 def load_lsl(option: str, network: bool) -> Any:
@@ -100,7 +100,9 @@ def load_lsl(option: str, network: bool) -> Any:
 
 
 def open_outlet(lsl: Any, plan: OutletPlan) -> Any:
-    """Return an outlet of pylsl, which others find from now on. lsl: the module pylsl. Raises LabStreamError."""
+    """Return an outlet of pylsl, which others find from now on. lsl: the module pylsl. Raises
+    LabStreamError.
+    """
     info = lsl.StreamInfo(plan.name, plan.kind, len(plan.channels), plan.rate, plan.format, plan.source)
     described = [channel for channel in plan.channels if channel.kind or channel.unit or channel.object]
     if described or plan.more:

@@ -50,8 +50,8 @@ def parse_wish(text: str) -> tuple[str, str]:
 
 
 def read_marker(text: str, project: Project) -> bytes | None:
-    """Return the request that a marker makes: JSON as it is, a word such as `nod`, or the name of an action or
-    a stance; None for any other text.
+    """Return the request that a marker makes: JSON as it is, a word such as `nod`, or the name of a stance or
+    an action; None for any other text.
     """
     text = text.strip()
     if text[:1] in ("{", "["):
@@ -59,10 +59,10 @@ def read_marker(text: str, project: Project) -> bytes | None:
     if text in WORDS:
         return encode({"do": text})
     graphs = [project.graphs[layer] for layer in LAYERS]
-    if any(text in (x.id, x.name) for graph in graphs for x in graph.actions.values()):
-        return encode({"do": "action", "action": text})
     if any(text in (x.id, x.name) for graph in graphs for x in graph.stances.values()):
         return encode({"do": "stance", "stance": text})
+    if any(text in (x.id, x.name) for graph in graphs for x in graph.actions.values()):
+        return encode({"do": "action", "action": text})
     return None
 
 
@@ -90,7 +90,12 @@ def describe_stream(info: Any) -> HeardStream:
         channels.append(Channel(label, kind, unit, owner or place.child_value("marker")))
         place = place.next_sibling("channel")
     return HeardStream(
-        info.name(), info.type(), info.hostname(), info.channel_count(), info.channel_format(), tuple(channels)
+        info.name(),
+        info.type(),
+        info.hostname(),
+        info.channel_count(),
+        info.channel_format(),
+        tuple(channels),
     )
 
 

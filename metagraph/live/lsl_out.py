@@ -1,7 +1,7 @@
 """LSL out: what happens, the character's pose and its face as streams of the Lab Streaming Layer.
 
-Samples have the time, by LSL's own clock, at which they hold: a pose that of the moment it belongs to, an event
-that at which it happened, not at which it was sent. The channels of poses are described as XDF's page on
+Samples have the time, by LSL's own clock, at which they hold: a pose that of the moment it belongs to, an
+event that at which it happened, not at which it was sent. The channels of poses are described as XDF's page on
 metadata of motion capture says (github.com/sccn/xdf/wiki/MoCap-Meta-Data): orientations are quaternions whose
 A is the scalar, and B, C, D the axes x, y, z.
 """
@@ -101,7 +101,9 @@ class LslOutLine:
 
     def _send_pose(self, data: bytes) -> None:
         _, _, joints, morphs, _, seconds = HEADER.unpack_from(data)
-        numbers = np.frombuffer(data, "<f4", offset=HEADER.size)[3:]  # without the root, which is a joint, too
+        numbers = np.frombuffer(data, "<f4", offset=HEADER.size)[
+            3:
+        ]  # without the root, which is a joint, too
         turns = numbers[: 4 * joints].reshape(joints, 4)
         places = numbers[4 * joints : 7 * joints].reshape(joints, 3)
         stamp = self.find_time(seconds)

@@ -28,7 +28,9 @@ _ENDS = re.compile(
     r"(?:[\s._-]+(?:(?i:pos|position)[\s._-]*)?((?i:[xyzcp]|conf|confidence|visibility|score))"
     r"|(?<=[a-z0-9])([XYZ]))$"
 )
-_OTHERS = HELPERS | frozenset("thumb index middle ring pinky little finger fingers toe toes heel".split())
+_OTHERS = HELPERS | frozenset(
+    ["thumb", "index", "middle", "ring", "pinky", "little", "finger", "fingers", "toe", "toes", "heel"]
+)
 
 
 @dataclass(frozen=True)

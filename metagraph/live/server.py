@@ -1,4 +1,5 @@
-"""The lines of a session, opened and closed: WebSocket, OSC, LSL, standard input and output, on one asyncio loop.
+"""The lines of a session, opened and closed: WebSocket, OSC, LSL, standard input and output, on one asyncio
+loop.
 
 Nothing listens beyond this machine unless a host is named, and then only with a token.
 """
@@ -35,8 +36,8 @@ class Options(Struct, frozen=True):
     Protocol. vmc, face: host and port of a program that receives VMC, and of an Unreal Engine that receives
     Live Link Face, None for none. person: the UDP port at which VMC of a tracked person is read, on this
     machine alone, None for none. lsl: whether poses and events are streams of the Lab Streaming Layer.
-    lsl_in: which of its streams are heard, as `lsl_in.parse_wish` reads them. lsl_network: whether it may talk
-    to other machines.
+    lsl_in: which of its streams are heard, as `lsl_in.parse_wish` reads them. lsl_network: whether it may
+    talk to other machines.
     """
 
     host: str = ""
@@ -101,8 +102,8 @@ def is_loopback(host: str) -> bool:
 
 class Server:
     """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from
-    and write them to. project: whose tools are reported, where the Model Context Protocol is spoken, and whose
-    character LSL shows. tell: takes a sentence for people.
+    and write them to. project: whose tools are reported, where the Model Context Protocol is spoken, and
+    whose character LSL shows. tell: takes a sentence for people.
     """
 
     def __init__(

@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+import sample_clips
 from metagraph.graph.model import Project
 from metagraph.live.hub import Hub
 from metagraph.live.live_session import LiveSession
 from metagraph.live.lsl_out import LslOutLine, find_moment, plan_outlets
-from metagraph.live.messages import Poses
-from metagraph.live.pose_stream import Stream
 from metagraph.live.wire import exchange
 from tests.lab_streams import make_layer, require_lsl
 
@@ -76,15 +75,16 @@ def test_a_pose_that_is_sent_late_keeps_the_time_of_its_own_moment(sample: Proje
     assert line.find_time(10.0) == pytest.approx(999.75), "10.25 s have passed, the pose is of 10 s"
 
 
-def test_the_face_is_sent_by_the_names_of_its_morph_targets(sample: Project) -> None:
-    names = Stream.of(Poses(), sample, 0.0).morphs
-    plans = plan_outlets(sample)
-    assert ("face" in plans) == bool(names)
-    if names:
-        layer = make_layer()
-        play(sample, layer, [{"do": "blink"}], 1.0)
-        assert [x.label for x in plans["face"].channels] == list(names)
-        assert max(max(values) for values, _ in named(layer, "Face").sent) > 0.3, "it blinks"
+def test_the_face_is_sent_by_the_names_of_its_morph_targets() -> None:
+    from app.project.opening import open_whole
+
+    project = open_whole(Path(sample_clips.__file__).with_name("sample.metagraph.yaml")).project
+    names = [channel.label for channel in plan_outlets(project)["face"].channels]
+    layer = make_layer()
+    play(project, layer, [{"do": "say", "text": "Hello and welcome."}], 2.0)
+    sent = np.array([values for values, _ in named(layer, "Face").sent])
+    assert sent.shape[1] == len(names) and len(sent) >= 120 and "jawOpen" in names
+    assert sent[:, names.index("jawOpen")].max() > 0.1 and sent.min() >= 0
 
 
 def test_what_begins_and_ends_is_a_marker_at_the_time_at_which_it_does(sample: Project) -> None:
