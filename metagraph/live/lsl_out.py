@@ -1,9 +1,9 @@
 """LSL out: what happens, the character's pose and its face as streams of the Lab Streaming Layer.
 
 Samples have the time, by LSL's own clock, at which they hold: a pose that of the moment it belongs to, an
-event that at which it happened, not at which it was sent. The channels of poses are described as XDF's page on
-metadata of motion capture says (github.com/sccn/xdf/wiki/MoCap-Meta-Data): orientations are quaternions whose
-A is the scalar, and B, C, D the axes x, y, z.
+event that at which it happened, not at which it was sent. The channels of poses are described as XDF's page
+on metadata of motion capture says (github.com/sccn/xdf/wiki/MoCap-Meta-Data): orientations are quaternions
+whose A is the scalar, and B, C, D the axes x, y, z.
 """
 
 from __future__ import annotations
