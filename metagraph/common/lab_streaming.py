@@ -20,7 +20,7 @@ REMEDY = "install pylsl ({command}), or leave {option} out"
 # Places at which liblsl looks for its settings, in its order; LSLAPICFG names another before them.
 SETTINGS = ("lsl_api.cfg", "~/lsl_api/lsl_api.cfg", "/etc/lsl_api/lsl_api.cfg")
 # Settings with which liblsl asks nobody beyond this computer, joins no multicast group of a network, and
-# prints only what is fatal: the others are told in our own words.
+# prints only what is fatal: we say the rest in our own words.
 THIS_COMPUTER = """[ports]
 IPv6 = disable
 [multicast]
@@ -38,7 +38,7 @@ class LabStreamError(ValueError):
 
 
 @dataclass(frozen=True)
-class Channel:
+class StreamChannel:
     """One number, or text, of a stream's samples. kind, unit: as XDF's pages on metadata name them. object:
     the joint that it is about.
     """
@@ -58,7 +58,7 @@ class OutletPlan:
     name: str
     kind: str
     source: str
-    channels: Sequence[Channel]
+    channels: Sequence[StreamChannel]
     rate: float = 0.0
     format: str = "string"
     more: Sequence[tuple[tuple[str, ...], str]] = ()
@@ -123,7 +123,7 @@ def open_outlet(lsl: Any, plan: OutletPlan) -> Any:
         raise LabStreamError(f"LSL cannot open the stream '{plan.name}': {error}") from None
 
 
-def _describe(place: Any, channel: Channel) -> None:
+def _describe(place: Any, channel: StreamChannel) -> None:
     told = {"label": channel.label, "object": channel.object, "type": channel.kind, "unit": channel.unit}
     for name, text in told.items():
         if text:

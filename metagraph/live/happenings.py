@@ -42,7 +42,7 @@ class Listener(Protocol):
 class Running:
     """A request of a client that has started and not ended. owner, ident: whose it is, and what that one
     calls it. request: of the plan, that plays it. layer: None for speech. start: of what plays, seconds.
-    since: when the first of it that was told began. reason: why it ends, None as long as nothing but its own
+    since: when the first piece of it began. reason: why it ends, None as long as nothing but its own
     end is known; why: in words, if that is given.
     """
 

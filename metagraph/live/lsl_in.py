@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.common.lab_streaming import Channel
+from metagraph.common.lab_streaming import StreamChannel
 from metagraph.graph.model import LAYERS, Project
 from metagraph.live.hub import GOING, Hub
 from metagraph.live.lsl_points import PointChannels, Upright, find_point_channels
@@ -77,17 +77,17 @@ class HeardStream:
     host: str
     count: int
     format: int
-    channels: tuple[Channel, ...]
+    channels: tuple[StreamChannel, ...]
     reads: PointChannels | None = None
 
 
 def describe_stream(info: Any) -> HeardStream:
-    """Return what a stream of pylsl tells of itself."""
-    channels: list[Channel] = []
+    """Return what a stream of pylsl says about itself."""
+    channels: list[StreamChannel] = []
     place = info.desc().child("channels").child("channel")
     while not place.empty() and len(channels) <= info.channel_count():
         label, kind, unit, owner = (place.child_value(x) for x in ("label", "type", "unit", "object"))
-        channels.append(Channel(label, kind, unit, owner or place.child_value("marker")))
+        channels.append(StreamChannel(label, kind, unit, owner or place.child_value("marker")))
         place = place.next_sibling("channel")
     return HeardStream(
         info.name(),

@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 
 from metagraph import __version__
-from metagraph.common.lab_streaming import Channel, OutletPlan, open_outlet
+from metagraph.common.lab_streaming import OutletPlan, StreamChannel, open_outlet
 from metagraph.graph.model import Project
 from metagraph.live.hub import Hub
 from metagraph.live.messages import FASTEST, Hello, Poses, encode
@@ -41,14 +41,18 @@ def plan_outlets(project: Project) -> dict[str, OutletPlan]:
     more: tuple[tuple[tuple[str, ...], str], ...] = MAKER
     out = {
         "events": OutletPlan(
-            f"{NAME} events", "Markers", source("events"), (Channel("event", "Marker", "json"),), more=more
+            f"{NAME} events",
+            "Markers",
+            source("events"),
+            (StreamChannel("event", "Marker", "json"),),
+            more=more,
         )
     }
     if project.skeleton is None:
         return out
     stream = Stream.of(WISH, project, 0.0)
     joints = [
-        Channel(f"{joint} {axis}", kind + axis, unit, joint)
+        StreamChannel(f"{joint} {axis}", kind + axis, unit, joint)
         for joint in stream.names
         for kind, unit, axes in (("Position", "meters", PLACES), ("Orientation", "quaternion", TURNS))
         for axis in axes
@@ -56,7 +60,7 @@ def plan_outlets(project: Project) -> dict[str, OutletPlan]:
     space = (*more, (("setup", "name"), SPACE))
     out["pose"] = OutletPlan(f"{NAME} pose", "MoCap", source("pose"), joints, RATE, "float32", space)
     if stream.morphs:
-        shapes = [Channel(name, "Weight", "normalized") for name in stream.morphs]
+        shapes = [StreamChannel(name, "Weight", "normalized") for name in stream.morphs]
         out["face"] = OutletPlan(f"{NAME} face", "Face", source("face"), shapes, RATE, "float32", more)
     return out
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.lab_streaming import Channel
+from metagraph.common.lab_streaming import StreamChannel
 from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, POINTS, choose_points
 from metagraph.motion.joint_names import HELPERS, guess_joint_kind, split_joint_name
 
@@ -53,7 +53,7 @@ class PointChannels:
         return np.where(seen[:, None], points, 0.0), np.where(seen, np.clip(sure, 0.0, 1.0), 0.0)
 
 
-def find_point_channels(channels: Sequence[Channel], count: int) -> PointChannels:
+def find_point_channels(channels: Sequence[StreamChannel], count: int) -> PointChannels:
     """Return where a stream of `count` channels has its points: by the names of its channels, where they name
     joints or points of a body; else by how many there are. Raises ValueError with what is wrong.
     """
@@ -80,7 +80,7 @@ def _find_by_count(points: int, dims: int) -> PointChannels:
     return PointChannels(places, min(dims, 3))
 
 
-def _find_by_names(channels: Sequence[Channel]) -> PointChannels | None:
+def _find_by_names(channels: Sequence[StreamChannel]) -> PointChannels | None:
     """Return the channels whose names say which point they are of; None if too little of a body is named."""
     places = np.full((len(POINTS), 4), -1)
     for certain in (True, False):  # an upper arm begins where a shoulder is meant; a skeleton has both
@@ -97,7 +97,7 @@ def _find_by_names(channels: Sequence[Channel]) -> PointChannels | None:
     return PointChannels(places, dims)
 
 
-def split_label(channel: Channel) -> tuple[str, str]:
+def split_label(channel: StreamChannel) -> tuple[str, str]:
     """Return the joint that a channel is about, and which of its numbers it is: "x", "y", "z" or
     "confidence", "" for another.
     """

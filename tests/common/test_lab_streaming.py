@@ -12,9 +12,9 @@ import pytest
 from metagraph.common import lab_streaming
 from metagraph.common.lab_streaming import (
     THIS_COMPUTER,
-    Channel,
     LabStreamError,
     OutletPlan,
+    StreamChannel,
     find_own_settings,
     load_lsl,
     open_outlet,
@@ -74,7 +74,7 @@ def test_a_missing_library_is_said_with_the_remedy(monkeypatch: pytest.MonkeyPat
 def test_parts_of_a_description_with_one_beginning_are_in_one_part() -> None:
     layer = make_layer()
     more = ((("setup", "name"), "here"), (("setup", "space", "up"), "y"))
-    open_outlet(layer, OutletPlan("A", "MoCap", "a", (Channel("x", "PositionX"),), more=more))
+    open_outlet(layer, OutletPlan("A", "MoCap", "a", (StreamChannel("x", "PositionX"),), more=more))
     top = layer.opened[0].info.desc()
     assert top.child("setup").child_value("name") == "here"
     assert top.child("setup").child("space").child_value("up") == "y"
@@ -89,4 +89,4 @@ def test_a_stream_that_cannot_be_opened_is_named() -> None:
 
     layer.StreamOutlet = fail
     with pytest.raises(LabStreamError, match="cannot open the stream 'A': no port is free"):
-        open_outlet(layer, OutletPlan("A", "Markers", "a", (Channel("x"),)))
+        open_outlet(layer, OutletPlan("A", "Markers", "a", (StreamChannel("x"),)))

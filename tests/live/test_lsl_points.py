@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from metagraph.common.lab_streaming import Channel
+from metagraph.common.lab_streaming import StreamChannel
 from metagraph.graph.model import Project
 from metagraph.live.lsl_out import plan_outlets
 from metagraph.live.lsl_points import Upright, find_point_channels, name_point
@@ -43,12 +43,12 @@ def test_channels_that_are_no_body_are_refused_with_what_would_be_right() -> Non
     with pytest.raises(
         ValueError, match=r"its 32 channels are no keypoints: name them after joints, or send 17"
     ):
-        find_point_channels(tuple(Channel(f"EEG {n}", "EEG", "microvolts") for n in range(32)), 32)
+        find_point_channels(tuple(StreamChannel(f"EEG {n}", "EEG", "microvolts") for n in range(32)), 32)
 
 
 def test_named_channels_are_found_in_any_order() -> None:
     labels = [f"{name}_{axis}" for axis in "xy" for name in reversed(POINTS)]
-    found = find_point_channels([Channel(label) for label in labels], len(labels))
+    found = find_point_channels([StreamChannel(label) for label in labels], len(labels))
     points, sure = found.read([float(n) for n in range(len(labels))])
     assert found.dims == 2 and sure.all()
     assert points[PLACE["nose"]].tolist() == [16.0, 33.0]
@@ -56,7 +56,7 @@ def test_named_channels_are_found_in_any_order() -> None:
 
 def test_markers_with_confidence_are_read() -> None:
     channels = [
-        Channel(f"{name} {axis}", kind, object=name)
+        StreamChannel(f"{name} {axis}", kind, object=name)
         for name in POINTS
         for axis, kind in (("a", "PositionX"), ("b", "PositionY"), ("c", "PositionZ"), ("d", "Confidence"))
     ]

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.lab_streaming import Channel, OutletPlan, load_lsl, open_outlet
+from metagraph.common.lab_streaming import OutletPlan, StreamChannel, load_lsl, open_outlet
 
 SENT = ("n", "type", "mono", "condition", "task", "name", "number")  # fields of an event
 
@@ -19,7 +19,7 @@ def open_marker_outlet(participant: str) -> Callable[[Mapping[str, Any]], None]:
     Recorders on other computers find it, too. Raises LabStreamError.
     """
     lsl = load_lsl("'lsl: true' of the study file", network=True)
-    plan = OutletPlan("Metagraph", "Markers", f"metagraph-{participant}", (Channel("event"),))
+    plan = OutletPlan("Metagraph", "Markers", f"metagraph-{participant}", (StreamChannel("event"),))
     stream = open_outlet(lsl, plan)
 
     def send(event: Mapping[str, Any]) -> None:
