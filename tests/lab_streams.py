@@ -69,7 +69,7 @@ class Element:
 
 
 class StreamInfo:
-    """What a stream tells of itself, as pylsl's StreamInfo."""
+    """What a stream says about itself, as pylsl's StreamInfo."""
 
     def __init__(self, name: str, kind: str, count: int, rate: float, form: str, source: str) -> None:
         self.told = name, kind, count, rate, form, source

@@ -136,7 +136,7 @@ class LslOutLine:
 
 def find_moment(event: bytes) -> float:
     """Return the second of the session at which an event happened: `at` of what began, `until` of what ended;
-    else when it was told.
+    else when it was reported.
     """
     told = msgspec.json.decode(event)
     now = float(told["t"])
