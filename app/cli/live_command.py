@@ -57,6 +57,21 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="send the face to Unreal as the app Live Link Face does "
         f"(default: 127.0.0.1:{FACE_PORT})",
     )  # fmt: skip
+    parser.add_argument(
+        "--lsl", action="store_true",
+        help="open streams of the Lab Streaming Layer: events (Markers), the pose (MoCap) and the face; "
+        "needs the extra lab",
+    )  # fmt: skip
+    parser.add_argument(
+        "--lsl-in", action="append", default=[], metavar="STREAM",
+        help="do what a stream of the Lab Streaming Layer says, by its name or as type=Markers: markers are "
+        "requests or names of actions, keypoints of a person are mimicked; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--lsl-network", action="store_true",
+        help="let the Lab Streaming Layer find, and be found by, other computers (default: this computer "
+        "only, unless you have settings for LSL of your own)",
+    )  # fmt: skip
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
     parser.add_argument(
@@ -123,6 +138,9 @@ def run(options: Namespace) -> int:
             person=options.vmc_in,
             camera=options.camera,
             mirror=not options.no_mirror,
+            lsl=options.lsl,
+            lsl_in=tuple(options.lsl_in),
+            lsl_network=options.lsl_network,
         )
     )
     if options.camera is not None:
@@ -192,11 +210,11 @@ async def _play(
     from metagraph.live.server import Server
     from metagraph.live.wire import exchange
 
-    server = Server(options, time.monotonic, project=session.project)
+    server = Server(options, time.monotonic, project=session.project, tell=_tell)
     ready = await server.open()
     _end_by_signals(server)
     _greet(server, ready, options, as_json)
-    begin = time.monotonic()
+    server.begin = begin = time.monotonic()
 
     def step(batch: RequestBatch | None) -> BatchResult:
         now = time.monotonic() - begin
@@ -208,6 +226,10 @@ async def _play(
         await server.run(step)
     finally:
         await server.close()
+
+
+def _tell(words: str) -> None:
+    print(words, file=sys.stderr, flush=True)
 
 
 def _end_by_signals(server: Server) -> None:
@@ -238,6 +260,7 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     sent += f" It sends the face to {options.face[0]}:{options.face[1]}." if options.face is not None else ""
     sent += f" It mimics whom VMC on port {options.person} shows." if options.person is not None else ""
     sent += f" It mimics the person before camera {options.camera}." if options.camera is not None else ""
+    sent += _describe_lsl(options)
     token = "; clients need the token" if ready.token else ""
     where = f": {', '.join(ways)}" if ways else " to no one"
     print(
@@ -245,6 +268,19 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
         file=sys.stderr,
         flush=True,
     )
+
+
+def _describe_lsl(options: Options) -> str:
+    """Return which streams of the Lab Streaming Layer a session has, and who finds them."""
+    from metagraph.common.lab_streaming import find_own_settings
+
+    ways = ["opens LSL streams"] if options.lsl else []
+    ways += [f"hears the LSL stream {text}" for text in options.lsl_in]
+    if not ways:
+        return ""
+    own = find_own_settings()
+    where = f"as {own} says" if own else "in the local network" if options.lsl_network else "on this computer"
+    return f" It {' and '.join(ways)} {where}."
 
 
 def _keep(session: LiveSession, options: Namespace) -> None:

@@ -4,7 +4,7 @@ ends once, whatever becomes of it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -15,8 +15,9 @@ from metagraph.live.ledger import Ledger, OpenAsk, reword_for_client
 from metagraph.live.limits import ADDED
 from metagraph.live.messages import Event, Reason, round_seconds
 from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.utterances import is_same_utterance
+from metagraph.playback.life.utterances import is_paused, is_same_utterance
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.extend_performance import find_served
 from metagraph.speech.spoken_so_far import spoken_until
@@ -41,7 +42,8 @@ class Listener(Protocol):
 class Running:
     """A request of a client that has started and not ended. owner, ident: whose it is, and what that one
     calls it. request: of the plan, that plays it. layer: None for speech. start: of what plays, seconds.
-    reason: why it ends, None as long as nothing but its own end is known; why: in words, if that is given.
+    since: when the first piece of it began. reason: why it ends, None as long as nothing but its own
+    end is known; why: in words, if that is given.
     """
 
     owner: int
@@ -50,6 +52,7 @@ class Running:
     layer: Layer | None
     event: Event
     start: float
+    since: float
     reason: Reason | None = None
     why: str = ""
 
@@ -165,7 +168,9 @@ class Happenings:
         if leaving is not None:
             self._tell(leaving.owner, leaving.ident, event)
             reason = leaving.event.reason
-            self.running[request] = Running(leaving.owner, leaving.ident, played, layer, event, start, reason)
+            self.running[request] = Running(
+                leaving.owner, leaving.ident, played, layer, event, start, start, reason
+            )
             return
         if owner is None and before is None:
             if request == played:
@@ -177,7 +182,8 @@ class Happenings:
             ask = ledger.known[str(owner)]
             whose, ident = ask.client, ask.ident + request.removeprefix(str(owner))
         self._tell(whose, ident, event)
-        self.running[request] = Running(whose, ident, played, layer, event, start)
+        since = start if before is None else before.since
+        self.running[request] = Running(whose, ident, played, layer, event, start, since)
 
     def _end(self, request: str, plan: Plan, ledger: Ledger, now: float) -> None:
         """Report that a request that ran has ended, and why."""
@@ -187,7 +193,7 @@ class Happenings:
         speech = next((s for s in plan.track.speeches if s.id == request and s.start == one.start), None)
         cue = _cue_of(plan, one)
         if speech is not None:
-            event = _event_of_speech(speech, "ended", event.t)
+            event = replace(_event_of_speech(speech, "ended", event.t), at=round_seconds(one.since))
             if speech.length is not None:
                 spoken, word = spoken_until(ALPHABET, plan.track.speeches, speech.id, speech.end)
                 reason = reason or ("replaced" if _said_again(plan, speech) else "interrupted")
@@ -204,6 +210,18 @@ class Happenings:
         ask = ledger.known.get(request)
         if ask is not None and ask.at <= now:  # else it was asked again, and is still to come
             ask.ended = True
+
+
+def find_beginning(speeches: Sequence[Speech], piece: Speech) -> float:
+    """Return when an utterance began, seconds, of which `piece` is one of the pieces, in the order of their
+    starts: a pause does not move that. What is paused before it began begins in a time that never comes.
+    """
+    first = piece
+    for earlier in reversed([x for x in speeches if x.id == piece.id and x.start < piece.start]):
+        if not is_same_utterance(earlier, first):
+            break
+        first = earlier
+    return first.start if is_paused(first.start) else find_line_start(first)
 
 
 def _begins(plan: Plan, request: str, layer: Layer | None, now: float, fixed: float) -> bool:

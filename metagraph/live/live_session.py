@@ -24,7 +24,7 @@ from metagraph.live.answers import FoundAnswer, find
 from metagraph.live.camera_mimicry import see
 from metagraph.live.generating import Generating
 from metagraph.live.graph_motion import LiveGraph
-from metagraph.live.happenings import Happenings
+from metagraph.live.happenings import Happenings, find_beginning
 from metagraph.live.ledger import Ledger, OpenAsk, plan_key, reword_for_client
 from metagraph.live.limits import (
     ADDED,
@@ -626,9 +626,11 @@ class LiveSession:
                 at = round_seconds(before.end)
             else:
                 notes = (*notes, str(phrase("nothing new is said: it was said before, or its time is over")))
+        running = self.happenings.running.get(open_.key)
+        began = find_beginning(self.plan.track.speeches, before) if running is None else running.since
+        since = None if is_paused(began) else round_seconds(began)
         if is_paused(before.start):
-            return msgspec.structs.replace(reply, notes=notes)
-        since = round_seconds(find_line_start(before))
+            at = reply.at
         return msgspec.structs.replace(reply, at=at, since=since, notes=notes)
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:

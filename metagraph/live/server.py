@@ -1,4 +1,5 @@
-"""The lines of a session, opened and closed: WebSocket, OSC, standard input and output, on one asyncio loop.
+"""The lines of a session, opened and closed: WebSocket, OSC, LSL, standard input and output, on one asyncio
+loop.
 
 Nothing listens beyond this machine unless a host is named, and then only with a token.
 """
@@ -22,6 +23,7 @@ from metagraph.live.wire import BatchResult, Ready, RequestBatch
 if TYPE_CHECKING:
     from metagraph.graph.model import Project
     from metagraph.live.camera_line import CameraLine
+    from metagraph.live.lsl_in import LslListener
 
 TICK = 1 / 60  # seconds
 LAST = 2.0  # seconds at most for answering what was asked before the end
@@ -35,7 +37,9 @@ class Options(Struct, frozen=True):
     Protocol. vmc, face: host and port of a program that receives VMC, and of an Unreal Engine that receives
     Live Link Face, None for none. person: the UDP port at which VMC of a tracked person is read, on this
     machine alone, None for none. camera: the camera whose person is mimicked, None for none; mirror: as in a
-    mirror.
+    mirror. lsl: whether poses and events are streams of the Lab Streaming Layer.
+    lsl_in: which of its streams are heard, as `lsl_in.parse_wish` reads them. lsl_network: whether it may
+    talk to other machines.
     """
 
     host: str = ""
@@ -50,6 +54,9 @@ class Options(Struct, frozen=True):
     person: int | None = None
     camera: str | None = None
     mirror: bool = True
+    lsl: bool = False
+    lsl_in: tuple[str, ...] = ()
+    lsl_network: bool = False
 
 
 class LiveError(ValueError):
@@ -70,7 +77,21 @@ def check_live_options(options: Options) -> Options:
     for port in (options.port, options.osc, options.person, *sent):
         if port is not None and not 0 <= port <= 65535:
             raise LiveError(f"a port is a number from 0 to 65535, not {port}")
+    if options.lsl or options.lsl_in:
+        _load_lsl(options)
     return options
+
+
+def _load_lsl(options: Options) -> tuple[Any, list[tuple[str, str]]]:
+    """Return the module pylsl, and which streams are wanted. Raises LiveError."""
+    from metagraph.common.lab_streaming import load_lsl
+    from metagraph.live.lsl_in import parse_wish
+
+    try:
+        wishes = [parse_wish(text) for text in options.lsl_in]
+        return load_lsl("--lsl" if options.lsl else "--lsl-in", options.lsl_network), wishes
+    except ValueError as error:
+        raise LiveError(str(error)) from None
 
 
 def is_loopback(host: str) -> bool:
@@ -85,7 +106,8 @@ def is_loopback(host: str) -> bool:
 
 class Server:
     """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from
-    and write them to. project: whose tools are reported, where the Model Context Protocol is spoken.
+    and write them to. project: whose tools are reported, where the Model Context Protocol is spoken, and
+    whose character LSL shows. tell: takes a sentence for people.
     """
 
     def __init__(
@@ -94,8 +116,10 @@ class Server:
         clock: Callable[[], float],
         pipes: tuple[int, int] = (0, 1),
         project: Project | None = None,
+        tell: Callable[[str], None] = lambda _: None,
     ) -> None:
-        self.project = project
+        self.project, self.tell = project, tell
+        self.begin = 0.0  # the clock's time at which the session began
         self.options, self.clock, self.pipes = check_live_options(options), clock, pipes
         self.hub = Hub(options.token)
         self.stopped = asyncio.Event()
@@ -106,6 +130,7 @@ class Server:
         self.camera: CameraLine | None = None
         self._stdio: StdioLine | None = None
         self._stdio_number = 0
+        self._listener: LslListener | None = None
 
     @property
     def connections(self) -> int:
@@ -129,6 +154,8 @@ class Server:
                 await self._open_person(options.person)
             if options.camera is not None:
                 self._open_camera(options.camera)
+            if options.lsl or options.lsl_in:
+                self._open_lsl()
         except OSError as error:
             await self.close()
             words = error.strerror or str(error)
@@ -205,6 +232,32 @@ class Server:
 
         self.camera = CameraLine(self.hub, self.clock, device, self.options.mirror)
 
+    def _open_lsl(self) -> None:
+        from metagraph.common.lab_streaming import LabStreamError
+        from metagraph.live.lsl_in import HeardStream, LslInLine, LslListener
+        from metagraph.live.lsl_out import LslOutLine
+
+        project = self.project
+        if project is None:
+            raise LiveError("LSL needs a project")
+        lsl, wishes = _load_lsl(self.options)
+        own: set[str] = set()
+        if self.options.lsl:
+            try:
+                line = LslOutLine(lsl, project, self.clock, lambda: self.begin)
+            except LabStreamError as error:
+                raise LiveError(str(error)) from None
+            line.join(self.hub)
+            own = line.list_own()
+
+        def open_line(stream: HeardStream) -> LslInLine:
+            return LslInLine(self.hub, self.clock, stream, project, self.tell)
+
+        if wishes:
+            call = asyncio.get_running_loop().call_soon_threadsafe
+            self._listener = LslListener(lsl, wishes, own, call, open_line, self.tell)
+            self._listener.start()
+
     def _line(self, line: bytes | None) -> None:
         if line is not None:
             self.hub.message(self._stdio_number, line)
@@ -250,6 +303,8 @@ class Server:
 
     async def close(self) -> None:
         """Hang up and stop listening."""
+        if self._listener is not None:
+            await asyncio.get_running_loop().run_in_executor(None, self._listener.finish)
         self.hub.close()
         for server in self._servers:
             server.close()

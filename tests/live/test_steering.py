@@ -217,3 +217,45 @@ def test_a_kept_session_pauses_and_interrupts_again(talk: Talk, sample: Project)
     for mine, other in zip(ours, theirs, strict=True):
         found = [other.start, other.end, other.skip, other.length]
         assert found == pytest.approx([mine.start, mine.end, mine.skip, mine.length])
+
+
+def test_a_pause_does_not_move_when_an_utterance_began(talk: Talk) -> None:
+    first = talk.ask(do="say", id="a", words=[["one", 0.0, 0.4], ["two", 0.5, 0.9], ["three", 1.0, 1.4]])
+    talk.wait(0.7)
+    talk.ask(do="pause", what="a")
+    talk.wait(2.0)
+    waits = talk.ask(do="say", id="a", words=[["four", 1.5, 1.9]])
+    assert waits["since"] == first["at"] and "at" not in waits, "it is paused, and began before"
+    talk.ask(do="resume", what="a")
+    talk.wait(0.2)
+    more = talk.ask(do="say", id="a", words=[["five", 2.0, 2.4]])
+    assert more["since"] == first["at"] and more["at"] > first["at"] + 2.0
+    talk.wait(4.0)
+    (end,) = [e for e in talk.heard if e["event"] == "ended" and e["id"] == "a"]
+    assert end["reason"] == "finished" and end["at"] == first["at"]
+    started = [e["at"] for e in talk.heard if e["event"] == "started" and e["id"] == "a"]
+    assert started[0] == first["at"] < started[-1]
+
+
+def test_an_utterance_that_is_paused_twice_began_when_it_began(talk: Talk) -> None:
+    first = talk.ask(do="say", id="a", text=RAIN)
+    for _ in range(2):
+        talk.wait(0.5)
+        talk.ask(do="pause", what="a")
+        talk.wait(1.0)
+        talk.ask(do="resume", what="a")
+    talk.wait(0.2)
+    more = talk.ask(do="say", id="a", text=" And boots.")
+    assert more["since"] == first["at"]
+    talk.wait(8.0)
+    (end,) = [e for e in talk.heard if e["event"] == "ended" and e["id"] == "a"]
+    assert end["at"] == first["at"]
+
+
+def test_what_is_said_anew_under_an_id_begins_anew(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="It rains.")
+    talk.wait(3.0)
+    second = talk.ask(do="say", id="a", text="It snows.")
+    talk.wait(3.0)
+    ends = [e["at"] for e in talk.heard if e["event"] == "ended" and e["id"] == "a"]
+    assert len(ends) == 2 and ends[1] == second["at"] > ends[0]

@@ -47,9 +47,7 @@ Array = NDArray[Any]
 # What the manual's table says (`docs/readers_page.py`).
 KEYPOINT_TOOLS = (
     KnownTool("OpenPose", "1.0 to 1.7: BODY_25, COCO, MPI; a file a frame, or one", "all points, 2D or 3D"),
-    KnownTool(
-        "MediaPipe Pose", "33 landmarks, in lists or a frame a line", "landmarks, in space and in the picture"
-    ),
+    KnownTool("MediaPipe Pose", "33 landmarks, in lists or a frame a line", "landmarks, in space and 2D"),
     KnownTool("MMPose", "1.x `instance_info`; 17, 26 or 133 points", "all points with their scores"),
     KnownTool("AlphaPose", "COCO's 17, Halpe's 26 or 136; a list of people", "all points with their scores"),
     KnownTool("COCO", "17 keypoints", "all points with their visibility"),

@@ -57,6 +57,7 @@ from metagraph.playback.planning.vigour import measure_vigour
 from metagraph.playback.timing.phase_times import LEAST_BLEND
 from metagraph.playback.timing.phases import find_phases
 
+ON_TIME = 0.1  # seconds by which what is asked for may begin later than that, and is on time
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
@@ -126,18 +127,22 @@ class Performer:
                 self._realise(bound, max(self.ready, begins(meta)))
                 continue
             ready = self.ready
-            if meta.start < ready and meta.end <= ready + FITS and meta.key not in self.begun:
+            if meta.start < ready and meta.key not in self.begun:
                 running = "the running action"
                 if len(self.cues) > 0:
                     running = f"'{self.cues[-1].action.name}'"
-                waits = ready - meta.request.start
-                # What is wanted for a certain time is over; what is wanted once may come late.
-                if meta.written or meta.request.duration is not None or waits > self.project.settings.wait:
-                    self._tell(
-                        meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s"
-                    )
-                    continue
-                self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", True)
+                waits = ready - meta.start
+                if meta.end <= ready + FITS:
+                    waits = ready - meta.request.start
+                    # What is wanted for a certain time is over; what is wanted once may come late.
+                    wanted = meta.written or meta.request.duration is not None
+                    if wanted or waits > self.project.settings.wait:
+                        why = f"wholly covered by {running}, which plays until {self.free:.2f} s"
+                        self._tell(meta, "covered", why)
+                        continue
+                # What a model wrote is wanted at no certain time.
+                if not meta.written and waits > ON_TIME:
+                    self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", True)
             self._realise(bound, max(ready, meta.start))
 
     def _realise(self, bound: Bound, now: float) -> None:

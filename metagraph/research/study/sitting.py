@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from metagraph.common.lab_streaming import LabStreamError
 from metagraph.errors import FileError
 from metagraph.research.study.logs.log import Event, StudyLog, Writer, read_log
-from metagraph.research.study.logs.lsl_markers import MarkersError, open_marker_outlet
+from metagraph.research.study.logs.lsl_markers import open_marker_outlet
 from metagraph.research.study.plan.allocation import allocate
 from metagraph.research.study.questionnaires import Questionnaire
 from metagraph.research.study.scores.tasks import list_event_steps
@@ -217,7 +218,7 @@ class Sitting:
         if study.plan.lsl:
             try:
                 send = open_marker_outlet(participant)
-            except MarkersError as error:
+            except LabStreamError as error:
                 raise SittingError(str(error)) from None
         self.writer = Writer(study.log(participant))
         self.writer.listeners += [send] if send is not None else []

@@ -188,7 +188,7 @@ def test_case_2_where_nothing_fits_the_meta_action_is_discarded_and_reported(pro
 def test_case_3_what_the_clip_covers_wholly_is_discarded_and_reported(project: Project, toy: Any) -> None:
     long = ask("a", 1, 1, action=toy.id(project, "rest long"))
     plan, whole = arms(project, long, ask("b", 2.1, 1), ask("c", 3.2, 1))
-    assert [c.meta for c in plan.cues] == ["a", "c"] and outcomes(whole) == {"b": "covered"}
+    assert [c.meta for c in plan.cues] == ["a", "c"] and outcomes(whole) == {"b": "covered", "c": "queued"}
     assert plan.cues[1].start == pytest.approx(3.4), "planning goes on at the clip's end"
     assert "'rest long'" in whole.reports[0].message
 

@@ -26,6 +26,7 @@ struct Performer;
 
 namespace sampling {
 
+inline constexpr double ON_TIME = 0.1; // seconds by which what is asked for may begin later than that, and is on time
 // seconds of crossfade when a long rest changes from one loop of its stance to another
 inline constexpr double LOOP_FADE = 0.6;
 inline Ref<Performer> performer_after(
@@ -268,22 +269,32 @@ inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
             continue;
         }
         double ready = this->ready();
-        if (meta->start < ready && meta->end <= ready + cue_shapes::FITS && !lang::contains(this->begun, meta->key())) {
+        if (meta->start < ready && !lang::contains(this->begun, meta->key())) {
             std::string running = "the running action";
             if (lang::len(this->cues) > 0) {
                 running = lang::text("'", lang::at(this->cues, -1)->action->name, "'");
             }
-            double waits = ready - meta->request->start;
-            // What is wanted for a certain time is over; what is wanted once may come late.
-            if (meta->written || meta->request->duration.has_value() || waits > this->project->settings->wait) {
-                this->_tell(
-                    meta,
-                    "covered",
-                    lang::text("wholly covered by ", running, ", which plays until ", lang::fixed(this->free, 2), " s")
-                );
-                continue;
+            double waits = ready - meta->start;
+            if (meta->end <= ready + cue_shapes::FITS) {
+                waits = ready - meta->request->start;
+                // What is wanted for a certain time is over; what is wanted once may come late.
+                bool wanted = meta->written || meta->request->duration.has_value();
+                if (wanted || waits > this->project->settings->wait) {
+                    std::string why = lang::text(
+                        "wholly covered by ",
+                        running,
+                        ", which plays until ",
+                        lang::fixed(this->free, 2),
+                        " s"
+                    );
+                    this->_tell(meta, "covered", why);
+                    continue;
+                }
             }
-            this->_tell(meta, "queued", lang::text("waits ", lang::fixed(waits, 2), " s for ", running), true);
+            // What a model wrote is wanted at no certain time.
+            if (!meta->written && waits > sampling::ON_TIME) {
+                this->_tell(meta, "queued", lang::text("waits ", lang::fixed(waits, 2), " s for ", running), true);
+            }
         }
         this->_realise(bound, std::max(ready, meta->start));
     }

@@ -41,6 +41,7 @@ import { LEAST_BLEND } from "./phase_times.js";
 import { findPhases } from "./phases.js";
 import { but, maxOf, minOf, thousandths } from "./basics.js";
 
+export const ON_TIME = 0.1; // seconds by which what is asked for may begin later than that, and is on time
 export const LOOP_FADE = 0.6; // seconds of crossfade when a long rest changes from one loop of its stance to another
 
 /**
@@ -143,18 +144,26 @@ export class Performer {
         continue;
       }
       const ready = this.ready;
-      if (meta.start < ready && meta.end <= ready + FITS && !this.begun.has(meta.key)) {
+      if (meta.start < ready && !this.begun.has(meta.key)) {
         let running = "the running action";
         if (this.cues.length > 0) {
           running = `'${this.cues[this.cues.length - 1].action.name}'`;
         }
-        const waits = ready - meta.request.start;
-        // What is wanted for a certain time is over; what is wanted once may come late.
-        if (meta.written || meta.request.duration !== null || waits > this.project.settings.wait) {
-          this.tell(meta, "covered", `wholly covered by ${running}, which plays until ${this.free.toFixed(2)} s`);
-          continue;
+        let waits = ready - meta.start;
+        if (meta.end <= ready + FITS) {
+          waits = ready - meta.request.start;
+          // What is wanted for a certain time is over; what is wanted once may come late.
+          const wanted = meta.written || meta.request.duration !== null;
+          if (wanted || waits > this.project.settings.wait) {
+            const why = `wholly covered by ${running}, which plays until ${this.free.toFixed(2)} s`;
+            this.tell(meta, "covered", why);
+            continue;
+          }
         }
-        this.tell(meta, "queued", `waits ${waits.toFixed(2)} s for ${running}`, true);
+        // What a model wrote is wanted at no certain time.
+        if (!meta.written && waits > ON_TIME) {
+          this.tell(meta, "queued", `waits ${waits.toFixed(2)} s for ${running}`, true);
+        }
       }
       this.realise(bound, Math.max(ready, meta.start));
     }

@@ -9,28 +9,18 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.extras import is_bundle
+from metagraph.common.lab_streaming import OutletPlan, StreamChannel, load_lsl, open_outlet
 
-REMEDY = "install pylsl ({command}), or leave 'lsl: true' out of the study file"
 SENT = ("n", "type", "mono", "condition", "task", "name", "number")  # fields of an event
-
-
-class MarkersError(ValueError):
-    """There is no Lab Streaming Layer here; the message says what to do."""
 
 
 def open_marker_outlet(participant: str) -> Callable[[Mapping[str, Any]], None]:
     """Return what sends an event of the log: a stream `Metagraph` of type `Markers`, one JSON text a sample.
-    Raises MarkersError.
+    Recorders on other computers find it, too. Raises LabStreamError.
     """
-    try:
-        import pylsl  # loads its library on being imported
-    except (ImportError, OSError, RuntimeError) as error:
-        command = "metagraph extras add lab" if is_bundle() else "pip install 'metagraph-studio[lab]'"
-        remedy = REMEDY.format(command=command)
-        raise MarkersError(f"the Lab Streaming Layer cannot be had ({error}): {remedy}") from None
-    kind = pylsl.StreamInfo("Metagraph", "Markers", 1, 0, "string", f"metagraph-{participant}")
-    stream = pylsl.StreamOutlet(kind)
+    lsl = load_lsl("'lsl: true' of the study file", network=True)
+    plan = OutletPlan("Metagraph", "Markers", f"metagraph-{participant}", (StreamChannel("event"),))
+    stream = open_outlet(lsl, plan)
 
     def send(event: Mapping[str, Any]) -> None:
         told = {name: event[name] for name in SENT if name in event}

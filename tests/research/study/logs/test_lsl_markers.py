@@ -4,28 +4,18 @@ from __future__ import annotations
 
 import json
 import sys
-import types
-from typing import Any
+from pathlib import Path
 
 import pytest
 
-from metagraph.research.study.logs.lsl_markers import MarkersError, open_marker_outlet
+from metagraph.common.lab_streaming import LabStreamError
+from metagraph.research.study.logs.lsl_markers import open_marker_outlet
+from tests.lab_streams import make_layer, require_lsl
 
 
-@pytest.fixture
-def sent(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """A layer that keeps what is sent."""
-    out: list[Any] = []
-    layer: Any = types.ModuleType("pylsl")
-    layer.StreamInfo = lambda *told: out.append(told) or told
-    layer.StreamOutlet = lambda _: types.SimpleNamespace(
-        push_sample=lambda values: out.append(json.loads(values[0]))
-    )
+def test_kinds_and_numbers_are_sent_and_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    layer = make_layer()
     monkeypatch.setitem(sys.modules, "pylsl", layer)
-    return out
-
-
-def test_kinds_and_numbers_are_sent_and_nothing_else(sent: list[Any]) -> None:
     send = open_marker_outlet("P07")
     send(
         {
@@ -39,27 +29,32 @@ def test_kinds_and_numbers_are_sent_and_nothing_else(sent: list[Any]) -> None:
             "x": "y",
         }
     )
-    assert sent[0][:4] == ("Metagraph", "Markers", 1, 0) and sent[0][5] == "metagraph-P07"
-    assert sent[1] == {"n": 3, "type": "marker", "mono": 1.5, "name": "clap", "number": 2}
+    (outlet,) = layer.opened
+    assert outlet.info.told == ("Metagraph", "Markers", 1, 0, "string", "metagraph-P07")
+    assert json.loads(outlet.sent[0][0][0]) == {
+        "n": 3,
+        "type": "marker",
+        "mono": 1.5,
+        "name": "clap",
+        "number": 2,
+    }
 
 
 def test_where_there_is_no_layer_the_remedy_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pylsl", None)
-    with pytest.raises(MarkersError, match=r"metagraph-studio\[lab\]"):
+    with pytest.raises(LabStreamError, match=r"metagraph-studio\[lab\]"):
         open_marker_outlet("P01")
 
 
 def test_in_a_bundle_the_command_that_installs_it_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pylsl", None)
-    monkeypatch.setattr("metagraph.research.study.logs.lsl_markers.is_bundle", lambda: True)
-    with pytest.raises(MarkersError, match="metagraph extras add lab"):
+    monkeypatch.setattr("metagraph.common.lab_streaming.is_bundle", lambda: True)
+    with pytest.raises(LabStreamError, match="metagraph extras add lab"):
         open_marker_outlet("P01")
 
 
-def test_markers_reach_a_recorder_on_this_machine() -> None:
-    pylsl = pytest.importorskip(
-        "pylsl", reason="pylsl is not installed", exc_type=(ImportError, RuntimeError)
-    )
+def test_markers_reach_a_recorder_on_this_machine(tmp_path: Path) -> None:
+    pylsl = require_lsl(tmp_path)
     send = open_marker_outlet("P01")
     (found, *_) = pylsl.resolve_byprop("source_id", "metagraph-P01", timeout=10.0) or pytest.skip(
         "no network here"

@@ -133,25 +133,31 @@ namespace Metagraph
                     continue;
                 }
                 var ready = Ready;
-                if (meta.Start < ready && meta.End <= ready + CueShapesRules.Fits && !Begun.Contains(meta.Key))
+                if (meta.Start < ready && !Begun.Contains(meta.Key))
                 {
                     var running = "the running action";
                     if (Cues.Count > 0)
                     {
                         running = "'" + Cues[Cues.Count - 1].Action.Name + "'";
                     }
-                    var waits = ready - meta.Request.Start;
-                    // What is wanted for a certain time is over; what is wanted once may come late.
-                    if (meta.Written || meta.Request.Duration != null || waits > Project.Settings.Wait)
+                    var waits = ready - meta.Start;
+                    if (meta.End <= ready + CueShapesRules.Fits)
                     {
-                        Tell(
-                            meta,
-                            "covered",
-                            "wholly covered by " + running + ", which plays until " + PlainText.Fixed(Free, 2) + " s"
-                        );
-                        continue;
+                        waits = ready - meta.Request.Start;
+                        // What is wanted for a certain time is over; what is wanted once may come late.
+                        var wanted = meta.Written || meta.Request.Duration != null;
+                        if (wanted || waits > Project.Settings.Wait)
+                        {
+                            var why = "wholly covered by " + running + ", which plays until " + PlainText.Fixed(Free, 2) + " s";
+                            Tell(meta, "covered", why);
+                            continue;
+                        }
                     }
-                    Tell(meta, "queued", "waits " + PlainText.Fixed(waits, 2) + " s for " + running, true);
+                    // What a model wrote is wanted at no certain time.
+                    if (!meta.Written && waits > SamplingRules.OnTime)
+                    {
+                        Tell(meta, "queued", "waits " + PlainText.Fixed(waits, 2) + " s for " + running, true);
+                    }
                 }
                 Realise(bound, Math.Max(ready, meta.Start));
             }
@@ -1053,6 +1059,7 @@ namespace Metagraph
 
     public static class SamplingRules
     {
+        public const double OnTime = 0.1; // seconds by which what is asked for may begin later than that, and is on time
         // seconds of crossfade when a long rest changes from one loop of its stance to another
         public const double LoopFade = 0.6;
 

@@ -15,6 +15,7 @@ const Vigour = preload("vigour.gd")
 const PhaseTimes = preload("phase_times.gd")
 const Phases = preload("phases.gd")
 const Util = preload("util.gd")
+const ON_TIME = 0.1  # seconds by which what is asked for may begin later than that, and is on time
 const LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
@@ -119,16 +120,22 @@ class Performer:
 				self._realise(bound, Util.most(self.ready(), Bounds.begins(meta)))
 				continue
 			var ready = self.ready()
-			if meta.start < ready and meta.end <= ready + CueShapes.FITS and not self.begun.has(meta.key):
+			if meta.start < ready and not self.begun.has(meta.key):
 				var running = "the running action"
 				if self.cues.size() > 0:
 					running = "'%s'" % [self.cues[-1].action.name]
-				var waits = ready - meta.request.start
-				# What is wanted for a certain time is over; what is wanted once may come late.
-				if meta.written or meta.request.duration != null or waits > self.project.settings.wait:
-					self._tell(meta, "covered", "wholly covered by %s, which plays until %.2f s" % [running, self.free_])
-					continue
-				self._tell(meta, "queued", "waits %.2f s for %s" % [waits, running], true)
+				var waits = ready - meta.start
+				if meta.end <= ready + CueShapes.FITS:
+					waits = ready - meta.request.start
+					# What is wanted for a certain time is over; what is wanted once may come late.
+					var wanted = meta.written or meta.request.duration != null
+					if wanted or waits > self.project.settings.wait:
+						var why = "wholly covered by %s, which plays until %.2f s" % [running, self.free_]
+						self._tell(meta, "covered", why)
+						continue
+				# What a model wrote is wanted at no certain time.
+				if not meta.written and waits > ON_TIME:
+					self._tell(meta, "queued", "waits %.2f s for %s" % [waits, running], true)
 			self._realise(bound, Util.most(ready, meta.start))
 
 	func _realise(bound, now):
