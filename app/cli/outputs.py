@@ -48,6 +48,7 @@ def offer_overwrite(parser: ArgumentParser, command: str) -> None:
             offer_overwrite(inner, command)
     known = {a.dest for a in parser._actions}
     name = parser.prog.split()[-1]
+    name = None if name == command else name
     if (command, name) in NEVER:
         return
     writes = known & {*OUTPUTS} or any((c, a) == (command, name) for c, a, _ in WRITTEN)

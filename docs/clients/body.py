@@ -3,7 +3,7 @@
     async with Body("ws://127.0.0.1:8765") as body:
         print(await body.ask(do="nod"))
 
-`python body.py` starts a line, interrupts it and prints what it is told. It needs `pip install websockets`.
+`python body.py` starts a line, interrupts it and prints the events. It needs `pip install websockets`.
 """
 
 import asyncio

@@ -44,7 +44,7 @@ def tags_of(project: Project) -> dict[str, set[str]]:
 
 
 class Told:
-    """What a body was told, and when."""
+    """The events that a body heard, and when."""
 
     def __init__(self) -> None:
         self.events: list[tuple[float, Any]] = []

@@ -82,7 +82,7 @@ READ = {
 
 def test_each_option_that_names_a_file_is_known_as_read_or_written() -> None:
     for name, parser in commands().items():
-        command, action = name.split()[0], name.split()[-1]
+        command, action = name.split()[0], name.split()[-1] if " " in name else None
         for option in parser._actions:
             if option.type is not Path:
                 continue
@@ -92,7 +92,7 @@ def test_each_option_that_names_a_file_is_known_as_read_or_written() -> None:
 
 def test_each_command_with_an_output_may_be_told_to_overwrite_and_no_other() -> None:
     for name, parser in commands().items():
-        command, action = name.split()[0], name.split()[-1]
+        command, action = name.split()[0], name.split()[-1] if " " in name else None
         known = {option.dest for option in parser._actions}
         writes = bool(known & {*OUTPUTS}) or any((c, a) == (command, action) for c, a, _ in WRITTEN)
         assert ("overwrite" in known) == (writes and (command, action) not in NEVER), name
