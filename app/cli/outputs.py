@@ -47,8 +47,8 @@ def offer_overwrite(parser: ArgumentParser, command: str) -> None:
         for inner in action.choices.values():
             offer_overwrite(inner, command)
     known = {a.dest for a in parser._actions}
-    name = parser.prog.split()[-1]
-    name = None if name == command else name
+    last = parser.prog.split()[-1]
+    name = last if last != command else None
     if (command, name) in NEVER:
         return
     writes = known & {*OUTPUTS} or any((c, a) == (command, name) for c, a, _ in WRITTEN)
