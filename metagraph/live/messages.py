@@ -14,6 +14,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 
 from metagraph.graph import requests as a
 from metagraph.graph.words import LAYERS, Layer
+from metagraph.live.engine_timings import adopt_engine_timing
 
 LONGEST = 64 * 1024  # bytes of one request
 LONGEST_BML = 256 * 1024  # bytes of a request with a block of BML
@@ -261,19 +262,27 @@ def read_live_request(data: bytes | str | msgspec.Raw) -> HeardMessage | Reply:
             f"{size // 1024}"
         )
     try:
-        return HeardMessage(_message.decode(data))
+        message = _message.decode(data)
     except msgspec.ValidationError as error:
-        return _otherwise(data, error)
+        return _otherwise(data, error, None)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
         return Reply(error=a.explain_invalid_ask(error))
+    if isinstance(message, a.Say) and (message.words or message.visemes):
+        return _otherwise(data, msgspec.ValidationError(), message)
+    return HeardMessage(message)
 
 
 def _holds_bml(data: bytes | str | msgspec.Raw) -> bool:
     return '"bml"' in data if isinstance(data, str) else b'"bml"' in bytes(data)
 
 
-def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) -> HeardMessage | Reply:
-    """Read a request that is not valid as it is: one that says `in`, or one with an error."""
+def _otherwise(
+    data: bytes | str | msgspec.Raw, error: msgspec.ValidationError, message: Message | None
+) -> HeardMessage | Reply:
+    """Read a request that is not valid as it is: one that says `in`, one with the times of a synthesiser's
+    service, or one with an error. message: what it says if nothing has to be changed, None if it is not
+    valid.
+    """
     try:
         fields = _seconds.decode(data)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as broken:
@@ -281,22 +290,24 @@ def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) 
     if not isinstance(fields, dict):
         return Reply(error='a request is an object such as {"do": "nod"}')
     ident = fields["id"] if isinstance(fields.get("id"), str) and len(fields["id"]) <= 200 else None
-    if "in" not in fields:
-        return Reply(id=ident, error=_words(error))
-    after = fields.pop("in")
+    changed = fields.get("do") == "say" and adopt_engine_timing(fields)
+    later = "in" in fields
+    after = fields.pop("in", 0.0)
     if isinstance(after, bool) or not isinstance(after, int | float) or not 0 <= after <= 1e6:
         return Reply(id=ident, error="in: give seconds from now, 0 or more")
-    if fields.get("at") is not None:
+    if later and fields.get("at") is not None:
         return Reply(
             id=ident, error=("give `at` (seconds of the session) or `in` (seconds from now), not both")
         )
+    if not (changed or later):
+        return HeardMessage(message) if message is not None else Reply(id=ident, error=_words(error))
     try:
         message = msgspec.convert(fields, Message)
     except (msgspec.ValidationError, RecursionError) as wrong:
         return Reply(id=ident, error=_words(wrong))
-    if isinstance(message, OwnMessage):
+    if later and isinstance(message, OwnMessage):
         return Reply(id=ident, error="in: only what the character does can be put off")
-    return HeardMessage(message, float(after))
+    return HeardMessage(message, float(after) if later else None)
 
 
 def _words(error: Exception) -> str:
