@@ -11,7 +11,7 @@ from app.cli.outputs import ProjectOutput, with_project_ending
 from app.cli.progress_line import ProgressLine
 from metagraph.errors import FileError
 from metagraph.formats.action_labels import apply_labels, read_labels
-from metagraph.formats.clip_readers import list_clip_suffixes
+from metagraph.formats.clip_readers import describe_clip_files
 from metagraph.formats.import_words import count_alike, describe_import, list_remedies
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.pieces import read_other_project
@@ -103,7 +103,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
             place,
             "has no clips",
             "while importing it",
-            f"Clips are {', '.join(list_clip_suffixes())} files.",
+            describe_clip_files(),
         )
     for failure in count_alike(result.failures):
         print(f"left out: {failure}", file=sys.stderr)

@@ -329,9 +329,7 @@ def _begun(options: Namespace, path: Path) -> Begun:
     )
     if not result.loaded:
         why = result.failures[0] if result.failures else "has no clips"
-        raise FileError(
-            source, why, "while importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
-        )
+        raise FileError(source, why, "while importing it", describe_clip_files())
     known = {(x, entry.take) for entry in before.clips.values() for x in (entry.path, entry.digest)}
     fresh = replace(
         result,

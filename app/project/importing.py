@@ -18,7 +18,7 @@ from app.project.load import Load
 from app.project.opening import take_over
 from app.translation import tr, tr_phrase
 from metagraph.common.wording import Phrase
-from metagraph.formats.clip_readers import list_clip_suffixes
+from metagraph.formats.clip_readers import describe_clip_files, list_clip_suffixes
 from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported
 from metagraph.formats.imports import BY_KNOWN_MAP, Imported, Strangers, import_files
 from metagraph.formats.repairs import list_repairs
@@ -173,7 +173,7 @@ class Importing(QObject):
         if not result.loaded and not result.apart and not result.failures:
             self.report.emit(
                 tr("Nothing was imported"),
-                [tr("No clips were found there. Clips are BVH, GLB, glTF, VRM animation or FBX files.")],
+                [f"{tr('No clips were found there.')} {tr_phrase(describe_clip_files())}"],
             )
             return
         known = [note for note in result.notes if isinstance(note, Phrase) and note.template == BY_KNOWN_MAP]

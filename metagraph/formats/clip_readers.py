@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from metagraph.common.wording import phrase
+from metagraph.common.wording import Phrase, phrase
 from metagraph.formats.face_exports import is_face_json, is_face_table
 from metagraph.formats.live_link_face import is_live_link
 from metagraph.formats.markers.marker_reading import is_c3d, is_trc
@@ -221,6 +221,11 @@ def find_reader(head: bytes) -> ClipReader | None:
 def find_reader_for(suffix: str) -> ClipReader | None:
     """Return the reader of files with this extension, in lower case; None if there is none."""
     return next((reader for reader in READERS if suffix in reader.suffixes), None)
+
+
+def describe_clip_files() -> Phrase:
+    """Return a sentence that says which files are clips."""
+    return phrase("Clips are {endings} files.", endings=", ".join(list_clip_suffixes()))
 
 
 def list_clip_suffixes() -> tuple[str, ...]:
