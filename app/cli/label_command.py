@@ -309,6 +309,7 @@ def _begun(options: Namespace, path: Path) -> Begun:
     """
     from app.cli.command_output import open_for_command
     from metagraph.errors import FileError
+    from metagraph.formats.clip_readers import describe_clip_files
     from metagraph.formats.imports import import_files
     from metagraph.formats.store import SUFFIX
     from metagraph.graph.model import Project
