@@ -46,6 +46,15 @@ def test_a_video_is_measured(monkeypatch, capsys):
     assert "0.1 s (1 rounds)" in capsys.readouterr().out
 
 
+@pytest.mark.gl
+@pytest.mark.nightly
+def test_waits_are_measured(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["bench_waits.py", "8"])
+    assert runpy.run_path(str(FOLDER / "bench_waits.py"))["main"]() == 0
+    rows = [line for line in capsys.readouterr().out.splitlines() if line.startswith("| ")]
+    assert len(rows) == 10 and all(float(row.split("|")[2]) > 0 for row in rows[1:])
+
+
 def test_they_are_listed_and_run_by_name(monkeypatch, capsys):
     main = runpy.run_path(str(FOLDER / "__main__.py"))["main"]
     assert main([]) == 0
