@@ -40,7 +40,7 @@ def read_person(options: Namespace, picture: tuple[int, int] | None) -> Keypoint
     other, EstimatorError, CameraError.
     """
     from metagraph.formats.filmed.film import write_filmed_keypoints
-    from metagraph.formats.filmed.video import is_video
+    from metagraph.formats.filmed.video import VideoFile, is_video
     from metagraph.formats.keypoints.reader import read_keypoints
 
     path: Path | None = options.keypoints
@@ -54,6 +54,8 @@ def read_person(options: Namespace, picture: tuple[int, int] | None) -> Keypoint
         if options.save_keypoints is not None:
             raise ValueError("--save-keypoints is for a video or a camera")
         return read_keypoints(path, options.fps, picture)
+    if path is not None:
+        VideoFile(path).close()  # what is no video is refused before anything is installed for it
     require_estimator(options)
     filmed = _film(options) if path is None else _read_video(options, path)
     if options.save_keypoints is not None:

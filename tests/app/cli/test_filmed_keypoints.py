@@ -71,6 +71,17 @@ def test_without_mediapipe_a_script_is_told_what_to_install(
     assert "metagraph extras add camera" in capsys.readouterr().err
 
 
+def test_what_is_no_video_is_refused_before_anything_is_installed_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    remove_stand_in(tmp_path, monkeypatch)
+    assert main(["mimic", str(SAMPLE), str(tmp_path / "none.mp4")]) != 0
+    (tmp_path / "talk.mp4").write_bytes(b"not a film")
+    assert main(["mimic", str(SAMPLE), str(tmp_path / "talk.mp4")]) != 0
+    said = capsys.readouterr().err
+    assert "none.mp4" in said and "no video that can be read" in said and "extras" not in said
+
+
 @pytest.mark.parametrize("answer", ["y", "n"])
 def test_at_a_terminal_somebody_is_asked_before_it_is_installed(
     answer: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
