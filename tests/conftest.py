@@ -11,7 +11,7 @@ import sys
 from collections.abc import Collection, Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ from sample_clips.make.numbered_ids import numbered_ids as counting_ids
 from tests import kernels
 from tests.browsing import browse
 from tests.once import fitted_once, heard_once, read_once
-from tests.run_notes import KEY, NOTES
+from tests.run_notes import KEY, NOTES, catch_crash, take_crashes
 from tests.thorough import NIGHTLY, THOROUGH
 
 __all__ = ["browse"]
@@ -159,6 +159,7 @@ settings.load_profile("thorough" if THOROUGH else "gate" if os.environ.get("CI")
 
 
 ALL_NOTES = pytest.StashKey[dict[str, dict[str, str]]]()
+CRASH = pytest.StashKey[TextIO]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -167,6 +168,14 @@ def pytest_configure(config: pytest.Config) -> None:
     gc.disable()
     if config.getoption("numprocesses", None):
         kernels.make()
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """What a process that crashes says of it is read at the end: it is lost among what others print."""
+    if WORKER:
+        session.config.stash[CRASH] = catch_crash(WORKER)
+    else:
+        take_crashes()  # of a run before
 
 
 def pytest_report_header() -> str:
@@ -235,6 +244,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
     for about in dict.fromkeys(about for notes in every.values() for about in notes):
         said = [f"{name} {notes[about]}" for name, notes in sorted(every.items()) if about in notes]
         terminalreporter.write_line(f"{about}: {', '.join(said)}")
+    for process, lines in ({} if WORKER else take_crashes()).items():
+        terminalreporter.write_line("\n".join((f"{process} crashed:", *lines)))
 
 
 def memory() -> float:
