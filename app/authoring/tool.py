@@ -12,6 +12,7 @@ from typing import Any, Literal
 import msgspec
 from msgspec import Struct
 
+from metagraph.common.field_errors import explain_validation
 from metagraph.common.files import is_inside
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
@@ -132,9 +133,8 @@ class AuthorTool:
         try:
             return msgspec.convert(given, self.takes)
         except (msgspec.ValidationError, RecursionError) as error:
-            message, _, where = str(error).partition(" - at ")
-            place = where.strip("`").removeprefix("$").removeprefix(".") or "arguments"
-            raise AuthorError(f"{place}: {message[:1].lower()}{message[1:]}") from None
+            words = explain_validation(error, self.takes)
+            raise AuthorError(words if " - at " in str(error) else f"arguments: {words}") from None
 
     def describe(self) -> dict[str, Any]:
         """Return the tool as `tools/list` tells it."""

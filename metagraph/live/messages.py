@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, Union, get_args, overload
 import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
+from metagraph.common.field_errors import explain_validation
 from metagraph.graph import requests as a
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.live.engine_timings import adopt_engine_timing
@@ -300,17 +301,21 @@ def _otherwise(
             id=ident, error=("give `at` (seconds of the session) or `in` (seconds from now), not both")
         )
     if not (changed or later):
-        return HeardMessage(message) if message is not None else Reply(id=ident, error=_words(error))
+        return HeardMessage(message) if message is not None else Reply(id=ident, error=_words(error, fields))
     try:
         message = msgspec.convert(fields, Message)
     except (msgspec.ValidationError, RecursionError) as wrong:
-        return Reply(id=ident, error=_words(wrong))
+        return Reply(id=ident, error=_words(wrong, fields))
     if later and isinstance(message, OwnMessage):
         return Reply(id=ident, error="in: only what the character does can be put off")
     return HeardMessage(message, float(after) if later else None)
 
 
-def _words(error: Exception) -> str:
+def _words(error: Exception, fields: dict[str, Any]) -> str:
+    """Return what is wrong with a request. fields: all that it says."""
+    kind = next((one for one in get_args(Message) if one.__struct_config__.tag == fields.get("do")), None)
+    if kind is not None and isinstance(error, msgspec.ValidationError):
+        return explain_validation(error, kind)
     text = a.explain_invalid_ask(error).removeprefix("[...]: ")
     if text.startswith("do: Invalid value"):
         text = text.partition("; known are")[0] + f"; known are {', '.join(WORDS)}"
