@@ -46,7 +46,7 @@ VERBS = set(
     reorder repair repeat replace replay repoint report require reread resample reset resize restore
     retarget retime retire reveal reword rotate round route run sample save say scale score seal search
     see select send serve set settle shade share shift shorten show shuffle simplify simulate slip smooth
-    snap soften solve sort spell spend split stack stand standardise start straighten strengthen strip
+    snap soften solve sort spell spend split stack stand standardise start straighten strengthen strip suggest
     study summarise swap sweep sync synthesise synthesize tabulate take tell thin timed to tr track train
     translate try turn understand undo unpack unwrap update use uses vary verify wait walk warn watch
     weigh with withdraw write

@@ -1,4 +1,4 @@
-"""What is wrong with a field of JSON, in words that say what would be right: its name, or what it may hold."""
+"""What is wrong with a field of JSON, in words that say what would be right: its name, or its words."""
 
 from __future__ import annotations
 
