@@ -27,6 +27,7 @@ from app.project.step_store import find_steps
 from app.project.unsaved import Unsaved, count_lost_steps
 from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
+from metagraph.common.extras import find_missing_extra
 from metagraph.common.files import is_file
 from metagraph.common.network_paths import allow
 from metagraph.errors import FileError
@@ -56,13 +57,14 @@ def _filter() -> str:
 class Files(QObject):
     """The files of a window. `told` has words for the status bar, `report` (title, lines) to read. `opened`
     is emitted when a project is shown. `noticed` has (words, tip, function that shows more), for later
-    reading.
+    reading. `extra_wanted` has the name of an extra that the user wants to see.
     """
 
     told = Signal(str)
     report = Signal(str, object)
     opened = Signal()
     noticed = Signal(str, str, object)
+    extra_wanted = Signal(str)
 
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
@@ -272,7 +274,21 @@ class Files(QObject):
         """Report what went wrong with a job."""
         if not (is_foreseen(error) or isinstance(error, WORDS)):
             return  # reported already
-        QMessageBox.warning(self.window, "Metagraph", tr_error(error))
+        self.show_warning("Metagraph", error)
+
+    def show_warning(self, title: str, error: Exception) -> None:
+        """Show what went wrong, and offer the extras where one is missing."""
+        name = find_missing_extra(error)
+        if name is None:
+            QMessageBox.warning(self.window, title, tr_error(error))
+            return
+        box = QMessageBox(QMessageBox.Icon.Warning, title, tr_error(error), parent=self.window)
+        box.addButton(QMessageBox.StandardButton.Ok)
+        more = box.addButton(tr("Extras…"), QMessageBox.ButtonRole.ActionRole)
+        box.exec()
+        box.deleteLater()  # its parent would keep it
+        if box.clickedButton() is more:
+            self.extra_wanted.emit(name)
 
     # --- save
 

@@ -170,6 +170,7 @@ class Window(QMainWindow):
         d.loaded.connect(shell.notice.clear)
         shell.watcher.file_touched.connect(shell.files.look_at_file)
         shell.files.noticed.connect(shell.notice.tell)
+        shell.files.extra_wanted.connect(self._show_extras)
         d.saved.connect(lambda: shell.learned.keep(d, shell.jobs))
         for signal in (
             s.place.layer_changed,
@@ -248,6 +249,11 @@ class Window(QMainWindow):
         """Show the state of document and session in title, header and menus."""
         self.shell.actions.refresh()
         self._show_title()
+
+    def _show_extras(self, name: str) -> None:
+        from app.shell.extras_dialog import show_extras
+
+        show_extras(self, self.shell.jobs, name)
 
     def _follow(self) -> None:
         """Show it, updating the commands once for several changes."""

@@ -128,6 +128,11 @@ def contribute(shell: Shell) -> Contribution:
 
         SystemReportDialog(shell.widget).open()
 
+    def list_extras() -> None:
+        from app.shell.extras_dialog import show_extras
+
+        show_extras(shell.widget, shell.jobs)
+
     def about() -> None:
         from metagraph import __version__
 
@@ -164,6 +169,14 @@ def contribute(shell: Shell) -> Contribution:
                 palette,
                 ("Ctrl+Shift+P",),
                 tip=tr("Find commands, panels, stances and actions by name"),
+            ),
+            Command(
+                "extras",
+                "&Help",
+                "",
+                tr("&Extras…"),
+                list_extras,
+                tip=tr("Install packages that some jobs need: motion graphs, FBX, training, lab recorders"),
             ),
             Command(
                 "system_report",

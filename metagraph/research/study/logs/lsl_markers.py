@@ -9,9 +9,9 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.extras import is_bundle
+from metagraph.common.extras import describe_missing_extra
+from metagraph.common.wording import phrase
 
-REMEDY = "install pylsl ({command}), or leave 'lsl: true' out of the study file"
 SENT = ("n", "type", "mono", "condition", "task", "name", "number")  # fields of an event
 
 
@@ -26,9 +26,14 @@ def open_marker_outlet(participant: str) -> Callable[[Mapping[str, Any]], None]:
     try:
         import pylsl  # loads its library on being imported
     except (ImportError, OSError, RuntimeError) as error:
-        command = "metagraph extras add lab" if is_bundle() else "pip install 'metagraph-studio[lab]'"
-        remedy = REMEDY.format(command=command)
-        raise MarkersError(f"the Lab Streaming Layer cannot be had ({error}): {remedy}") from None
+        missing = isinstance(error, ImportError)
+        why = describe_missing_extra("lab", phrase("Sending markers")) if missing else str(error)
+        raise MarkersError(
+            phrase(
+                "the Lab Streaming Layer cannot be had. {why}. Or leave 'lsl: true' out of the study file",
+                why=why,
+            )
+        ) from None
     kind = pylsl.StreamInfo("Metagraph", "Markers", 1, 0, "string", f"metagraph-{participant}")
     stream = pylsl.StreamOutlet(kind)
 
