@@ -94,12 +94,15 @@ class Files(QObject):
 
     # --- new and open
 
-    def new(self) -> None:
-        if self.refuse():
-            return
-        if self.may_leave():
-            self.document.load(Project(), None)
-            self.opened.emit()
+    def new(self, name: str | None = None) -> bool:
+        """Show an empty project in place of this one, with a name if there is one; return whether it is
+        there.
+        """
+        if self.refuse() or not self.may_leave():
+            return False
+        self.document.load(Project() if name is None else Project(name=name), None)
+        self.opened.emit()
+        return True
 
     def ask_open(self) -> None:
         if self.refuse():

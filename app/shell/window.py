@@ -18,6 +18,7 @@ from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
 from app.project.learned import Learned
+from app.project.second_start import SecondStarts
 from app.project.watching import Watcher
 from app.shell.actions import Actions, Command, Standard
 from app.shell.context import Contribute, Contribution, HeaderItem, Services
@@ -63,6 +64,7 @@ class WindowShell:
             ProblemWatch(self.document, self.stage.session, self.jobs, self.compatibility, window)
         )
         self.notice = services.add(Notice(window))
+        self.second_starts = services.add(SecondStarts(window))
         services.add(Verbs())
         self.faults = FaultTeller(self.document, window, self.tell)
 
@@ -310,6 +312,7 @@ class Window(QMainWindow):
             event.ignore()
             return
         self.shell.faults.stop()
+        self.shell.second_starts.stop()
         self.workspaces.save()
         self.shell.learned.keep(self.shell.document)
         self.shell.stage.stop()
