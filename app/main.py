@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from app.shell.window import Window
 
 RETRY = 300  # milliseconds between two checks whether the language can change
+QUIET = 5000  # milliseconds after which news may be told: the project opens first
 UNSEEN = 500  # milliseconds; then a project is opened even if nothing was painted: the window may be hidden
 
 
@@ -99,9 +100,36 @@ def open_window(
         else:
             files.recover_untitled(lambda: show_given(window, None, sample, clip))
         window.load_late_panels_soon()
+        QTimer.singleShot(QUIET, window, lambda: tell_news(window))
 
     _once_painted(window, begin)
     return window
+
+
+def tell_news(window: Window) -> None:
+    """Offer to read what is new after an update, and look for a newer release if the user allowed it."""
+    import time
+
+    from app.shell.update_check import Release, find_update, is_due, note_version
+    from app.translation import tr
+    from metagraph import __version__
+
+    shell = window.shell
+    settings = shell.settings
+    if note_version(settings, __version__):
+        words = tr("What is new in Metagraph {version}…", version=__version__)
+        shell.notice.tell(words, words, shell.actions["news"].trigger)
+
+    def tell(release: Release | None) -> None:
+        if release is not None:
+            words = tr("Metagraph {version} is there…", version=release.version)
+            command = next(c for c in shell.actions.commands if c.id == "news")
+            shell.notice.tell(words, words, lambda: command.run(release))
+
+    if is_due(settings, time.time()):
+        shell.jobs.start(
+            "updates", lambda _: find_update(__version__, settings), tell, lambda error: None, quick=True
+        )
 
 
 def show_given(

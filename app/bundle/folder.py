@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 
 from app.bundle.leftovers import PYTHON, SITE
 from app.bundle.libraries import add_libraries, set_search_path
+from app.shell.update_check import ADDRESS, is_safe
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCHER = Path(__file__).parent / "launcher"
@@ -24,10 +25,13 @@ PARTS = ("app", "metagraph", "preview", "sample_clips", "pyproject.toml", "READM
 Tell = Callable[[str], object]
 
 
-def make_folder(out: Path, tell: Tell = print) -> Path:
-    """Make the folder `metagraph` inside `out`, replacing an older one; return it. Raises OSError, and
+def make_folder(out: Path, tell: Tell = print, updates: str = "") -> Path:
+    """Make the folder `metagraph` inside `out`, replacing an older one; return it. updates: the address that
+    it may ask for a newer version, "" for none. Raises OSError, ValueError for an address that is not asked, and
     subprocess.CalledProcessError if the packages cannot be installed.
     """
+    if updates and not is_safe(updates):
+        raise ValueError(f"'{updates}' does not begin with https://")
     folder = out / "metagraph"
     if folder.exists():
         shutil.rmtree(folder)
@@ -41,6 +45,9 @@ def make_folder(out: Path, tell: Tell = print) -> Path:
     shutil.copytree(ROOT / "docs", site / "docs", ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     shutil.copy(LAUNCHER / "sitecustomize.py", site)
     (site / "bundled").write_text("This Metagraph brings its own Python.\n")
+    shutil.copy(ROOT / "CHANGELOG.md", site)
+    if updates:
+        (site / ADDRESS).write_text(updates, encoding="utf-8")
     tell("Adding libraries of the system that a bare one lacks")
     add_libraries(folder, site)
     tell("Compiling")
