@@ -15,6 +15,7 @@ from PySide6.QtGui import QIcon, QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
 from metagraph.common.programs import leave_working_folder
+from metagraph.common.studio import find_studio_file, get_studio, read_studio, use_studio
 
 if TYPE_CHECKING:
     from app.project.second_start import StartRequest
@@ -33,6 +34,7 @@ def prepare_application() -> QApplication:
 
 def _application() -> QApplication:
     from app import translation
+    from app.features import check_names
     from app.memory import free_memory_early
     from preview.early_driver import load_soon
 
@@ -54,7 +56,8 @@ def _application() -> QApplication:
     app = QApplication(sys.argv[:1])
     app.setWindowIcon(QIcon(str(Path(__file__).parent / "look" / "metagraph.svg")))
     app.setDesktopFileName("metagraph")  # under Wayland the icon is that of the menu entry
-    translation.choose_language(QSettings(), QLocale.system().uiLanguages())
+    use_studio(check_names(read_studio(find_studio_file(str(QSettings().value("studio", ""))))))
+    translation.choose_language(QSettings(), QLocale.system().uiLanguages(), get_studio().language)
     follow_language(app)
     return app
 
@@ -78,9 +81,12 @@ def follow_language(app: QApplication) -> None:
 def make_window() -> Window:
     """Return a window with all features, not shown yet."""
     from app.features import FEATURES
+    from app.shell.studio_defaults import is_all_shown
     from app.shell.window import Window
 
-    return Window(import_module(f"app.features.{name}").contribute for name in FEATURES)
+    hidden = set(get_studio().hidden_features) if not is_all_shown(QSettings()) else ()
+    shown = [name for name in FEATURES if name not in hidden]
+    return Window(import_module(f"app.features.{name}").contribute for name in shown)
 
 
 def open_window(
@@ -111,12 +117,16 @@ def tell_news(window: Window) -> None:
     import time
 
     from app.shell.update_check import Release, find_update, is_due, note_version
-    from app.translation import tr
+    from app.translation import tr, tr_phrase
     from metagraph import __version__
 
     shell = window.shell
     settings = shell.settings
-    if note_version(settings, __version__):
+    if problems := get_studio().problems:
+        words = tr("Check your studio's defaults…")
+        lines = [tr_phrase(problem) for problem in problems]
+        shell.notice.tell(words, "\n".join(lines), lambda: shell.files.report.emit(words.rstrip("…"), lines))
+    elif note_version(settings, __version__):
         words = tr("What is new in Metagraph {version}…", version=__version__)
         shell.notice.tell(words, words, shell.actions["news"].trigger)
 

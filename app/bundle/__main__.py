@@ -20,12 +20,13 @@ def main() -> int:
     parser.add_argument(
         "--updates", default="", metavar="ADDRESS", help="where it may ask for a newer version (https)"
     )
+    parser.add_argument("--studio", default="", metavar="PATH", help="where the studio's defaults are")
     options = parser.parse_args()
     if not sys.platform.startswith("linux"):
         print("Bundles are made on Linux only so far.", file=sys.stderr)
         return 2
     options.out.mkdir(parents=True, exist_ok=True)
-    made = [make_folder(options.out, updates=options.updates)]
+    made = [make_folder(options.out, updates=options.updates, studio=options.studio)]
     if not options.folder_only:
         print("Packing")
         made.append(pack_tar(made[0], options.out))

@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 from app.bundle.leftovers import PYTHON, SITE
 from app.bundle.libraries import add_libraries, set_search_path
 from app.shell.update_check import ADDRESS, is_safe
+from metagraph.common.studio import ADDRESS as STUDIO
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCHER = Path(__file__).parent / "launcher"
@@ -25,10 +26,11 @@ PARTS = ("app", "metagraph", "preview", "sample_clips", "pyproject.toml", "READM
 Tell = Callable[[str], object]
 
 
-def make_folder(out: Path, tell: Tell = print, updates: str = "") -> Path:
+def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = "") -> Path:
     """Make the folder `metagraph` inside `out`, replacing an older one; return it. updates: the address that
-    it may ask for a newer version, "" for none. Raises OSError, ValueError for an address that is not asked, and
-    subprocess.CalledProcessError if the packages cannot be installed.
+    it may ask for a newer version, studio: the path of the studio's defaults; "" for none. Raises OSError,
+    ValueError for an address that it would not ask, and subprocess.CalledProcessError if the packages cannot
+    be installed.
     """
     if updates and not is_safe(updates):
         raise ValueError(f"'{updates}' does not begin with https://")
@@ -48,6 +50,8 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "") -> Path:
     shutil.copy(ROOT / "CHANGELOG.md", site)
     if updates:
         (site / ADDRESS).write_text(updates, encoding="utf-8")
+    if studio:
+        (site / STUDIO).write_text(studio, encoding="utf-8")
     tell("Adding libraries of the system that a bare one lacks")
     add_libraries(folder, site)
     tell("Compiling")

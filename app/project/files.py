@@ -30,6 +30,7 @@ from app.translation import tr, tr_error
 from metagraph.common.extras import find_missing_extra
 from metagraph.common.files import is_file
 from metagraph.common.network_paths import allow
+from metagraph.common.studio import find_start_folder
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.locking import Lock
@@ -108,7 +109,7 @@ class Files(QObject):
         if self.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
-            self.window, tr("Open project"), str(self.document.folder or Path.home()), _filter()
+            self.window, tr("Open project"), str(find_start_folder(self.document.folder)), _filter()
         )
         if name:
             self.open(Path(name))
@@ -303,7 +304,7 @@ class Files(QObject):
         return True
 
     def save_as(self) -> bool:
-        start = self.document.folder or Path.home()
+        start = find_start_folder(self.document.folder)
         name, _ = QFileDialog.getSaveFileName(
             self.window,
             tr("Save project as"),

@@ -29,6 +29,7 @@ from app.shell.keyboard import Keyboard
 from app.shell.language_menu import make_language_command
 from app.shell.notice import Notice
 from app.shell.places import PanelPlaces
+from app.shell.studio_defaults import SHOW_ALL, hides_anything, is_all_shown
 from app.shell.verbs import Verbs
 from app.shell.workspace_keeper import Workspaces
 from app.shell.workspace_tabs import WorkspaceTabs, list_workspace_commands
@@ -37,7 +38,9 @@ from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
 from app.translation import tr
 from app.widgets.drop_frame import DropFrame
+from metagraph.common.studio import get_studio
 
+FIRST_THEME = "dark"
 LATE = 4000  # milliseconds after which the late panels are made in any case
 
 
@@ -104,7 +107,7 @@ class Window(QMainWindow):
         self.setAcceptDrops(True)
         self.shell = shell = WindowShell(self)
         session = shell.stage.session
-        kept = shell.settings.value("theme")
+        kept = shell.settings.value("theme") or get_studio().theme
         if kept == "dark" or kept == "light":
             session.look.name = kept
         apply_theme(_application(), get_theme(session.look.name))
@@ -158,8 +161,23 @@ class Window(QMainWindow):
                     study=True,
                 ),
                 make_language_command(self.shell, self.language_chosen.emit),
+                Command(
+                    "show_all",
+                    "&View",
+                    "look",
+                    tr("Show what your studio hi&des"),
+                    self._toggle_hidden,
+                    tip=tr("From the next start on"),
+                    checked=lambda: is_all_shown(self.shell.settings),
+                    visible=hides_anything,
+                ),
             ),
         )
+
+    def _toggle_hidden(self) -> None:
+        shown = is_all_shown(self.shell.settings)
+        self.shell.settings.setValue(SHOW_ALL, "false" if shown else "true")
+        self.shell.tell(tr("This holds from the next start on."))
 
     def _add_toggles(self) -> None:
         panels = self.menus["&View"].addMenu(tr("Panels"))
@@ -244,7 +262,8 @@ class Window(QMainWindow):
         for command in self.shell.actions.commands:
             if command.icon:
                 self.shell.actions[command.id].setIcon(icons.make_icon(command.icon, look.text))
-        self.shell.settings.setValue("theme", look.name)
+        if look.name != (self.shell.settings.value("theme") or get_studio().theme or FIRST_THEME):
+            self.shell.settings.setValue("theme", look.name)  # a studio's is not the user's choice
         self.refresh()
 
     def refresh(self) -> None:

@@ -46,6 +46,7 @@ from app.stage.session import StageSession
 from app.translation import make_lazy_texts, tr, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
+from metagraph.common.studio import find_start_folder
 from metagraph.generation.standing import Standing, is_busy
 from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import PLAN, find_training_folder, read_planned_takes
@@ -217,7 +218,7 @@ class LearnPage(GenerationPage):
     # --- takes
 
     def choose_folder(self) -> None:
-        start = str(self.folders[-1] if self.folders else self.document.folder or Path.home())
+        start = str(self.folders[-1] if self.folders else find_start_folder(self.document.folder))
         name = QFileDialog.getExistingDirectory(self, tr("A folder of takes"), start)
         if name:
             self.look_through([*self.folders, Path(name)])

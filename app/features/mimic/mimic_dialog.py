@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 from app.look.theme import strengthen
 from app.project.jobs import WindowJob
 from app.translation import format_number, tr, tr_error, tr_noop, tr_plural
+from metagraph.common.studio import find_start_folder
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
@@ -205,7 +206,7 @@ def pick_recording(file: Path) -> Path:
 def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
     """Ask for keypoints (or take `path`), read them on a thread and open the dialog."""
     if not path:
-        start = str(QSettings().value("mimic/folder") or shell.document.folder or Path.home())
+        start = str(QSettings().value("mimic/folder") or find_start_folder(shell.document.folder))
         path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Mimic keypoints"), start, tr(FILTER))
         if not path:
             return
