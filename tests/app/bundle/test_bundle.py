@@ -52,7 +52,7 @@ def test_the_launcher_starts_the_python_beside_it_from_anywhere_also_by_a_link(b
 def test_the_menu_entry_and_the_type_of_projects_are_well_formed():
     entry = configparser.ConfigParser(interpolation=None)
     entry.read(LAUNCHER / "metagraph.desktop", encoding="utf-8")
-    assert entry["Desktop Entry"]["Exec"] == "metagraph window %f"
+    assert entry["Desktop Entry"]["Exec"] == "metagraph window %F"
     kinds = ET.parse(LAUNCHER / "metagraph.xml").getroot()
     pattern = kinds.find(".//{*}glob").get("pattern")
     assert pattern == "*.metagraph.yaml"
