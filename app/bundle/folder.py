@@ -5,6 +5,7 @@ from __future__ import annotations
 import compileall
 import os
 import py_compile
+import re
 import shutil
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.bundle.leftovers import PYTHON, SITE
+from app.bundle.leftovers import PYTHON, SITE, STRIPPED, UNCOMPILED
 from app.bundle.libraries import add_libraries, set_search_path
 from app.shell.update_check import ADDRESS, is_safe
 from metagraph.common.studio import ADDRESS as STUDIO
@@ -44,6 +45,7 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
     install_packages(site)
     tell("Leaving out what is not used")
     remove_matches(site, SITE)
+    strip([binary for name in STRIPPED for binary in (site / name).rglob("*.so")])
     shutil.copytree(ROOT / "docs", site / "docs", ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     shutil.copy(LAUNCHER / "sitecustomize.py", site)
     (site / "bundled").write_text("This Metagraph brings its own Python.\n")
@@ -62,6 +64,7 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
         # The folder may be read-only, or a copy with other times.
         invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH,
         stripdir=str(folder),
+        rx=re.compile(UNCOMPILED),
     )
     for name in ("metagraph", "metagraph.desktop", "metagraph.xml"):
         shutil.copy(LAUNCHER / name, folder)
