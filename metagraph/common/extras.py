@@ -195,6 +195,8 @@ def make_offline_command(name: str) -> str:
         return f"metagraph extras add {name} --from {folder}"
     wants = [word for word in EXTRAS[name].wants if word not in CPU]
     pip = [sys.executable, "-m", "pip", "install", "--no-index", "--find-links", folder, *wants]
+    if find_way() == "uv":  # its tools have no pip
+        pip = ["uv", "pip", "install", "--python", sys.executable, *pip[4:]]
     if find_way() == "pipx":
         return join_command(["pipx", "inject", NAME, *wants, "--pip-args", pip_args(folder)])
     return join_command(pip)

@@ -52,6 +52,7 @@ def test_the_command_is_that_of_the_way_it_was_installed(install, marks, way, be
     assert extras.make_install_command("lab").startswith(begins.replace("PYTHON", python))
     assert "pylsl" in extras.make_remove_command("lab") or way in ("bundle", "uv")
     offline = extras.make_offline_command("lab")
+    assert way not in ("uv", "pipx") or f"{sys.executable} -m pip" not in offline, "they have no pip"
     assert "metagraph-lab" in offline and ("--no-index" in offline or way == "bundle")
 
 
