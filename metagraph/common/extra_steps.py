@@ -76,7 +76,7 @@ def install_extra(
                 free=free,
             )
         )
-    source = ["--no-index", "--find-links", str(folder)] if folder is not None else []
+    source = ["--no-index", "--find-links", str(folder.resolve())] if folder is not None else []
     if is_bundle():
         _install_apart(name, place, source, tell, stopped)
         add_extras()

@@ -156,13 +156,17 @@ def _describe(name: str, line: int, cause: str, remedy: str) -> Phrase:
     return phrase("{name}: {cause}. {remedy}", name=name, cause=cause, remedy=remedy)
 
 
+def _set(studio: Studio, name: str, value: Any) -> Studio:
+    return replace(studio, **{name: value})
+
+
 def _read_text(studio: Studio, key: str, value: object) -> Studio:
     if not isinstance(value, str):
         return studio.with_problem(key, phrase("'{key}' is no text", key=key), phrase("Write it in quotes."))
     if key == "theme" and value not in THEMES:
         cause = phrase("there is no theme '{value}'", value=value)
         return studio.with_problem(key, cause, phrase("Known are {names}.", names=", ".join(THEMES)))
-    return replace(studio, **{key: value})
+    return _set(studio, key, value)
 
 
 def _read_mapping(studio: Studio, key: str, value: object) -> Studio:
@@ -185,7 +189,7 @@ def _read_mapping(studio: Studio, key: str, value: object) -> Studio:
             studio = studio.with_problem(where, cause, phrase("Begin it with the drive or with /."))
         else:
             out[str(name)] = Path(words).expanduser() if key == "folders" else words
-    return replace(studio, **{key: out})
+    return _set(studio, key, out)
 
 
 def _read_hidden(studio: Studio, key: str, value: object) -> Studio:
@@ -199,7 +203,7 @@ def _read_hidden(studio: Studio, key: str, value: object) -> Studio:
             names = ", ".join(known)
             studio = studio.with_problem(f"{key}/{name}", cause, phrase("Known are {names}.", names=names))
         else:
-            studio = replace(studio, **{known[name]: tuple(str(each) for each in words)})
+            studio = _set(studio, known[name], tuple(str(each) for each in words))
     return studio
 
 

@@ -131,7 +131,8 @@ def test_pip_that_hangs_is_ended(bundle, monkeypatch):
 def test_from_a_folder_no_network_is_asked(bundle, monkeypatch):
     pip = Pip()
     monkeypatch.setattr(extra_steps, "start", pip)
-    extra_steps.install_extra("train", folder=bundle)
+    monkeypatch.chdir(bundle.parent)  # pip runs elsewhere
+    extra_steps.install_extra("train", folder=Path(bundle.name))
     assert "--no-index" in pip.command and not [w for w in pip.command if "://" in w]
     assert pip.command[pip.command.index("--find-links") + 1] == str(bundle)
 
