@@ -107,7 +107,7 @@ class Window(QMainWindow):
         self.setAcceptDrops(True)
         self.shell = shell = WindowShell(self)
         session = shell.stage.session
-        kept = str(shell.settings.value("theme") or get_studio().theme)
+        kept: Any = shell.settings.value("theme") or get_studio().theme
         if kept == "dark" or kept == "light":
             session.look.name = kept
         apply_theme(_application(), get_theme(session.look.name))

@@ -67,8 +67,8 @@ def explain_pip_failure(lines: Sequence[str], code: int, package: str, from_fold
         )
     if "No matching distribution" in said:
         return phrase(
-            "No {package} was found for this Python and this system. Check the network and try again, or bring "
-            "the files from another computer, as described below.",
+            "No {package} was found for this Python and this system. Check the network and try again, or "
+            "bring the files from another computer, as described below.",
             package=package,
         )
     if "Permission denied" in said:

@@ -36,7 +36,7 @@ def test_a_line_of_pips_is_said_plainly(line, words, size):
     [
         ("WARNING: Retrying (Retry(total=1))\nERROR: No matching distribution found", False,
          "The network could not be reached"),
-        ("ERROR: No matching distribution found for numba", False, "No numba>=0.60 was found for this Python"),
+        ("ERROR: No matching distribution found for numba", False, "No numba>=0.60 was found"),
         ("ERROR: No matching distribution found for llvmlite<1", True, "folder has no llvmlite<1 that fits"),
         ("ERROR: Could not install: [Errno 28] No space left on device", False, "The disk is full"),
         ("ERROR: ResolutionImpossible: for help", False, "No version of numba>=0.60 fits"),
