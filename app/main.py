@@ -34,7 +34,7 @@ def prepare_application() -> QApplication:
 
 def _application() -> QApplication:
     from app import translation
-    from app.features import check_names
+    from app.features import check_studio_features
     from app.memory import free_memory_early
     from preview.early_driver import load_soon
 
@@ -56,7 +56,7 @@ def _application() -> QApplication:
     app = QApplication(sys.argv[:1])
     app.setWindowIcon(QIcon(str(Path(__file__).parent / "look" / "metagraph.svg")))
     app.setDesktopFileName("metagraph")  # under Wayland the icon is that of the menu entry
-    use_studio(check_names(read_studio(find_studio_file(str(QSettings().value("studio", ""))))))
+    use_studio(check_studio_features(read_studio(find_studio_file(str(QSettings().value("studio", ""))))))
     translation.choose_language(QSettings(), QLocale.system().uiLanguages(), get_studio().language)
     follow_language(app)
     return app

@@ -18,7 +18,7 @@ import msgspec
 import pytest
 
 from app.cli.parser import COMMANDS, main
-from app.features import check_names
+from app.features import check_studio_features
 from metagraph.common.studio import read_studio
 from metagraph.engines import vectors
 from metagraph.engines.targets import registry
@@ -165,7 +165,7 @@ def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int, tm
         return
     if page.name == "studio.md":
         (tmp_path / "studio.yaml").write_text(text, encoding="utf-8")
-        assert check_names(read_studio(tmp_path / "studio.yaml")).problems == ()
+        assert check_studio_features(read_studio(tmp_path / "studio.yaml")).problems == ()
         return
     project = parse_project(text, Path("page.metagraph.yaml"))
     assert project.clips and project.skeleton is not None

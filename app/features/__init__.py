@@ -47,7 +47,7 @@ FEATURES = (
 NEEDED = ("files", "help")  # without these nobody could work
 
 
-def check_names(studio: Studio) -> Studio:
+def check_studio_features(studio: Studio) -> Studio:
     """Return a studio's defaults without the features that are unknown or needed; each is a problem."""
     for name in studio.hidden_features:
         if name in NEEDED or name not in FEATURES:

@@ -57,7 +57,7 @@ def is_safe(address: str) -> bool:
         return False
 
 
-def is_allowed(settings: QSettings) -> bool:
+def is_asking_allowed(settings: QSettings) -> bool:
     """Return whether the user allowed to ask."""
     return str(settings.value(ALLOWED, "false")) == "true"
 
@@ -66,7 +66,7 @@ def is_due(settings: QSettings, now: float) -> bool:
     """Return whether to ask now: it is allowed, there is an address, and a day has passed. now: seconds since
     1970.
     """
-    if not is_allowed(settings) or find_update_address() is None:
+    if not is_asking_allowed(settings) or find_update_address() is None:
         return False
     try:
         asked = float(str(settings.value(ASKED, 0)))
@@ -80,7 +80,7 @@ def find_update(version: str, settings: QSettings) -> Release | None:
     also if it is not allowed.
     """
     address = find_update_address()
-    if address is None or not is_allowed(settings):
+    if address is None or not is_asking_allowed(settings):
         raise UpdateError(phrase("This Metagraph does not look for updates."))
     settings.setValue(ASKED, time.time())
     release = _ask(address)

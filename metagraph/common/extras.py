@@ -198,11 +198,11 @@ def make_offline_command(name: str) -> str:
     if find_way() == "uv":  # its tools have no pip
         pip = ["uv", "pip", "install", "--python", sys.executable, *pip[4:]]
     if find_way() == "pipx":
-        return join_command(["pipx", "inject", NAME, *wants, "--pip-args", pip_args(folder)])
+        return join_command(["pipx", "inject", NAME, *wants, "--pip-args", make_pip_options(folder)])
     return join_command(pip)
 
 
-def pip_args(folder: str) -> str:
+def make_pip_options(folder: str) -> str:
     """Return the options with which pip takes what it needs from a folder alone."""
     return f"--no-index --find-links {folder}"
 

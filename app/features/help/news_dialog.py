@@ -22,7 +22,7 @@ from app.shell.update_check import (
     Release,
     find_update,
     find_update_address,
-    is_allowed,
+    is_asking_allowed,
     read_notes,
 )
 from app.translation import tr, tr_error
@@ -52,7 +52,7 @@ class NewsDialog(QDialog):
         self.allow.setToolTip(
             tr("One request that has nothing of you or your computer. Nothing is installed.")
         )
-        self.allow.setChecked(is_allowed(settings))
+        self.allow.setChecked(is_asking_allowed(settings))
         self.allow.toggled.connect(self._choose)
         self.look = QPushButton(tr("Look now"), self)
         self.look.setAutoDefault(False)
@@ -86,7 +86,7 @@ class NewsDialog(QDialog):
         there = find_update_address() is not None
         self.allow.setVisible(there)
         self.look.setVisible(there)
-        self.look.setEnabled(is_allowed(self.settings))
+        self.look.setEnabled(is_asking_allowed(self.settings))
         self.said.setText("" if there else tr("This copy has no address to look for updates."))
 
     def _choose(self, on: bool) -> None:
@@ -107,14 +107,14 @@ class NewsDialog(QDialog):
         )
 
     def _found(self, release: Release | None) -> None:
-        self.look.setEnabled(is_allowed(self.settings))
+        self.look.setEnabled(is_asking_allowed(self.settings))
         if release is None:
             self.said.setText(tr("This is the newest Metagraph."))
         else:
             self._show(release)
 
     def _failed(self, error: Exception) -> None:
-        self.look.setEnabled(is_allowed(self.settings))
+        self.look.setEnabled(is_asking_allowed(self.settings))
         self.said.setText(tr_error(error))
 
     def _show(self, release: Release) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QSettings
 
-from app.features import FEATURES, check_names
+from app.features import FEATURES, check_studio_features
 from app.shell.studio_defaults import SHOW_ALL, find_hidden_commands, find_studio_shortcuts
 from metagraph.common.studio import Studio, get_studio, use_studio
 
@@ -83,7 +83,7 @@ def test_who_wants_to_sees_what_is_hidden(tmp_path):
 
 
 def test_features_that_are_needed_or_unknown_are_not_hidden():
-    found = check_names(Studio(path=Path("s.yaml"), hidden_features=("study", "files", "nothing")))
+    found = check_studio_features(Studio(path=Path("s.yaml"), hidden_features=("study", "files", "nothing")))
     assert [p.split("'")[1] for p in found.problems] == ["files", "nothing"]
 
 
@@ -128,4 +128,4 @@ def test_the_window_begins_as_the_studio_says_and_keeps_what_the_user_chose(qapp
 
 def test_each_feature_but_the_needed_ones_can_be_named():
     names = tuple(name for name in FEATURES if name not in ("files", "help"))
-    assert check_names(replace(Studio(), hidden_features=names)).problems == ()
+    assert check_studio_features(replace(Studio(), hidden_features=names)).problems == ()
