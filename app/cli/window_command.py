@@ -38,12 +38,12 @@ def run(options: Namespace) -> int:
         wanted = Namespace(json=options.json, project=project)
         return demo_command.run(parser.parse_args([], wanted))
     from app.main import run_window
-    from app.project.second_start import StartRequest, hand_over
+    from app.project.second_start import StartRequest, send_start_request
     from metagraph.formats.outputs import allow_all_outputs
 
     given = tuple(str(path.resolve()) for path in options.paths)
     token = os.environ.get("XDG_ACTIVATION_TOKEN", "")
-    if hand_over(StartRequest(given, options.sample, options.clip, token)):
+    if send_start_request(StartRequest(given, options.sample, options.clip, token)):
         return 0
     with allow_all_outputs():  # what it saves to, it has read
         return run_window(project, options.sample, options.clip, clips)

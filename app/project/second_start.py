@@ -51,7 +51,7 @@ def is_handed_over() -> bool:
 
 
 def find_socket_name() -> str | None:
-    """Return the name of the socket, one for each screen of this user; None where no safe place is known."""
+    """Return the name of the socket, one for each screen of this user; None if no safe place is known."""
     screen = os.environ.get("WAYLAND_DISPLAY") or os.environ.get("DISPLAY") or ""
     mark = hashlib.sha256(screen.encode()).hexdigest()[:8]
     if sys.platform == "win32":  # pipes have no folder; Qt guards them by the user's rights
@@ -67,7 +67,7 @@ def find_socket_name() -> str | None:
     return None
 
 
-def hand_over(request: StartRequest) -> bool:
+def send_start_request(request: StartRequest) -> bool:
     """Give a request to the running window; return whether it took it. A window that crashed, hangs or asks
     something takes nothing.
     """

@@ -18,7 +18,7 @@ def is_all_shown(settings: QSettings) -> bool:
     return str(settings.value(SHOW_ALL, "false")) == "true"
 
 
-def hides_anything() -> bool:
+def is_anything_hidden() -> bool:
     """Return whether the studio hides features or commands."""
     studio = get_studio()
     return bool(studio.hidden_features or studio.hidden_commands)

@@ -29,7 +29,7 @@ from app.shell.keyboard import Keyboard
 from app.shell.language_menu import make_language_command
 from app.shell.notice import Notice
 from app.shell.places import PanelPlaces
-from app.shell.studio_defaults import SHOW_ALL, hides_anything, is_all_shown
+from app.shell.studio_defaults import SHOW_ALL, is_all_shown, is_anything_hidden
 from app.shell.verbs import Verbs
 from app.shell.workspace_keeper import Workspaces
 from app.shell.workspace_tabs import WorkspaceTabs, list_workspace_commands
@@ -169,7 +169,7 @@ class Window(QMainWindow):
                     self._toggle_hidden,
                     tip=tr("From the next start on"),
                     checked=lambda: is_all_shown(self.shell.settings),
-                    visible=hides_anything,
+                    visible=is_anything_hidden,
                 ),
             ),
         )

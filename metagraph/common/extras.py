@@ -158,7 +158,7 @@ def make_install_command(name: str) -> str:
         return f"metagraph extras add {name}"
     if way == "pipx":
         return join_command(["pipx", "inject", NAME, extra.wants[0]])
-    if way == "uv":  # a tool is made anew with all that is wished
+    if way == "uv":  # a tool is made again with all that is wished
         wished = [x.wants[0] for other, x in EXTRAS.items() if other == name or is_installed(other)]
         return join_command(["uv", "tool", "install", NAME, *(w for one in wished for w in ("--with", one))])
     return join_command([sys.executable, "-m", "pip", "install", *extra.wants])

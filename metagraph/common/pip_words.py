@@ -57,7 +57,7 @@ def explain_pip_failure(lines: Sequence[str], code: int, package: str, from_fold
     if from_folder and "No matching distribution" in said:
         missing = re.search(r"No matching distribution found for (\S+)", said)
         return phrase(
-            "The folder has no {package} that fits this computer. Load the files anew with the line below.",
+            "The folder has no {package} that fits this computer. Load the files again with the line below.",
             package=missing[1] if missing else package,
         )
     if NO_NETWORK.search(said):

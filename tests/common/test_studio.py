@@ -1,4 +1,4 @@
-"""A studio's defaults are read from one file; what is wrong is told with its line, and stops nothing."""
+"""A studio's defaults are read from one file; what is wrong is reported with its line, and stops nothing."""
 
 from __future__ import annotations
 

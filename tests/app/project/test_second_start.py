@@ -29,7 +29,7 @@ from app.project import second_start
 second_start.is_handed_over = lambda: sys.argv[1] == "running"
 second_start.PATIENCE = int(sys.argv[2])
 request = second_start.StartRequest(tuple(sys.argv[3:]))
-print("taken" if second_start.hand_over(request) else "own window")
+print("taken" if second_start.send_start_request(request) else "own window")
 """
 
 pytestmark = [pytest.mark.window, pytest.mark.gl, pytest.mark.skipif(os.name == "nt", reason="Unix sockets")]
