@@ -143,14 +143,12 @@ class _Work:
     longest.
     """
 
-    def __init__(
-        self, wanted: dict[Key, SideSound], send_start_request: Callable[[Callable[[], None]], None]
-    ) -> None:
-        self.wanted, self.send_start_request = wanted, send_start_request
+    def __init__(self, wanted: dict[Key, SideSound], hand_over: Callable[[Callable[[], None]], None]) -> None:
+        self.wanted, self.hand_over = wanted, hand_over
 
     def set(self, heard: SideSound, **values: Any) -> None:
         """Set fields of what is painted, on the window's thread."""
-        self.send_start_request(partial(_set, heard, values))
+        self.hand_over(partial(_set, heard, values))
 
     def __call__(self, job: WindowJob) -> None:
         samples: dict[Key, tuple[Any, int]] = {}
@@ -213,7 +211,7 @@ class _Work:
             if begin >= len(samples) or job.cancelled:
                 break
             piece = samples[begin : round((first + step) * each)]
-            self.send_start_request(partial(wave.put, first, *measure_bins(piece, each)))
+            self.hand_over(partial(wave.put, first, *measure_bins(piece, each)))
             loudest = max(loudest, float(abs(piece).max()))
             self.set(heard, loudest=loudest, part=0.5 * begin / len(samples))
             job.tell(*progress, tr("waveform"))
