@@ -31,6 +31,7 @@ class Steps:
         tell(0.4, phrase("Loading {package}…", package="numba"))
         while self.wait and not stopped():
             time.sleep(0.01)
+            tell(0.4, phrase("Loading {package}…", package="numba"))
         if self.error is not None:
             raise self.error
         if not stopped():
